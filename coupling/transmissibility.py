@@ -57,6 +57,12 @@ class FrequencyResponse:
         """Force of each shaft on its bearing along x and y [N], shape (f, 2) each."""
         return {name: load[:, :2] for name, load in self.bearing_load.items()}
 
+    def peaks(self, curve: ComplexArray, count: int = 8) -> npt.NDArray[np.int64]:
+        """Places along the frequencies at which the size of a curve (f,) has its highest maxima, highest first."""
+        size = np.abs(curve)
+        tops = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
+        return np.asarray(tops[np.argsort(-size[tops], kind="stable")][:count])
+
 
 def mesh_error_response(
     machine: CoupledMachine,

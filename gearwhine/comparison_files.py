@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case
-from gearwhine.results import LabelledArrays, file_attributes
 from gearwhine.stages.response_comparison import ResponseLikeness
 from housing import Comparison, ShapeCorrelation
 from housing.measured import MeasuredGeometry
-from housing.netcdf import Variables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,46 +43,6 @@ def write_comparison(folder: Path, comparison: Comparison, geometry: MeasuredGeo
         if shapes.comac is not None:
             files.append(_write_coordinates(folder, shapes, geometry))
     return files
-
-
-def comparison_arrays(case: Case, comparison: Comparison) -> LabelledArrays:
-    """Pairs of measured and model modes as labelled arrays; with shapes also the MAC matrix and COMAC."""
-    pairs, shapes = comparison.pairs, comparison.shapes
-    variables: Variables = {
-        "measured_frequency": ("pair", [pair.measured / _HERTZ for pair in pairs], _unit("Hz", "measured frequency")),
-        "model_frequency": ("pair", [pair.model / _HERTZ for pair in pairs], _unit("Hz", "frequency of the model")),
-        "frequency_error": (
-            "pair",
-            [pair.error_percent for pair in pairs],
-            _unit("percent", "error of the model's frequency"),
-        ),
-        "measured_mode": ("pair", [pair.measured_mode for pair in pairs], _unit("1", "number of the measured mode")),
-        "model_mode": ("pair", [pair.mode for pair in pairs], _unit("1", "number of the housing mode")),
-    }
-    coordinates: Variables = {}
-    if shapes is not None:
-        coordinates["measured"] = (
-            "measured",
-            np.arange(1, 1 + len(shapes.measured_frequencies)),
-            _unit("1", "number of the measured mode"),
-        )
-        coordinates["housing_mode"] = (
-            "housing_mode",
-            np.arange(1, 1 + len(shapes.model_frequencies)),
-            _unit("1", "number of the housing mode"),
-        )
-        variables["mac"] = (("housing_mode", "measured"), shapes.mac, _unit("1", "modal assurance criterion"))
-        if shapes.comac is not None:
-            variables["comac"] = (
-                "degree_of_freedom",
-                shapes.comac,
-                _unit("1", "coordinate modal assurance criterion"),
-            )
-    return LabelledArrays(variables, coordinates, file_attributes(case))
-
-
-def _unit(unit: str, what: str) -> dict[str, str]:
-    return {"units": unit, "long_name": what}
 
 
 def draw_comparison_figures(

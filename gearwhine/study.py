@@ -140,7 +140,7 @@ class Study:
 
     def check(self) -> dict[str, Any]:
         """Derived quantities of the case: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
-        from gearwhine.stages.summary import check_document
+        from gearwhine.results.check import check_document
 
         return check_document(self.case, self.progress)
 

@@ -29,7 +29,7 @@ from .projection import Projection
 from .shaft import Rotor
 from .spatial_chain import SpatialChain, retied, whirl_reach
 from .spatial_ties import block_sets
-from .whirl import START_REACH, WhirlSolver
+from .whirl import NEUTRAL, START_REACH, WhirlSolver
 from .whirl_certificate import NO_OSCILLATION
 
 FloatArray = npt.NDArray[np.float64]
@@ -117,6 +117,13 @@ class Campbell:
     def log_decrements(self) -> FloatArray:
         """−2π Re λ / Im λ, (s, m)."""
         return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
+    @property
+    def unstable_from(self) -> float | None:
+        """Lowest speed of the diagram, without its sense, at which a mode grows, rad/s; None where none does."""
+        # Branches that do not oscillate at a speed are NaN there, which compares as stable.
+        grows = (self.log_decrements < -2.0 * np.pi * NEUTRAL).any(axis=1)
+        return float(np.abs(self.speeds[grows]).min()) if grows.any() else None
 
     def crossings(self, order: float = 1.0) -> tuple[Crossing, ...]:
         """Where branches cross Im λ = order · |Ω| within the range, each refined on the exact equations.

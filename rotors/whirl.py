@@ -43,6 +43,8 @@ WIDE_GAP = 0.01
 # Share of axial kinetic energy above which a motion is called axial. Unbalance still drives one with less, in
 # proportion to the root of its lateral share.
 MOSTLY_AXIAL = 0.9
+# A damping ratio nearer to zero is rounding: the mode neither grows nor decays.
+NEUTRAL = 1e-9
 # In a narrower gap a limit would be too close to a root for the count.
 LEAST_GAP = 1e-6
 # Number of results that a solver holds, those made last.
@@ -111,6 +113,11 @@ class WhirlModes:
     def log_decrements(self) -> FloatArray:
         """Logarithmic decrement −2π Re λ / Im λ, (w,)."""
         return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
+    @property
+    def stable(self) -> bool:
+        """Whether no mode grows by itself."""
+        return bool((self.damping_ratios >= -NEUTRAL).all())
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex x and y of every mode at positions z (m), both (w, len(z)), by the exact field."""

@@ -5,11 +5,19 @@ from typing import Any
 
 from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
 from gearwhine.output import staging
+from gearwhine.output.sections import Column, Document, Section, table_of
 
 
 def list_examples() -> dict[str, Any]:
     """The bundled cases and their titles."""
     return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()]}
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """The bundled cases as a table."""
+    columns = (Column("name", "name"), Column("what it is", "title"))
+    usage = ("Run one:   gearwhine run NAME", "Change one: gearwhine examples copy NAME")
+    return (Section("", (*table_of(columns, document["examples"]), *usage)),)
 
 
 def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
@@ -29,9 +37,10 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
 
 def report_case(case: Case, folder: Path) -> dict[str, Any]:
     """The results in a folder as one HTML page, which marks those that do not fit the case any more."""
-    from gearwhine.report import report_page
+    from gearwhine.output.html import report_page
+    from gearwhine.results.chapters import chapters_of
 
-    page = report_page(folder, case)
+    page = report_page(folder, chapters_of, case)
     with staging(folder) as place:
         (place / "report.html").write_text(page, encoding="utf-8")
     return {"folder": str(folder), "files": ["report.html"]}

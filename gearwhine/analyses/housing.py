@@ -4,23 +4,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gearwhine import results
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
-from gearwhine.comparison_files import (
-    comparison_arrays,
-    draw_comparison_figures,
-    write_comparison,
-    write_likeness,
-)
+from gearwhine.comparison_files import draw_comparison_figures, write_comparison, write_likeness
+from gearwhine.doubtful import warning
 from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
+from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.comparison import COMPARISON, comparison_document, responses_document, survey_document
+from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
 from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import comparison_documents, housing_documents, mesh_health, response_comparison, survey_plan
 from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
-from gearwhine.stages import measured as measured_stage
+from gearwhine.stages import mesh_health, survey_plan
 from gearwhine.stages.housing import SolvedHousing
+from gearwhine.stages.response_comparison import ResponseLikeness, responses_beside
 from housing import Comparison
 from meshes import Mesh
 
@@ -44,32 +42,19 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     CaseError
         Where the housing cannot be meshed.
     """
-    from meshes import mesh_quality, write_mesh
+    from gearwhine.results.mesh import mesh_document
+    from meshes import write_mesh
 
     progress("meshing the housing")
     remarks: list[str] = []
     made = geometry_stage.build_mesh(case, remarks.append)
-    doubts = mesh_health.examine(case, made)
-    doubts += mesh_health.doubt_resolution(case, made, case.housing.frequency_limit if case.housing else None)
-    quality = mesh_quality(made)
-    document = {
-        "mesh": {"nodes": len(made.points), "elements": made.n_elements, "dofs": 3 * len(made.points)},
-        "order": made.order,
-        "kinds": made.kinds,
-        "surfaces": {surface: sum(map(len, facets)) for surface, facets in sorted(made.surfaces.items())},
-        "volumes": {volume: len(members) for volume, members in sorted(made.volumes.items())},
-        "volume_m3": quality.volume,
-        "edge_length_m": dict(zip(("min", "median", "max"), quality.edge_length, strict=True)),
-        "shape_number": dict(zip(("min", "median"), quality.shape, strict=True)),
-        "bores": geometry_stage.bores_document(made),
-        "warnings": [mesh_health.doubt("geometry", remark) for remark in remarks]
-        + mesh_health.warnings_document(doubts),
-    }
+    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.examine(case, made)
+    warnings += mesh_health.doubt_resolution(case, made, case.housing.frequency_limit if case.housing else None)
 
     def files(place: Path, *, pictures: bool) -> None:
         write_mesh(made, place / f"mesh.{suffix}")
 
-    return Result("mesh", case, made, document, _files=files)
+    return Result("mesh", case, made, mesh_document(made, warnings), _files=files)
 
 
 def modes(
@@ -106,14 +91,14 @@ def modes(
     solved = _solved(case, "modes", housing, folder, progress, fresh=fresh)
 
     def files(place: Path, *, pictures: bool) -> None:
-        results.write_shapes(place / "modes.vtu", solved)
+        write_shapes(place / "modes.vtu", solved)
 
     return Result(
         "modes",
         case,
         solved,
-        housing_documents.modes_document(solved, detail=detail),
-        _arrays=lambda: results.labelled(case, housing=solved),
+        modes_document(solved, detail=detail),
+        _arrays=lambda: labelled(case, (HOUSING, solved)),
         _files=files,
         _housing=solved,
     )
@@ -144,26 +129,26 @@ def compare(
     require(case, "housing", "measured", command="compare")
     solved = _solved(case, "compare", housing, folder, progress, fresh=fresh)
     comparison, survey = comparison_stage.compare_with_survey(case, solved, progress)
-    document = comparison_documents.comparison_document(comparison, solved)
+    document = comparison_document(comparison, solved)
     likeness = None
     if survey is not None:
-        document["survey"] = measured_stage.survey_document(survey)
+        document["survey"] = survey_document(survey)
         progress("comparing responses")
-        likeness, told = response_comparison.responses_beside(case, solved, survey)
-        document |= {} if told is None else {"responses": told}
+        likeness = responses_beside(case, solved, survey)
+        document |= {} if likeness is None else {"responses": responses_document(likeness)}
     geometry = None if survey is None else survey.geometry
 
     def files(place: Path, *, pictures: bool) -> None:
         write_comparison(place, comparison, geometry)
-        if likeness is not None:
+        if isinstance(likeness, ResponseLikeness):
             write_likeness(place, likeness)
 
     return Result(
         "compare",
         case,
         comparison,
-        document | housing_documents.origin_document(solved),
-        _arrays=lambda: comparison_arrays(case, comparison),
+        document | origin_document(solved),
+        _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(case)),
         _figures=lambda progress: draw_comparison_figures(case.title, comparison, solved.modes.frequencies, geometry),
         _files=files,
         _housing=solved,
@@ -198,15 +183,16 @@ def survey(
     CaseError
         Where so many sensors cannot tell so many modes apart.
     """
+    from gearwhine.results.survey import plan_document
+
     solved = _solved(case, "survey", housing, folder, progress, fresh=fresh)
     progress(f"choosing {sensors} sensors")
     planned = survey_plan.plan_housing(case, solved, sensors, modes)
-    document = survey_plan.plan_document(planned, solved) | housing_documents.origin_document(solved)
 
     def files(place: Path, *, pictures: bool) -> None:
         survey_plan.write_plan(place, planned)
 
-    return Result("survey", case, planned, document, _files=files, _housing=solved)
+    return Result("survey", case, planned, plan_document(planned, solved), _files=files, _housing=solved)
 
 
 def update(
@@ -228,19 +214,21 @@ def update(
     CaseError, housing.HousingError
         Where the case has nothing to fit, or its housing cannot be solved.
     """
-    from gearwhine.stages import update_documents, updating
+    from gearwhine.results.update import update_arrays, update_document
+    from gearwhine.stages import updating
+    from gearwhine.stages.updated_case import updated_case
 
     solved = updating.update_housing(case, progress, null=null, held_back=held_back)
 
     def files(place: Path, *, pictures: bool) -> None:
-        (place / "updated.toml").write_text(update_documents.updated_case(case, solved), encoding="utf-8")
+        (place / "updated.toml").write_text(updated_case(case, solved), encoding="utf-8")
 
     return Result(
         "update",
         case,
         solved,
-        update_documents.update_document(case, solved),
-        _arrays=lambda: update_documents.update_arrays(case, solved),
+        update_document(case, solved),
+        _arrays=lambda: update_arrays(case, solved),
         _files=files,
         _data_file="update.nc",
     )
@@ -289,7 +277,7 @@ def render(
     comparison, survey = None, None
     if case.measured is not None and (measured or solved.strengths is not None):
         comparison, survey = comparison_stage.compare_with_survey(case, solved, progress)
-    document = housing_documents.origin_document(solved)
+    document = origin_document(solved)
 
     def files(place: Path, *, pictures: bool) -> None:
         if which is not None:

@@ -5,18 +5,20 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gearwhine import results
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, swept_keys
 from gearwhine.doubtful import add_warnings, joined, warning
+from gearwhine.output.dataset import labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.gears import GEARS, gears_document
+from gearwhine.results.housing import HOUSING, origin_document
+from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.steady import STEADY, steady_document
+from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import (
     gear_analysis,
-    gear_documents,
     gear_torques,
-    housing_documents,
     relief_aims,
-    rotor_documents,
 )
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import machine as machine_stage
@@ -29,7 +31,6 @@ from gearwhine.stages.instability import machine_warnings, unstable_modes_warnin
 from gearwhine.stages.rotors import SolvedRotor
 from gearwhine.stages.steady import SolvedSteady
 from gearwhine.stages.system import SolvedSystem
-from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.uncertainty import add_uncertainty
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
         Where modes fail their certificate.
     """
     solved = rotor_stage.solve_rotors(case, progress)
-    document = rotor_documents.rotors_document(solved)
+    document = rotors_document(solved)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_rotors
@@ -73,7 +74,7 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
         case,
         solved,
         document,
-        _arrays=lambda: results.labelled(case, rotors=solved),
+        _arrays=lambda: labelled(case, (ROTORS, solved)),
         _figures=figures,
         _files=files,
     )
@@ -107,8 +108,8 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         "gears",
         case,
         pairs,
-        gear_documents.gears_document(pairs),
-        _arrays=lambda: results.labelled(case, pairs=pairs),
+        gears_document(pairs),
+        _arrays=lambda: labelled(case, (GEARS, pairs)),
         _figures=figures,
     )
 
@@ -158,7 +159,7 @@ def system(
         over_speed=over_speed or swept or sidebands > 0,
         sidebands=sidebands,
     )
-    document = system_document(case, solved, solved_housing)
+    document = system_document(solved)
     add_warnings(document, unstable_modes_warnings(solved.stability))
     error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
@@ -172,8 +173,8 @@ def system(
         "system",
         case,
         solved,
-        joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: results.labelled(case, housing=solved_housing, system=solved),
+        joined(document, origin_document(solved_housing)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (SYSTEM, solved)),
         _figures=figures,
         _housing=solved_housing,
     )
@@ -227,7 +228,7 @@ def steady(
         points=points,
         exact=exact,
     )
-    document = steady_stage.steady_document(case, solved)
+    document = steady_document(case.title, solved)
     add_warnings(document, machine_warnings(machine))
     error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
@@ -241,8 +242,8 @@ def steady(
         "steady",
         case,
         solved,
-        joined(document, housing_documents.origin_document(solved_housing)),
-        _arrays=lambda: results.labelled(case, housing=solved_housing, steady=solved),
+        joined(document, origin_document(solved_housing)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (STEADY, solved)),
         _figures=figures,
         _housing=solved_housing,
     )

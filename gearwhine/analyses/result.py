@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from gearwhine.results import LabelledArrays
+    from gearwhine.output.dataset import LabelledArrays
     from gearwhine.stages.housing import SolvedHousing
 
 # Lists of parts that are proved one by one; modes and lines of a spectrum have one proof together.
@@ -88,7 +88,7 @@ class Result(Generic[Solved]):
             import xarray as xr
 
             return xr.Dataset(attrs={"title": self.case.title})
-        from gearwhine.results import LabelledArrays
+        from gearwhine.output.dataset import LabelledArrays
 
         found = self._arrays()
         return found.dataset() if isinstance(found, LabelledArrays) else found
@@ -180,7 +180,7 @@ class Result(Generic[Solved]):
     def _write_data(self, place: Path) -> None:
         if self._arrays is None:
             return
-        from gearwhine.results import LabelledArrays
+        from gearwhine.output.dataset import LabelledArrays
 
         found = self._arrays()
         if isinstance(found, LabelledArrays):

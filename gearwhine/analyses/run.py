@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine import results
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.comparison_files import draw_comparison_figures, write_comparison
@@ -18,9 +17,22 @@ from gearwhine.doubtful import add_warnings, joined
 from gearwhine.drawings import draw_modes
 from gearwhine.march_files import kept_march
 from gearwhine.output import staging
+from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.progress import Progress, silent
+from gearwhine.results.comparison import comparison_document
+from gearwhine.results.gears import GEARS, gears_document
+from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
+from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.run import (
+    RUN_SIGNATURE,
+    TRANSIENT,
+    HistoryStream,
+    run_signature_document,
+    transient_document,
+)
+from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import comparison_documents, gear_analysis, gear_documents, housing_documents, rotor_documents
+from gearwhine.stages import gear_analysis
 from gearwhine.stages import gears as gear_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import machine as machine_stage
@@ -34,7 +46,6 @@ from gearwhine.stages.housing import keep_modes
 from gearwhine.stages.instability import unstable_modes_warnings
 from gearwhine.stages.kept_modes import MODES_FILE
 from gearwhine.stages.machine import require_machine
-from gearwhine.stages.system_documents import system_document
 from gearwhine.stages.uncertainty import add_uncertainty
 
 if TYPE_CHECKING:
@@ -107,16 +118,16 @@ def run(
         housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
     timed("housing", begin)
     if rotors:
-        document = joined(document, rotor_documents.rotors_document(rotors))
+        document = joined(document, rotors_document(rotors))
     if pairs:
-        document = joined(document, gear_documents.gears_document(analysed))
+        document = joined(document, gears_document(analysed))
     comparison = None
     if housing is not None:
-        document["housing"] = housing_documents.modes_document(housing)
-        document = joined(document, housing_documents.origin_document(housing))
+        document["housing"] = modes_document(housing)
+        document = joined(document, origin_document(housing))
         if case.measured is not None:
             comparison = comparison_stage.compare_housing(case, housing, progress)
-            document["compare"] = comparison_documents.comparison_document(comparison, housing)
+            document["compare"] = comparison_document(comparison, housing)
 
     transient, system, signature, run_signature = None, None, None, None
     if case.rotor and case.operation:
@@ -125,7 +136,7 @@ def run(
         machine = machine_stage.build_machine(case, part, pairs, progress)
         basis = machine_stage.basis_error(case, machine, part, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
-        document["system"] = system_document(case, system, housing)
+        document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         timed("system", begin)
@@ -142,17 +153,16 @@ def run(
             transient = transient_stage.solve_transient(
                 case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep
             )
-            document = joined(document, transient_stage.transient_document(case, transient))
-            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
-            add_uncertainty(document, basis, transient.trusted_limit)
             if transient_stage.is_traced(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
-                signature_stage.add_signature(document, transient, signature)
+            document = joined(document, transient_document(transient, signature))
+            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
+            add_uncertainty(document, basis, transient.trusted_limit)
             run_signature = run_up_stage.solve_run_signature(case, transient)
             add_warnings(document, run_up_stage.run_signature_warnings(case, transient))
             if run_signature is not None:
-                document["run_signature"] = run_up_stage.run_signature_document(run_signature)
+                document["run_signature"] = run_signature_document(run_signature)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
@@ -163,7 +173,7 @@ def run(
     def files(place: Path, *, pictures: bool) -> None:
         if solved.housing is None:
             return
-        results.write_shapes(place / "modes.vtu", solved.housing)
+        write_shapes(place / "modes.vtu", solved.housing)
         if comparison is not None:
             write_comparison(place, comparison)
         if pictures:
@@ -174,16 +184,7 @@ def run(
         case,
         solved,
         document,
-        _arrays=lambda: results.labelled(
-            case,
-            housing=solved.housing,
-            rotors=rotors,
-            pairs=analysed,
-            system=system,
-            transient=transient,
-            signature=signature,
-            run=run_signature,
-        ),
+        _arrays=partial(run_arrays, case, solved),
         _figures=partial(_figures, case, solved),
         _files=files,
         _housing=housing,
@@ -269,6 +270,21 @@ class RunSolution:
     transient: SolvedTransient | None
     signature: SolvedSignature | None
     run_signature: RunSignature | None
+
+
+def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
+    """The quantities of what there is."""
+    streams = () if solved.transient is None else (HistoryStream(solved.transient),)
+    return labelled(
+        case,
+        (HOUSING, solved.housing),
+        (ROTORS, solved.rotors),
+        (GEARS, solved.pairs),
+        (SYSTEM, solved.system),
+        (TRANSIENT, None if solved.transient is None else (solved.transient, solved.signature)),
+        (RUN_SIGNATURE, solved.run_signature),
+        streams=streams,
+    )
 
 
 def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:

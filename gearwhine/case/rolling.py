@@ -49,6 +49,7 @@ class _Mounted(Table):
     spring's force on the shaft along `carries`, of two rows the force with which they press each other. `carries` is
     the way in which an axial force of the shaft presses the balls of a single row, or of two in tandem. `law`: whether
     it is the linear one about its load in the transient, or that of every element with its play as they go round.
+    `dynamic_rating` is the maker's C, for the rated life.
     """
 
     law: Literal["linear", "nonlinear"] = "linear"
@@ -57,6 +58,7 @@ class _Mounted(Table):
     carries: Literal["+z", "-z"] = "+z"
     arrangement: Arrangement = "single"
     spacing: PositiveLength | None = None
+    dynamic_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
 
     @property
     def pressed(self) -> bool:

@@ -27,21 +27,22 @@ def run(
     An interrupted run continues from its last checkpoint when the same case is run into OUT again.
     """
     from gearwhine.analyses.run import run_into
-    from gearwhine.screen import show_run
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.run import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
         return run_into(given, folder, fresh=fresh, pictures=pictures, progress=progress).document
 
-    on_case(case, common, work, show_run)
+    on_case(case, common, work, shown_by(sections, timed=True))
 
 
 def check(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """Check the case and show speeds, mesh frequencies, torques and sizes; solve nothing."""
-    from gearwhine.screen import show_check
-    from gearwhine.stages.summary import check_document
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.check import check_document, sections
 
-    on_case(case, common, check_document, show_check)
+    on_case(case, common, check_document, shown_by(sections))
 
 
 def examples(
@@ -51,11 +52,11 @@ def examples(
     common: Common = NONE_GIVEN,
 ) -> None:
     """List the bundled cases, or copy one here (or to OUT) to change it: examples copy NAME."""
-    from gearwhine.analyses.case import copy_example, list_examples
-    from gearwhine.screen import show_examples, show_files
+    from gearwhine.analyses.case import copy_example, list_examples, sections
+    from gearwhine.output.terminal import show_files, shown_by
 
     if action == "list":
-        hand_over(list_examples(), common, show_examples)
+        hand_over(list_examples(), common, shown_by(sections))
     else:
         hand_over(copy_example(name, common.output or Path()), common, show_files)
 
@@ -63,6 +64,11 @@ def examples(
 def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """Write the results in OUT (default: ./<case>-results) as one HTML page, report.html."""
     from gearwhine.analyses.case import report_case
-    from gearwhine.screen import show_files
+    from gearwhine.output.terminal import shown_by
 
-    on_case(case, common, lambda given, progress: report_case(given, results_folder(case, common)), show_files)
+    on_case(
+        case,
+        common,
+        lambda given, progress: report_case(given, results_folder(case, common)),
+        shown_by(lambda document: ()),
+    )

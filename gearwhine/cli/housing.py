@@ -23,13 +23,14 @@ def mesh(
 ) -> None:
     """Mesh the housing and write the mesh file to OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
-    from gearwhine.screen import show_mesh
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.mesh import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
         return written(analyses.mesh(given, suffix=format, progress=progress), folder, progress)
 
-    on_case(case, common, work, show_mesh)
+    on_case(case, common, work, shown_by(sections))
 
 
 def modes(
@@ -48,25 +49,27 @@ def modes(
 ) -> None:
     """Natural modes of the housing, certified complete, with checks of the model."""
     from gearwhine.analyses import housing as analyses
-    from gearwhine.screen import show_modes, show_modes_in_detail
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.housing import detailed_sections, sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.modes(given, detail=detail, folder=common.output, fresh=fresh, progress=progress)
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_modes_in_detail if detail else show_modes)
+    on_case(case, common, work, shown_by(detailed_sections if detail else sections))
 
 
 def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) -> None:
     """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses."""
     from gearwhine.analyses import housing as analyses
-    from gearwhine.screen import show_comparison
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.comparison import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.compare(given, folder=common.output, fresh=fresh, progress=progress)
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_comparison)
+    on_case(case, common, work, shown_by(sections))
 
 
 def survey(
@@ -81,14 +84,15 @@ def survey(
 ) -> None:
     """Plan a modal survey: sensor and hammer positions, as files in OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
-    from gearwhine.screen import show_survey
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.survey import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
         found = analyses.survey(given, sensors=sensors, modes=modes, folder=folder, fresh=fresh, progress=progress)
         return written(found, folder, progress)
 
-    on_case(case, common, work, show_survey)
+    on_case(case, common, work, shown_by(sections))
 
 
 def update(
@@ -113,13 +117,14 @@ def update(
 ) -> None:
     """Fit the parameters of [update] to the measured modes; write updated.toml to OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
-    from gearwhine.screen import show_update
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.update import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
         return written(analyses.update(given, null=null, held_back=held_back, progress=progress), folder, progress)
 
-    on_case(case, common, work, show_update)
+    on_case(case, common, work, shown_by(sections))
 
 
 def render(
@@ -153,7 +158,7 @@ def render(
 ) -> None:
     """Draw mode shapes, operating shapes or measured shapes into OUT (default: ./<case>-results)."""
     from gearwhine.analyses import housing as analyses
-    from gearwhine.screen import show_files
+    from gearwhine.output.terminal import show_files
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)

@@ -28,24 +28,26 @@ def rotors(
 ) -> None:
     """Lateral and torsional modes, whirl and critical speeds of each rotor; CASE may be a rotor saved by ROSS."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_rotors
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.rotors import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common) if write_ross else common.output
         return written(analyses.rotors(given, write_ross=write_ross, progress=progress), folder, progress)
 
-    on_case(case, common, work, show_rotors)
+    on_case(case, common, work, shown_by(sections))
 
 
 def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """Gear pairs: geometry, mesh stiffness, transmission error, load sharing, contact pressure, optimal tip relief."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_gears
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.gears import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return written(analyses.gears(given, folder=common.output, progress=progress), common.output, progress)
 
-    on_case(case, common, work, show_gears)
+    on_case(case, common, work, shown_by(sections))
 
 
 def system(
@@ -77,7 +79,8 @@ def system(
 ) -> None:
     """Complex natural modes of the coupled machine, their damping and participation, and its transmissibility."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_system
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.system import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.system(
@@ -91,7 +94,7 @@ def system(
         )
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_system)
+    on_case(case, common, work, shown_by(sections))
 
 
 def steady(
@@ -126,7 +129,8 @@ def steady(
 ) -> None:
     """Periodic steady state by shooting, its stability by Floquet multipliers, and its continuation over speed."""
     from gearwhine.analyses import machine as analyses
-    from gearwhine.screen import show_steady
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.steady import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.steady(
@@ -141,7 +145,7 @@ def steady(
         )
         return written(found, common.output, progress)
 
-    on_case(case, common, work, show_steady)
+    on_case(case, common, work, shown_by(sections))
 
 
 def sweep(
@@ -171,7 +175,8 @@ def sweep(
     """Parallel transients over the speeds of [sweep] or over any keys; OUT (default: ./<case>-results) is resumed."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.failures import PartlyFailedError
-    from gearwhine.screen import show_sweep
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.sweep import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
@@ -181,7 +186,7 @@ def sweep(
         )
         return written(found, folder, progress)
 
-    document = on_case(case, common, work, show_sweep)
+    document = on_case(case, common, work, shown_by(sections, timed=True))
     if document["failed"]:
         total = len(document["points"])
         raise PartlyFailedError(f"{document['failed']} of {total} points failed; they are tried again on the next run")

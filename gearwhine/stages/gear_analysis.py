@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,42 @@ from gearwhine.case import GearPair as GivenPair
 FloatArray = npt.NDArray[np.float64]
 
 HARMONICS = 8
+_PHASES = 400  # of the mesh period, evenly, for curves that pairs have in common
+_PLACES = 200  # along a flank
+
+
+@dataclass(frozen=True, eq=False)
+class PairCurves:
+    """A gear pair at even phases of its mesh period, (n,), with every pair of teeth (n, m); NaN where one is absent.
+
+    Attributes
+    ----------
+    phases : ndarray, shape (n,)
+        Parts of the mesh period.
+    mesh : coupling.gears.StaticMesh
+        Under the case's torque.
+    stiffness : ndarray, shape (n,)
+        Of all pairs on the path of contact [N/m].
+    unloaded : ndarray, shape (n,)
+        Transmission error without load [m].
+    position : ndarray, shape (n, m)
+        Place on the path of contact [base pitches].
+    share : ndarray, shape (n, m)
+        Part of the load.
+    pressure : ndarray, shape (n, m)
+        Hertzian pressure, the largest over the face [Pa]; NaN where it is not known.
+    face_place : ndarray, shape (s,), or None
+        Distance of each slice from the middle of the face [m]; None where loads are even along it.
+    """
+
+    phases: FloatArray
+    mesh: room.StaticMesh
+    stiffness: FloatArray
+    unloaded: FloatArray
+    position: FloatArray
+    share: FloatArray
+    pressure: FloatArray
+    face_place: FloatArray | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +93,69 @@ class PairAnalysis:
     def label(self) -> str:
         """The pair's gears."""
         return f"{self.solved.pair.driver} → {self.solved.pair.driven}"
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Mesh stiffness of all pairs on the path of contact at the phases of ``solved.static`` [N/m], (n,)."""
+        return room.mesh_stiffness(self.solved.contact, self.solved.static.phases)
+
+    @property
+    def flanks(self) -> tuple[FloatArray, FloatArray]:
+        """Roll angles [rad] of driver and driven gear from form circle to tip, and the material over the involute [m].
+
+        Both of shape (2, n).
+        """
+        gears = (self.solved.geometry.driver, self.solved.geometry.driven)
+        ends = [(gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)) for gear in gears]
+        rolls = [np.linspace(low, high, _PLACES) for low, high in ends]
+        return np.array(rolls), np.array([-room.flank_gap(gear, roll) for gear, roll in zip(gears, rolls, strict=True)])
+
+    @property
+    def shares(self) -> tuple[FloatArray, FloatArray] | None:
+        """Part of the load that a pair of teeth has along its path: places [base pitches] in order, and parts.
+
+        None without load or single pairs.
+        """
+        static = self.solved.static
+        if static.force == 0.0 or not self.solved.has_single_pairs:
+            return None
+        present = self.solved.contact.pairs(static.phases).present
+        order = np.argsort(static.positions[present], kind="stable")
+        return static.positions[present][order], static.load_shares[present][order]
+
+    @property
+    def largest_pressure(self) -> tuple[float, float] | None:
+        """The largest Hertzian pressure on the path of contact [Pa], and the driver's roll angle there [rad]."""
+        if self.pressure is None:
+            return None
+        geometry, faces, positions = self.solved.geometry, self.solved.contact.faces, self.solved.static.positions
+        if faces is not None:
+            positions = positions[..., None] + faces.shift
+        known = np.nan_to_num(self.pressure, nan=0.0, posinf=np.inf)
+        place = np.unravel_index(int(known.argmax()), known.shape)
+        return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
+
+    def curves(self) -> PairCurves:
+        """The pair at even phases of the mesh period."""
+        phases = np.arange(_PHASES) / _PHASES
+        contact, faces = self.solved.contact, self.solved.contact.faces
+        mesh = room.static_transmission_error(contact, self.solved.static.force, phases)
+        absent = ~contact.pairs(phases).present
+        pressure = np.full(mesh.positions.shape, np.nan)
+        if self.pressure is not None:
+            whole = room.mesh_pressure(self.solved.geometry, contact, mesh)
+            # Over the face the largest; what lies off the path has none.
+            pressure = whole if whole.ndim == 2 else np.fmax.reduce(whole, axis=2)
+        return PairCurves(
+            phases=phases,
+            mesh=mesh,
+            stiffness=room.mesh_stiffness(contact, phases),
+            unloaded=first_touch(contact, phases),
+            position=np.where(absent, np.nan, mesh.positions),
+            share=np.where(absent, np.nan, mesh.load_shares),
+            pressure=np.where(absent, np.nan, pressure),
+            face_place=None if faces is None or mesh.line_loads is None else faces.z,
+        )
 
     @property
     def harmonics(self) -> FloatArray:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +10,18 @@ import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.box_shape import box_geometry
 from gearwhine.case.problems import UNSAID
-from meshes import UNITS, GeometryError, Mesh, MeshSizeError, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
+from meshes import (
+    UNITS,
+    CylindricalBore,
+    GeometryError,
+    Mesh,
+    MeshSizeError,
+    find_bores,
+    mesh_box,
+    mesh_cad,
+    read_mesh,
+    with_bore,
+)
 
 
 def unheard(warning: str) -> None:
@@ -129,26 +139,10 @@ def material_of(case: Case, name: str) -> room.Material:
     return room.Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
 
 
-def bolts_document(case: Case) -> list[dict[str, Any]]:
-    """The bolts of a box's cover with their springs."""
-    rows = []
-    for joint in cover_joints(case):
-        shear, _, axial, tilting, _, torsional = joint.bushing.stiffness
-        rows.append(
-            {
-                "name": joint.name,
-                "position_m": None if joint.center is None else list(joint.center),
-                "stiffness_n_per_m": {"axial": axial, "shear": shear},
-                "stiffness_n_m_per_rad": {"tilting": tilting, "torsional": torsional},
-            }
-        )
-    return rows
-
-
-def bores_document(mesh: Mesh) -> list[dict[str, Any]]:
+def bores_along_axes(mesh: Mesh) -> list[tuple[str, CylindricalBore]]:
     """The bores along each axis that a mesh has: those along z, where shafts are, then others, the widest first."""
     return [
-        {"center_m": list(bore.center), "diameter_m": bore.diameter, "length_m": bore.length, "axis": axis}
+        (axis, bore)
         for axis, direction in zip("zxy", np.eye(3)[[2, 0, 1]], strict=True)
         for bore in find_bores(mesh, axis=direction)
     ]

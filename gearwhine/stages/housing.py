@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +13,13 @@ from scipy import sparse
 import housing as room
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.problems import UNSAID
+from gearwhine.doubtful import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_attachments, check_places
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.housing_checks import bearing_places, housing_checks
 from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
-from gearwhine.stages.mesh_health import doubt, doubt_resolution, examine, told_on_failure, warnings_document
+from gearwhine.stages.mesh_health import doubt_resolution, examine, told_on_failure
 from gearwhine.stages.regions import materials_of
 from housing.measured import MeasuredModes
 from meshes import Mesh
@@ -27,6 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 _HERTZ = 2.0 * np.pi
 _COORDINATES = ("coordinate", "other_coordinate")
 _ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
 _DAMPING = "modal_damping"  # its name in a mode-set file
 
 
@@ -102,6 +105,38 @@ class SolvedHousing:
             return self.damping_ratios
         return room.damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
 
+    @property
+    def survey_shapes(self) -> FloatArray:
+        """Mode shapes at the survey points, mass-normalised, shape (n_modes, n_points, 3) [1/√kg]."""
+        count = len(self.modes.frequencies)
+        return (self.survey.matrix @ self.modes.shapes.reshape(count, -1).T).T.reshape(count, -1, 3)
+
+    @property
+    def missing_compliance(self) -> FloatArray:
+        """Part of the static compliance that the modes lack without attachments, shape (n_loaded, 5).
+
+        Raises
+        ------
+        ValueError
+            Where there are no attachments.
+        """
+        if self.modes.attachments is None:
+            raise ValueError("static compliance of a housing without attachments")
+        return self.modes.attachments.proof.missing_parts.reshape(len(self.loaded), -1)
+
+    @cached_property
+    def selection(self) -> room.Selection | None:
+        """Modes that carry forces across the shafts from the bearings to the sensors; None where there are not both."""
+        ratios = self.total_damping_ratios
+        if not self.loaded or not self.sensors or not (ratios > 0.0).all():
+            return None
+        # Forces across the shafts alone: receptances by moments have another unit, and no common scale with these.
+        forces = sparse.csr_array(sparse.vstack([motions[:2] for motions in self.loaded.values()], format="csr"))
+        motions = sparse.csr_array(sparse.vstack([sensor.matrix for sensor in self.sensors.values()], format="csr"))
+        # From just above rest, where a free housing has no receptance.
+        limit = self.modes.certificate.limit
+        return room.select_modes(self.modes, ratios, forces, motions, (0.01 * limit, limit), _SELECTION_TOLERANCE)
+
 
 def solve_housing(
     case: Case,
@@ -147,7 +182,7 @@ def solve_housing(
         if mesh is None:
             progress("meshing the housing")
             mesh = build_mesh(case, remarks.append)
-        warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
+        warnings = [warning("geometry", remark) for remark in remarks] + examine(case, mesh)
     meshed = time.perf_counter() - begin
     with told_on_failure(warnings):
         # Places and ports before modes: what is wrong with them is found out before the long work.
@@ -161,7 +196,7 @@ def solve_housing(
         if kept is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
-            warnings += warnings_document(doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ))
+            warnings += doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ)
         else:
             modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
             damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
@@ -201,7 +236,7 @@ def solve_housing(
         record=record,
         source=None if kept is None or folder is None else folder / MODES_FILE,
         source_holds=kept is not None and kept.sensors == record.sensors,
-        warnings=warnings + ([] if spoilt is None else [doubt("modes file", spoilt)]),
+        warnings=warnings + ([] if spoilt is None else [warning("modes file", spoilt)]),
     )
 
 

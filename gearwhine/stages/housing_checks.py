@@ -1,20 +1,11 @@
-"""What a solved housing says of itself: its health report, effective masses and static error, as the command's JSON."""
+"""Checks of a solved housing, as they are kept with its modes: health report, effective masses, mass of the solid."""
 
 from typing import Any
-
-import numpy as np
-import numpy.typing as npt
-from scipy import sparse
 
 import housing as room
 from gearwhine.case import Case
 
-FloatArray = npt.NDArray[np.float64]
-
 DIRECTIONS = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
-SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
-
-_HERTZ = 2.0 * np.pi
 
 
 def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
@@ -39,49 +30,6 @@ def housing_checks(given: room.Housing, health: room.HealthReport, masses: room.
         "health": _health_document(health),
         "effective_mass": _mass_document(masses),
         "solid": {"mass_kg": solid.mass, "center_of_mass_m": solid.center.tolist()},
-    }
-
-
-def static_error_document(modes: room.ModeSet, loaded: dict[str, sparse.csr_array]) -> dict[str, Any] | None:
-    """Relative error of the static compliance at the bearings; None without bearings."""
-    attached = modes.attachments
-    if attached is None:
-        return None
-    missing = attached.proof.missing_parts.reshape(len(loaded), -1)
-    return {
-        "without_attachments": float(missing.max()),
-        "with_attachments": attached.proof.error,
-        "attachments": len(attached.frequencies),
-        "without_attachments_at": dict(zip(loaded, missing.max(axis=1).tolist(), strict=True)),
-        "directions": list(DIRECTIONS[:5]),
-        "without_attachments_along": dict(zip(loaded, missing.tolist(), strict=True)),
-    }
-
-
-def selection_document(
-    modes: room.ModeSet,
-    damping_ratios: FloatArray,
-    loaded: dict[str, sparse.csr_array],
-    sensors: dict[str, room.SensorPort],
-) -> dict[str, Any] | None:
-    """Dominant modes between bearings and sensors; None where one of the two is missing."""
-    if not loaded or not sensors or not (damping_ratios > 0.0).all():
-        return None
-    # Forces across the shafts alone: receptances by moments have another unit, and no common scale with these.
-    forces = sparse.csr_array(sparse.vstack([motions[:2] for motions in loaded.values()], format="csr"))
-    motions = sparse.csr_array(sparse.vstack([sensor.matrix for sensor in sensors.values()], format="csr"))
-    # From just above rest, where a free housing has no receptance.
-    limit = modes.certificate.limit
-    chosen = room.select_modes(modes, damping_ratios, forces, motions, (0.01 * limit, limit), SELECTION_TOLERANCE)
-    return {
-        "from": list(loaded),
-        "to": list(sensors),
-        "band_hz": [edge / _HERTZ for edge in chosen.band],
-        "tolerance": chosen.tolerance,
-        "keep": (chosen.kept + 1).tolist(),
-        "ranking": (chosen.ranking + 1).tolist(),
-        "strength_m_per_n": chosen.strength.tolist(),
-        "error_left": chosen.error_left.tolist(),
     }
 
 

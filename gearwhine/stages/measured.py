@@ -1,7 +1,5 @@
 """Measured modes of a case: read, aligned with the model, and mapped to its degrees of freedom."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
@@ -79,61 +77,3 @@ def map_measured(case: Case, mesh: Mesh, geometry: MeasuredGeometry) -> MappedSu
 def mapped_shapes(solved: SolvedHousing, survey: MappedSurvey) -> FloatArray:
     """The model's modes at the survey's degrees of freedom, mass-normalised, shape (n_modes, n_dofs)."""
     return survey.shapes(solved.modes.shapes)
-
-
-def measured_document(case: Case) -> dict[str, Any]:
-    """Measured modes of a case, before anything is solved."""
-    given = case.measured
-    assert given is not None
-    if given.survey is None:
-        return {"frequencies_hz": list(given.frequencies or ())}
-    survey = given.survey
-    document: dict[str, Any] = {"file": str(given.file), "remarks": list(survey.remarks)}
-    if survey.modes is not None:
-        ratios = survey.modes.damping_ratios
-        document["frequencies_hz"] = (survey.modes.frequencies / _HERTZ).tolist()
-        document["damping_ratios"] = None if ratios is None else ratios.tolist()
-        document["complex"] = survey.modes.shapes is not None and bool(np.any(np.nan_to_num(survey.modes.shapes).imag))
-    if survey.geometry is not None:
-        points = survey.geometry.positions
-        document |= {
-            "points": len(points),
-            "degrees_of_freedom": len(survey.geometry.points),
-            "extent_m": np.ptp(points, axis=0).tolist(),
-            "align": given.align if isinstance(given.align, bool) else "landmarks",
-        }
-    if survey.responses is not None:
-        lines = survey.responses.frequencies / _HERTZ
-        document["responses"] = {
-            "of": survey.responses.motion,
-            "references": len(survey.responses.reference_points),
-            "lines": len(lines),
-            "from_hz": float(lines[0]),
-            "to_hz": float(lines[-1]),
-        }
-    return document
-
-
-def survey_document(survey: MappedSurvey) -> dict[str, Any]:
-    """Alignment of a survey with the model, as the command's JSON."""
-    document: dict[str, Any] = {
-        "points": len(survey.distances),
-        "degrees_of_freedom": survey.matrix.shape[0],
-        "rms_distance_m": survey.rms_distance,
-        "worst_distance_m": float(survey.distances.max()),
-        "worst_point": survey.geometry.labels[int(np.argmax(survey.distances))],
-        "tolerance_m": survey.tolerance,
-        "far_points": list(survey.far),
-    }
-    if (alignment := survey.alignment) is not None:
-        document["alignment"] = {
-            "by": alignment.by,
-            "rotation": alignment.motion.rotation.tolist(),
-            "translation_m": alignment.motion.translation.tolist(),
-            "turned_degrees": alignment.motion.angle_degrees,
-            "rms_m": alignment.rms,
-            "largest_m": alignment.largest,
-            "other_positions": len(alignment.others),
-            "remarks": list(alignment.remarks),
-        }
-    return document

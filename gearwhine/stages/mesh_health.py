@@ -2,26 +2,32 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
+import housing as room
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.box import Box
 from gearwhine.case.box_shape import wall_volume
 from gearwhine.case.problems import UNSAID
+from gearwhine.doubtful import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import check_places
-from gearwhine.stages.geometry import bolts_document, bores_document, build_mesh, cover_joints
+from gearwhine.stages.geometry import build_mesh, cover_joints
 from gearwhine.stages.regions import materials_of
 from meshes import UNITS, Ailment, Mesh, WaveCarrier, diagnose, expected_elements, resolution_ailments
+
+FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
 _MANY_UNKNOWNS = 1.5e6
 
 
-def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
+def examine(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
     """Warnings about the mesh of a case.
 
     Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
@@ -44,7 +50,7 @@ def examine(case: Case, mesh: Mesh) -> tuple[Ailment, ...]:
         key = "housing.mesh.file" if given.mesh else "housing.cad.file" if given.cad else "housing.box"
         value: object = UNSAID if source is None else str(source.file)
         raise CaseError([Problem(key, value, f"a sound mesh; {one.name}: {one.message}") for one in wrong])
-    return found
+    return _warnings(found)
 
 
 def _of_loose_bodies(one: Ailment) -> bool:
@@ -52,10 +58,10 @@ def _of_loose_bodies(one: Ailment) -> bool:
     return one.name == "disconnected" or (one.name == "non-conforming" and one.severity == "warning")
 
 
-def doubt_resolution(case: Case, mesh: Mesh, limit_hz: float | None) -> tuple[Ailment, ...]:
+def doubt_resolution(case: Case, mesh: Mesh, limit_hz: float | None) -> list[dict[str, Any]]:
     """Warnings about element size for modes up to a frequency; without one, about the kind of element alone."""
     # Without a limit, one so low that no element is too large for it.
-    return resolution_ailments(mesh, _wave(case, limit_hz if limit_hz else 1e-6))
+    return _warnings(resolution_ailments(mesh, _wave(case, limit_hz if limit_hz else 1e-6)))
 
 
 def _wave(case: Case, limit_hz: float) -> WaveCarrier:
@@ -64,7 +70,29 @@ def _wave(case: Case, limit_hz: float) -> WaveCarrier:
     return WaveCarrier(given.youngs_modulus, given.poisson_ratio, given.density, _HERTZ * limit_hz)
 
 
-def foresee(case: Case, progress: Progress = silent) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+@dataclass(frozen=True)
+class ForeseenMesh:
+    """Mesh of a case's housing as far as it is known before anything is solved.
+
+    Attributes
+    ----------
+    size : ndarray, shape (3,)
+        Of the housing along x, y and z [m].
+    mesh_size : float or None
+        Length of the elements where they are made here [m].
+    bolts : list of housing.Joint, or None
+        Of a box's cover.
+    mesh : Mesh or None
+        Of a file; of a CAD file by straight elements, which show its bores as well, sooner.
+    """
+
+    size: FloatArray
+    mesh_size: float | None
+    bolts: list[room.Joint] | None = None
+    mesh: Mesh | None = None
+
+
+def foresee(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh, list[dict[str, Any]]]:
     """Size of the mesh and warnings about it, before anything is solved.
 
     A CAD or mesh file is read and checked whole; for a box the element size is compared with the shortest wave.
@@ -77,28 +105,20 @@ def foresee(case: Case, progress: Progress = silent) -> tuple[dict[str, Any], li
     given = case.housing
     assert given is not None
     if given.box is not None:
-        size = {"size_m": list(given.box.size), "mesh_size_m": given.box.mesh_size}
         load = _foresee_load(expected_elements(wall_volume(given.box), given.box.mesh_size))
-        return size | {"cover_bolts": bolts_document(case)}, _foresee_size(case, given.box) + load
+        foreseen = ForeseenMesh(np.array(given.box.size), given.box.mesh_size, bolts=cover_joints(case))
+        return foreseen, _foresee_size(case, given.box) + load
     remarks: list[str] = []
     progress("meshing the drawing" if given.mesh is None else "reading the mesh")
-    # Straight elements show the size and the bores of a CAD file as well as curved ones, sooner.
     mesh = build_mesh(case, remarks.append, order=1)
-    warnings = [doubt("geometry", remark) for remark in remarks] + warnings_document(examine(case, mesh))
+    warnings = [warning("geometry", remark) for remark in remarks] + examine(case, mesh)
     with told_on_failure(warnings):
         materials_of(case, mesh)
         check_places(case, mesh)
-    document: dict[str, Any] = {
-        "size_m": np.ptp(mesh.bounds, axis=0).tolist(),
-        "bores": bores_document(mesh),
-        "surfaces": sorted(mesh.surfaces),
-        "volumes": sorted(mesh.volumes),
-    }
+    foreseen = ForeseenMesh(np.ptp(mesh.bounds, axis=0), None if given.cad is None else given.cad.mesh_size, mesh=mesh)
     if given.cad is not None:
-        return document | {"mesh_size_m": given.cad.mesh_size}, warnings + _foresee_load(mesh.n_elements)
-    document["mesh"] = {"nodes": len(mesh.points), "elements": mesh.n_elements, "dofs": 3 * len(mesh.points)}
-    document["kinds"] = mesh.kinds
-    return document, warnings + warnings_document(doubt_resolution(case, mesh, given.frequency_limit))
+        return foreseen, warnings + _foresee_load(mesh.n_elements)
+    return foreseen, warnings + doubt_resolution(case, mesh, given.frequency_limit)
 
 
 def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
@@ -116,7 +136,7 @@ def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
         f"{1e3 * length:.3g} mm at {limit:.4g} Hz in the wall of {1e3 * thinnest:.3g} mm; modes near "
         f"that frequency come out too high: use a mesh_size of at most {1e3 * length / 3.0:.3g} mm"
     )
-    return [doubt("size", message)]
+    return [warning("size", message)]
 
 
 def _foresee_load(elements: float) -> list[dict[str, Any]]:
@@ -128,7 +148,7 @@ def _foresee_load(elements: float) -> list[dict[str, Any]]:
         f"about {elements:.1g} elements or more, that is {unknowns:.1g} degrees of freedom: modes of so many take tens "
         "of gigabytes of memory and long; a larger mesh_size takes less"
     )
-    return [doubt("load", message)]
+    return [warning("load", message)]
 
 
 @contextmanager
@@ -137,16 +157,11 @@ def told_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        for warning in warnings:
-            error.add_note(f"warning: {warning['message']}")
+        for one in warnings:
+            error.add_note(f"warning: {one['message']}")
         raise
 
 
-def doubt(name: str, message: str) -> dict[str, Any]:
-    """Warning without a place in the mesh, for the command's JSON."""
-    return {"name": name, "message": message}
-
-
-def warnings_document(ailments: tuple[Ailment, ...]) -> list[dict[str, Any]]:
+def _warnings(ailments: tuple[Ailment, ...]) -> list[dict[str, Any]]:
     """Mesh defects as warnings of the command's JSON."""
-    return [doubt(one.name, one.message) | {"count": one.count, "place_m": one.place.tolist()} for one in ailments]
+    return [warning(one.name, one.message, count=one.count, place_m=one.place.tolist()) for one in ailments]

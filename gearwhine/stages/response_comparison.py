@@ -1,7 +1,6 @@
 """Measured frequency responses beside the model's at the same points, with FRAC."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -39,6 +38,17 @@ class ResponseLikeness:
     band: tuple[float, float]
     n_lines: int
     frac: FloatArray
+
+    @property
+    def n_measured(self) -> int:
+        """Number of responses that were measured."""
+        return int(np.count_nonzero(np.isfinite(self.frac)))
+
+    @property
+    def mean(self) -> float | None:
+        """Mean of those measured; None where there are none."""
+        known = np.isfinite(self.frac)
+        return float(self.frac[known].mean()) if known.any() else None
 
 
 def compare_responses(
@@ -85,32 +95,13 @@ def compare_responses(
     )
 
 
-def responses_beside(
-    case: Case, solved: SolvedHousing, survey: MappedSurvey
-) -> tuple[ResponseLikeness | None, dict[str, Any] | None]:
-    """Correlation of a case's frequency responses and its JSON, with the reason where there is none.
-
-    Both are None where no responses were measured.
-    """
+def responses_beside(case: Case, solved: SolvedHousing, survey: MappedSurvey) -> ResponseLikeness | str | None:
+    """Correlation of a case's frequency responses, or the reason why there is none; None without measured responses."""
     given = case.measured
     responses = None if given is None or given.survey is None else given.survey.responses
     if responses is None:
-        return None, None
+        return None
     try:
-        likeness = compare_responses(case, solved, survey, responses)
+        return compare_responses(case, solved, survey, responses)
     except HousingError as error:  # of the responses: the pairs of modes stand without them
-        return None, {"missing_because": str(error)}
-    return likeness, _document(likeness)
-
-
-def _document(likeness: ResponseLikeness) -> dict[str, Any]:
-    known = np.isfinite(likeness.frac)
-    return {
-        "criterion": "FRAC",
-        "lines": likeness.n_lines,
-        "from_hz": likeness.band[0] / _HERTZ,
-        "to_hz": likeness.band[1] / _HERTZ,
-        "measured": int(np.count_nonzero(known)),
-        "mean": float(likeness.frac[known].mean()) if known.any() else None,
-        "frac": [[float(value) if np.isfinite(value) else None for value in row] for row in likeness.frac],
-    }
+        return str(error)

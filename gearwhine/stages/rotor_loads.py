@@ -35,6 +35,13 @@ class SolvedWeight:
     places: FloatArray
     displacement: FloatArray
 
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Largest deflection and its place along the shaft [m]."""
+        sag = np.hypot(*self.displacement)
+        lowest = int(sag.argmax())
+        return float(sag[lowest]), float(self.places[lowest])
+
 
 @dataclass(frozen=True)
 class ProbeReading:
@@ -43,6 +50,8 @@ class ProbeReading:
     Attributes
     ----------
     probe : Probe
+    speeds : (b,) array
+        [rad/s].
     amplitude : (b,) complex array
         Reading Re(amplitude e^{iΩt}) along the probe's angle, run-out included; t from where the mark passes x [m].
     major_axis : (b,) array
@@ -50,6 +59,7 @@ class ProbeReading:
     """
 
     probe: Probe
+    speeds: FloatArray
     amplitude: ComplexArray
     major_axis: FloatArray
 
@@ -57,6 +67,13 @@ class ProbeReading:
     def phase_lag(self) -> FloatArray:
         """By which the reading is behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
         return np.asarray(np.mod(-np.angle(self.amplitude), 2.0 * np.pi))
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Largest reading [m] and its speed [rad/s]."""
+        sizes = np.abs(self.amplitude)
+        highest = int(sizes.argmax())
+        return float(sizes[highest]), float(self.speeds[highest])
 
 
 @dataclass(frozen=True)
@@ -120,7 +137,7 @@ def solve_response(
 def _read(response: room.SynchronousResponse, probe: Probe) -> ProbeReading:
     x, y = (part[:, 0] for part in response.reading([probe.at]))
     along = x * np.cos(probe.angle) + y * np.sin(probe.angle)
-    return ProbeReading(probe, along, room.orbit_of(x, y, response.frequencies).major)
+    return ProbeReading(probe, response.speeds, along, room.orbit_of(x, y, response.frequencies).major)
 
 
 def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Probe]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 import rotors as room
-from gearwhine.case import Case, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
+from gearwhine.case import Case, RollingStiffness, RotorAnalysis, campbell_speeds, require, table_range, whirl_speeds
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.bearings import build_bearings, rolling_states
@@ -16,10 +16,14 @@ from gearwhine.stages.build import build_rotor
 from gearwhine.stages.rotor_loads import SolvedResponse, SolvedWeight, solve_response, solve_weight
 from gearwhine.stages.torsion import SolvedTorsion, solve_torsion
 from rotors.rolling import RollingState
+from rotors.rolling.life import rated_revolutions
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 Bearings = tuple[room.Bearing, ...]
 Crossings = tuple[room.Crossing, ...] | str
+
+_PLACES = 101  # along a rotor, of its shapes
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,8 @@ class SolvedRotor:
         Where the case asks for it.
     rolling : mapping of str to rotors.rolling.RollingState
         What its rolling bearings carry, by their names.
+    lives : mapping of str to float
+        Basic rating life of those whose dynamic rating the case gives, as far as it is defined [revolutions].
     """
 
     rotor: room.Rotor
@@ -83,6 +89,42 @@ class SolvedRotor:
     torsion: SolvedTorsion | None
     stiffness_map: room.CriticalSpeedMap | None
     rolling: Mapping[str, RollingState]
+    lives: Mapping[str, float]
+
+    @property
+    def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
+        """Which of the frequencies at rest are of motions across the axis for the most part."""
+        return np.asarray(self.rest.axial_share <= room.MOSTLY_AXIAL)
+
+    @property
+    def margins(self) -> FloatArray | None:
+        """Distance of each critical speed from operation, as a part of that; None where nothing turns."""
+        return None if not self.operation else self.critical.speeds / abs(self.operation) - 1.0
+
+    @property
+    def places(self) -> FloatArray:
+        """Evenly along the shaft from its left end, for shapes [m]."""
+        return np.linspace(0.0, self.rotor.length, _PLACES)
+
+    @property
+    def whirl_deflection(self) -> FloatArray | None:
+        """Largest deflection over a cycle of each whirl mode at operation along :attr:`places` [m/√kg]."""
+        return None if self.operation is None else _largest_over_cycle(*self.whirl[0].evaluate(self.places))
+
+    @property
+    def whirl_moment(self) -> FloatArray | None:
+        """Largest bending moment over a cycle of each whirl mode at operation along :attr:`places` [N/√kg]."""
+        return None if self.operation is None else _largest_over_cycle(*self.whirl[0].section_loads(self.places)[1])
+
+    @property
+    def damps_across(self) -> bool:
+        """Whether a coupling damps motion across the axis, which it does in the turning shaft."""
+        couplings = [part for part in self.rotor.segments if isinstance(part, room.Coupling)]
+        return any(part.lateral_damping > 0.0 or part.tilt_damping > 0.0 for part in couplings)
+
+
+def _largest_over_cycle(x: ComplexArray, y: ComplexArray) -> FloatArray:
+    return room.orbit_of(x, y, np.ones(1)).major
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
@@ -112,6 +154,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         held = not isinstance(weight, str)
         rest = room.rest_frequencies(rotor, resting, count=analysis.modes)
         torsional = room.solve_torsional_modes(rotor)
+        rolling = rolling_states(case, given.name)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
@@ -134,10 +177,26 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
                 torsion=solve_torsion(analysis, given, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
-                rolling=rolling_states(case, given.name),
+                rolling=rolling,
+                lives=_rated_lives(case, rolling),
             )
         )
     return tuple(solved)
+
+
+def _rated_lives(case: Case, states: Mapping[str, RollingState]) -> dict[str, float]:
+    """Basic rating lives in revolutions."""
+    ratings = {
+        bearing.name: bearing.stiffness.rolling.dynamic_rating
+        for bearing in case.bearing
+        if isinstance(bearing.stiffness, RollingStiffness)
+    }
+    lives = {
+        name: rated_revolutions(state, rating)
+        for name, state in states.items()
+        if (rating := ratings.get(name)) is not None
+    }
+    return {name: life for name, life in lives.items() if life is not None}
 
 
 def _axial_frequencies(rotor: room.Rotor, resting: Bearings, rest: room.RestFrequencies) -> FloatArray:

@@ -50,6 +50,29 @@ class RunSignature:
     orders: dict[str, signature.OrderMap]
     named: dict[str, float]
 
+    def followed(self) -> FloatArray:
+        """Peak amplitude of each signal at each named order, by the windows' speeds: (signals, orders, windows)."""
+        return np.array([[table.order_slice(order) for order in self.named.values()] for table in self.orders.values()])
+
+    def highest(self) -> list[dict[str, Any]]:
+        """Where along the run each named order of each signal is highest."""
+        rows = []
+        for (name, orders), courses in zip(self.orders.items(), self.followed(), strict=True):
+            for (what, order), along in zip(self.named.items(), courses, strict=True):
+                place = int(np.argmax(along))
+                rows.append(
+                    {
+                        "signal": name,
+                        "unit": self.units[name],
+                        "name": what,
+                        "order": order,
+                        "highest_amplitude": float(along[place]),
+                        "at_rpm": float(60.0 * orders.speeds[place]),
+                        "frequency_hz": float(order * orders.speeds[place]),
+                    }
+                )
+        return rows
+
 
 @dataclass(frozen=True)
 class _Windows:
@@ -156,32 +179,6 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
     if not kept:
         return f"windows of {turns} turns tell no order apart"
     return _Windows(span, turns, kept, merged)
-
-
-def run_signature_document(found: RunSignature) -> dict[str, Any]:
-    """The orders of a run as the command's JSON: where each of them is highest."""
-    rows = []
-    for name, orders in found.orders.items():
-        for what, order in found.named.items():
-            along = orders.order_slice(order)
-            highest = int(np.argmax(along))
-            rows.append(
-                {
-                    "signal": name,
-                    "unit": found.units[name],
-                    "name": what,
-                    "order": order,
-                    "highest_amplitude": float(along[highest]),
-                    "at_rpm": float(60.0 * orders.speeds[highest]),
-                    "frequency_hz": float(order * orders.speeds[highest]),
-                }
-            )
-    return {
-        "from_rpm": float(found.speeds_rpm[0]),
-        "to_rpm": float(found.speeds_rpm[-1]),
-        "stretches": len(found.speeds_rpm),
-        "orders": rows,
-    }
 
 
 def _turning_span(rates: FloatArray) -> slice:

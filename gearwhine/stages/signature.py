@@ -1,14 +1,13 @@
 """The signature of a machine in motion: what the lines of its spectra are, and where they come from."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 import coupling as room
 from coupling import signature
-from gearwhine.stages.transient import SolvedTransient, force_peaks, sensor_peaks
+from gearwhine.stages.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -67,6 +66,50 @@ class TracedLine:
     bearings: tuple[Contribution, ...]
     free: Contribution
 
+    @property
+    def level_db(self) -> float:
+        """Level of the line's rms value over 1e-6 m/s² (ISO 1683) [dB]."""
+        return float(signature.decibels(abs(self.value)))
+
+    @property
+    def told_modes(self) -> tuple[Contribution, ...]:
+        """The modes with most of the line."""
+        return self.modes[:_TOLD]
+
+    @property
+    def told_bearings(self) -> tuple[Contribution, ...]:
+        """The bearings with most of the line."""
+        return self.bearings[:_TOLD]
+
+
+@dataclass(frozen=True)
+class LineTable:
+    """Lines of all sensors with their parts, NaN where a sensor has fewer.
+
+    Complex numbers stand along the last axis, real part first [m/s²].
+
+    Attributes
+    ----------
+    ranks : ndarray, shape (k,)
+    modes, bearings : list of str
+        Modes in the order of their numbers, the local compliance last.
+    frequency : ndarray, shape (s, k)
+        [Hz].
+    names : ndarray of str, shape (s, k)
+    value : ndarray, shape (s, k, 2)
+    by_mode : ndarray, shape (s, k, m, 2)
+    by_bearing : ndarray, shape (s, k, b, 2)
+    """
+
+    ranks: npt.NDArray[np.int64]
+    modes: list[str]
+    bearings: list[str]
+    frequency: FloatArray
+    names: npt.NDArray[np.str_]
+    value: FloatArray
+    by_mode: FloatArray
+    by_bearing: FloatArray
+
 
 @dataclass(frozen=True)
 class ShaftSidebands:
@@ -107,6 +150,51 @@ class SolvedSignature:
     modes: room.CoupledModes
     housing: room.Spectrum | None = None
 
+    def clear_sidebands(self, found: tuple[ShaftSidebands, ...]) -> list[tuple[ShaftSidebands, signature.Sideband]]:
+        """Sidebands above rounding, of carriers that are there."""
+        return [
+            (one, pair)
+            for one in found
+            for pair in one.pairs
+            if max(pair.lower, pair.upper) > _FAINT * pair.carrier_amplitude
+        ]
+
+    def bearing_amplitudes(self, solved: SolvedTransient) -> dict[str, FloatArray]:
+        """Peak amplitudes of each bearing's load along x, y, z and about x, y, (5, m); zero where nothing holds."""
+        found = {}
+        for name, spectrum in self.bearing_spectra.items():
+            found[name] = np.zeros((5, len(spectrum.frequencies)))
+            found[name][list(solved.histories.tie_axes[name])] = spectrum.amplitude
+        return found
+
+    def housing_lines(self, limit: float) -> tuple[FloatArray, ComplexArray, str] | None:
+        """Frequencies [Hz] up to a limit, the lines of the housing's modes there, and their window."""
+        if self.housing is None:
+            return None
+        shown = self.housing.frequencies <= limit * (1.0 + 1e-9)
+        return self.housing.frequencies[shown], self.housing.lines[:, shown], self.housing.window
+
+    def line_table(self) -> LineTable | None:
+        """Lines of all sensors beside each other; None where there are none."""
+        if not any(self.lines.values()):
+            return None
+        count = max(len(lines) for lines in self.lines.values())
+        first = next(line for lines in self.lines.values() for line in lines)
+        bearings = [part.name for part in first.bearings]
+        modes = [part.name for part in sorted(first.modes, key=lambda part: (part.mode is None, part.mode or 0))]
+        shape = (len(self.lines), count)
+        frequency, names, value = np.full(shape, np.nan), np.full(shape, "", dtype=object), np.full((*shape, 2), np.nan)
+        by_mode, by_bearing = np.full((*shape, len(modes), 2), np.nan), np.full((*shape, len(bearings), 2), np.nan)
+        for i, lines in enumerate(self.lines.values()):
+            for j, line in enumerate(lines):
+                frequency[i, j], names[i, j] = line.frequency, line.named.name
+                value[i, j] = line.value.real, line.value.imag
+                for table, order, parts in ((by_mode, modes, line.modes), (by_bearing, bearings, line.bearings)):
+                    for part in parts:
+                        table[i, j, order.index(part.name)] = part.value.real, part.value.imag
+        ranks = np.arange(1, count + 1)
+        return LineTable(ranks, modes, bearings, frequency, names.astype(str), value, by_mode, by_bearing)
+
 
 def solve_signature(
     solved: SolvedTransient, modes: room.CoupledModes, housing_frequencies: FloatArray | None
@@ -139,8 +227,7 @@ def solve_signature(
     return SolvedSignature(
         lines=lines,
         force_lines={
-            name: tuple(_named(solved, solved.force_spectra[name], force_peaks(solved.force_spectra[name]), modes))
-            for name in drives
+            name: tuple(_named(solved, solved.force_spectra[name], solved.force_peaks(name), modes)) for name in drives
         },
         sidebands={
             name: _sidebands(solved, signal, interval, window) for name, signal in histories.sensor_acceleration.items()
@@ -154,52 +241,6 @@ def solve_signature(
     )
 
 
-def add_signature(document: dict[str, Any], solved: SolvedTransient, found: SolvedSignature) -> None:
-    """Add to the transient's document what its lines are, levels, sidebands, and the bearings' forces."""
-    for sensor in document["sensors"]:
-        for row, line in zip(sensor["peaks"], found.lines[sensor["name"]], strict=True):
-            row |= _name_document(line.named, found.modes)
-            row["phase_rad"] = float(np.angle(line.value))
-            row["level_db"] = float(signature.decibels(abs(line.value)))
-            row["contributions"] = {
-                "housing_modes": [_contribution(part) for part in line.modes[:_TOLD]],
-                "bearings": [_contribution(part) for part in line.bearings[:_TOLD]],
-                "free_vibration": _contribution(line.free),
-            }
-        sensor["sidebands"] = _sidebands_document(found.sidebands[sensor["name"]], "m_per_s2")
-    names = list(found.force_lines)
-    for name, pair in zip(names, document["gear_pairs"], strict=True):
-        for row, named in zip(pair["force_peaks"], found.force_lines[name], strict=True):
-            row |= _name_document(named, found.modes)
-        pair["sidebands"] = _sidebands_document(found.force_sidebands[name], "n")
-    document["bearings"] = []
-    for name, load in solved.histories.bearing_load.items():
-        parts = room.signal_parts(load.T)
-        mean, rms = parts.mean.tolist(), parts.rms.tolist()
-        # Forces along x, y, z and moments about x and y.
-        document["bearings"].append(
-            {
-                "name": name,
-                "mean_force_n": mean[:3],
-                "rms_force_n": rms[:3],
-                "mean_moment_n_m": mean[3:],
-                "rms_moment_n_m": rms[3:],
-            }
-        )
-    document["gears"] = []
-    for name, motion in solved.histories.gear_motion.items():
-        parts = room.signal_parts(motion[:, :2].T)
-        document["gears"].append(
-            {"name": name, "mean_displacement_m": parts.mean.tolist(), "peak_displacement_m": parts.peak.tolist()}
-        )
-    document["conventions"] = {
-        "amplitude": "peak: a sine a sin(2 pi f t) has the amplitude a",
-        "rms": "without the mean, up to trusted_below_hz",
-        "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
-        "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
-    }
-
-
 def _traced(
     solved: SolvedTransient,
     sensor: str,
@@ -210,7 +251,7 @@ def _traced(
 ) -> tuple[TracedLine, ...]:
     spectrum, machine = solved.sensor_spectra[sensor], solved.machine
     assert machine.housing is not None
-    peaks = sensor_peaks(solved, sensor)
+    peaks = solved.sensor_peaks(sensor)
     places = np.searchsorted(spectrum.frequencies, [peak.frequency for peak in peaks]).astype(int)
     at = spectrum.frequencies[places]
     # Of a long record the peaks are those of its averaged spectrum, the parts those of its last stretch.
@@ -274,46 +315,3 @@ def _sidebands(
                 pairs = signature.sidebands(signal, interval, carriers, turning, window=window)
                 found.append(ShaftSidebands(contact.name, tuple(shafts), tuple(pairs)))
     return tuple(found)
-
-
-def _name_document(named: signature.LineName, modes: room.CoupledModes) -> dict[str, Any]:
-    near = None
-    if named.mode is not None:
-        near = {
-            "number": named.mode + 1,
-            "kind": modes.kinds[named.mode],
-            "where": modes.where[named.mode],
-            "frequency_hz": float(modes.frequencies_hz[named.mode]),
-        }
-    return {"name": named.name, "kind": named.kind, "order": named.order, "near_mode": near}
-
-
-def _contribution(part: Contribution) -> dict[str, Any]:
-    document: dict[str, Any] = {
-        "name": part.name,
-        "amplitude_m_per_s2": abs(part.value),
-        "phase_rad": float(np.angle(part.value)),
-        "share": part.share,
-    }
-    return document if part.mode is None else document | {"number": part.mode}
-
-
-def _sidebands_document(found: tuple[ShaftSidebands, ...], unit: str) -> list[dict[str, Any]]:
-    """Sidebands above rounding, of carriers that are there."""
-    return [
-        {
-            "gear_pair": one.mesh,
-            "shafts": list(one.shafts),
-            "carrier_hz": pair.carrier,
-            "number": pair.number,
-            "distance_hz": pair.distance,
-            f"carrier_amplitude_{unit}": pair.carrier_amplitude,
-            f"lower_amplitude_{unit}": pair.lower,
-            f"upper_amplitude_{unit}": pair.upper,
-            "amplitude_modulation": pair.amplitude_modulation,
-            "phase_modulation_rad": pair.phase_modulation,
-        }
-        for one in found
-        for pair in one.pairs
-        if max(pair.lower, pair.upper) > _FAINT * pair.carrier_amplitude
-    ]

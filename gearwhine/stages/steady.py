@@ -11,14 +11,13 @@ import coupling as room
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.analysed_speeds import BEYOND_OPERATION
 from gearwhine.case.problems import UNSAID
-from gearwhine.doubtful import add_warnings, warning
+from gearwhine.doubtful import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.housing import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
-_RPM = 60.0 / _HERTZ
 _SLOWEST = 0.5  # of the speed of operation, where a case names no range
 _OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: little folds back below it
 _LEAST_SAMPLES = 512
@@ -58,6 +57,32 @@ class SteadyMotion:
         return room.amplitude_spectrum(signal, self.response.period / len(signal))
 
     @property
+    def told_lines(self) -> int:
+        """Number of the highest lines of a signal that are told of."""
+        return _LINES
+
+    def lines(self, signal: FloatArray) -> list[tuple[float, float]]:
+        """Frequencies [Hz] and amplitudes of a signal's highest lines up to the trusted limit.
+
+        Each is a whole number of times the period's frequency.
+        """
+        spectrum = self.spectrum(signal)
+        limit = self.trusted_limit * (1.0 + 1e-9)
+        known = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit))
+        highest = known[np.argsort(-spectrum.amplitude[known], kind="stable")][:_LINES]
+        return [
+            (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]))
+            for i in highest
+            if spectrum.amplitude[i] > 0.0
+        ]
+
+    def resampled(self, signal: FloatArray, count: int) -> FloatArray:
+        """A whole period of a signal at another number of samples, by its own lines."""
+        if len(signal) == count:
+            return signal
+        return np.asarray(np.fft.irfft(np.fft.rfft(signal), count) * (count / len(signal)))
+
+    @property
     def sensor_rms(self) -> dict[str, float]:
         """Of each sensor's acceleration up to the trusted limit [m/s²]."""
         signals = self.histories.sensor_acceleration
@@ -88,6 +113,29 @@ class SolvedSteady:
     curve: room.ResponseCurve | None = None
     branch_rms: dict[str, FloatArray] = field(default_factory=dict)
     superposed: room.SuperposedResponse | None = None
+
+    def superposition_warnings(self) -> list[dict[str, Any]]:
+        """Warnings where the sum of the groups' motions is no longer near the motion under all of them."""
+        found: list[dict[str, Any]] = []
+        sum_ = self.superposed
+        for number, contact in enumerate(self.machine.system.contacts if sum_ is not None else ()):
+            assert sum_ is not None
+            loss, part = float(sum_.contact_loss[number]), float(sum_.neglected_part[number])
+            if contact.drives and loss > 0.0:
+                text = f"its flanks are apart {100.0 * loss:.2g} % of the time under all excitations together"
+            elif contact.drives and part > _DOUBTFUL:
+                text = f"the sum leaves out {100.0 * part:.2g} % of its varying force"
+            elif not contact.drives and loss < 1.0:
+                text = f"these flanks touch {100.0 * (1.0 - loss):.2g} % of the time under all excitations together"
+            else:
+                continue
+            message = (
+                f"superposed motions are doubtful at {contact.name}: {text}; hold them against run, or use --exact"
+            )
+            found.append(
+                warning("superposition", message, contact=contact.name, neglected_part=part, contact_loss=loss)
+            )
+        return found
 
 
 def solve_steady(
@@ -228,172 +276,3 @@ def _motion(
     samples = 2 ** math.ceil(math.log2(max(_OVERSAMPLING * limit * response.period, _LEAST_SAMPLES)))
     record = response.record(room.transient_outputs(machine), samples)
     return SteadyMotion(speed, response, room.histories(machine, record), limit)
-
-
-def steady_document(case: Case, solved: SolvedSteady) -> dict[str, Any]:
-    """The steady state as the command's JSON."""
-    assert case.operation is not None
-    document: dict[str, Any] = {
-        "title": case.title,
-        "speed_rpm": case.operation.speed * _RPM,
-        "coordinates": solved.machine.system.size,
-        "trusted_below_hz": solved.motions[0].trusted_limit,
-        "method": "periodic" if solved.superposed is None else "superposed",
-    }
-    if solved.superposed is None:
-        document["motions"] = [_motion_document(solved.machine, motion) for motion in solved.motions]
-    else:
-        document["motions"] = [_superposed_document(solved, solved.superposed)]
-        add_warnings(document, _superposition_warnings(solved.machine, solved.superposed))
-    if solved.curve is not None:
-        document["curve"] = _curve_document(solved, solved.curve)
-    return document
-
-
-def _motion_document(machine: room.CoupledMachine, motion: SteadyMotion) -> dict[str, Any]:
-    return _proof_document(motion.response) | {
-        "gear_pairs": [
-            _pair_figures(mesh, motion.response, number)
-            | {"force_lines": _lines(motion, motion.histories.mesh_force[name], "amplitude_n")}
-            for number, name, mesh in _pressed(machine)
-        ],
-        "sensors": [
-            {
-                "name": name,
-                "rms_m_per_s2": motion.sensor_rms[name],
-                "lines": _lines(motion, signal, "amplitude_m_per_s2"),
-            }
-            for name, signal in motion.histories.sensor_acceleration.items()
-        ],
-    }
-
-
-def _proof_document(response: room.PeriodicResponse) -> dict[str, Any]:
-    floquet = response.floquet
-    return {
-        "period_s": response.period,
-        "stable": response.stable,
-        "largest_multiplier": floquet.largest,
-        "instability": floquet.leaving,
-        "residual": response.residual,
-        "error": response.error,
-        "elements": response.elements,
-        "switches": response.switches,
-        "newton_steps": response.newton_steps,
-    }
-
-
-def _pair_figures(
-    mesh: room.GearMesh, response: room.PeriodicResponse | room.SuperposedResponse, number: int
-) -> dict[str, Any]:
-    return {
-        "driver": mesh.driver.name,
-        "driven": mesh.driven.name,
-        "mean_force_n": float(response.mean_force[number]),
-        "peak_force_n": float(response.peak_force[number]),
-        "contact_loss_fraction": float(response.contact_loss[number]),
-        "mean_compression_m": float(response.mean_compression[number]),
-        "rms_compression_m": float(response.rms_compression[number]),
-    }
-
-
-def _superposed_document(solved: SolvedSteady, sum_: room.SuperposedResponse) -> dict[str, Any]:
-    """One motion: its figures by the contact law at the sum, its lines those of all groups."""
-    motions = solved.motions
-    return {
-        "stable": sum_.stable,
-        "excitations": [{"name": motion.excitation} | _proof_document(motion.response) for motion in motions],
-        "gear_pairs": [
-            _pair_figures(mesh, sum_, number)
-            | {
-                "neglected_force_n": float(sum_.neglected_force[number]),
-                "neglected_part": float(sum_.neglected_part[number]),
-                "force_lines": _lines_of_all(
-                    motions, [one.histories.mesh_force[name] for one in motions], "amplitude_n"
-                ),
-            }
-            for number, name, mesh in _pressed(solved.machine)
-        ],
-        "sensors": [
-            {
-                "name": name,
-                # Of different frequencies: their powers add.
-                "rms_m_per_s2": math.hypot(*(motion.sensor_rms[name] for motion in motions)),
-                "lines": _lines_of_all(
-                    motions, [one.histories.sensor_acceleration[name] for one in motions], "amplitude_m_per_s2"
-                ),
-            }
-            for name in motions[0].histories.sensor_acceleration
-        ],
-    }
-
-
-def _lines_of_all(motions: tuple[SteadyMotion, ...], signals: list[FloatArray], key: str) -> list[dict[str, Any]]:
-    """The highest lines of all groups' motions, each with what excites it."""
-    lines: list[dict[str, Any]] = [
-        line | {"excitation": motion.excitation}
-        for motion, signal in zip(motions, signals, strict=True)
-        for line in _lines(motion, signal, key)
-    ]
-    return sorted(lines, key=lambda line: -float(line[key]))[:_LINES]
-
-
-def _superposition_warnings(machine: room.CoupledMachine, sum_: room.SuperposedResponse) -> list[dict[str, Any]]:
-    """Where the sum of the groups' motions is no longer near the motion under all of them."""
-    found = []
-    for number, contact in enumerate(machine.system.contacts):
-        loss, part = float(sum_.contact_loss[number]), float(sum_.neglected_part[number])
-        if contact.drives and loss > 0.0:
-            text = f"its flanks are apart {100.0 * loss:.2g} % of the time under all excitations together"
-        elif contact.drives and part > _DOUBTFUL:
-            text = f"the sum leaves out {100.0 * part:.2g} % of its varying force"
-        elif not contact.drives and loss < 1.0:
-            text = f"these flanks touch {100.0 * (1.0 - loss):.2g} % of the time under all excitations together"
-        else:
-            continue
-        message = f"superposed motions are doubtful at {contact.name}: {text}; hold them against run, or use --exact"
-        found.append(warning("superposition", message, contact=contact.name, neglected_part=part, contact_loss=loss))
-    return found
-
-
-def _lines(motion: SteadyMotion, signal: FloatArray, key: str) -> list[dict[str, float]]:
-    """The highest lines up to the trusted limit: each is a whole number of times the period's frequency."""
-    spectrum = motion.spectrum(signal)
-    limit = motion.trusted_limit * (1.0 + 1e-9)
-    known = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit))
-    highest = known[np.argsort(-spectrum.amplitude[known], kind="stable")][:_LINES]
-    return [
-        {"frequency_hz": float(spectrum.frequencies[i]), key: float(spectrum.amplitude[i])}
-        for i in highest
-        if spectrum.amplitude[i] > 0.0
-    ]
-
-
-def _curve_document(solved: SolvedSteady, curve: room.ResponseCurve) -> dict[str, Any]:
-    return {
-        "speed_rpm": (curve.speeds * _RPM).tolist(),
-        "stable": curve.stable.tolist(),
-        "ending": curve.ending,
-        "account": curve.told(1.0 / _RPM, "rpm"),
-        "gear_pairs": [
-            {
-                "driver": mesh.driver.name,
-                "driven": mesh.driven.name,
-                "rms_compression_m": curve.rms_compression[:, number].tolist(),
-                "peak_force_n": curve.peak_force[:, number].tolist(),
-                "contact_loss_fraction": curve.contact_loss[:, number].tolist(),
-            }
-            for number, _, mesh in _pressed(solved.machine)
-        ],
-        "sensors": [{"name": name, "rms_m_per_s2": values.tolist()} for name, values in solved.branch_rms.items()],
-        "bifurcations": [{"kind": event.kind, "speed_rpm": event.speed * _RPM} for event in curve.bifurcations],
-    }
-
-
-def _pressed(machine: room.CoupledMachine) -> list[tuple[int, str, room.GearMesh]]:
-    """Each mesh with the number and the name of the contact that its mean load presses."""
-    numbers = machine.pressed_contacts
-    return [
-        (number, machine.system.contacts[number].name, mesh)
-        for number, mesh in zip(numbers, machine.meshes, strict=True)
-    ]

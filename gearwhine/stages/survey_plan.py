@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.stages.attachments import build_supports
@@ -22,7 +22,6 @@ from housing.measured import (
     write_universal,
 )
 
-_HERTZ = 2.0 * np.pi
 # Places looked at for each sensor, and in all at least: more of them stand closer, and the method takes neighbours,
 # which say the same twice.
 _PLACES, _FEWEST = 4, 100
@@ -39,14 +38,17 @@ class PlannedSurvey:
         Sensors, the best first.
     candidates : MeasuredGeometry
     plan : SurveyPlan
-    modes : ndarray of int
+    modes : list of int
         Numbers of the modes to separate, from 1.
+    frequencies_hz : ndarray, shape (n_modes,)
+        Natural frequencies of these modes [Hz].
     """
 
     geometry: MeasuredGeometry
     candidates: MeasuredGeometry
     plan: SurveyPlan
     modes: list[int]
+    frequencies_hz: npt.NDArray[np.float64]
 
 
 def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | None = None) -> PlannedSurvey:
@@ -74,7 +76,9 @@ def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | N
         plan = plan_survey(shapes, sensors)
     except HousingError as error:
         raise CaseError([Problem("--sensors", str(sensors), f"sensors that can be placed; {error}")]) from error
-    return PlannedSurvey(planned_geometry(candidates, plan.sensors), candidates, plan, (elastic + 1).tolist())
+    geometry = planned_geometry(candidates, plan.sensors)
+    frequencies = solved.modes.frequencies_hz[elastic]
+    return PlannedSurvey(geometry, candidates, plan, (elastic + 1).tolist(), frequencies)
 
 
 def write_plan(place: Path, planned: PlannedSurvey) -> None:
@@ -82,34 +86,3 @@ def write_plan(place: Path, planned: PlannedSurvey) -> None:
     survey = SurveyData(planned.geometry)
     write_universal(place / _FILES[0], survey, points=15)
     write_table(place / _FILES[1], survey)
-
-
-def plan_document(planned: PlannedSurvey, solved: SolvedHousing) -> dict[str, Any]:
-    """The plan as the command's JSON."""
-    plan, geometry = planned.plan, planned.geometry
-    return {
-        "modes": planned.modes,
-        "modes_hz": (solved.modes.frequencies_hz[np.array(planned.modes) - 1]).tolist(),
-        "candidates": len(planned.candidates.labels),
-        "sensors": [
-            {
-                "point": label,
-                "position_m": position.tolist(),
-                "direction": direction.tolist(),
-                "independence": float(share),
-            }
-            for label, position, direction, share in zip(
-                geometry.labels, geometry.positions, geometry.directions, plan.independence, strict=True
-            )
-        ],
-        "hammer": [
-            {
-                "position_m": planned.candidates.positions[index].tolist(),
-                "direction": planned.candidates.directions[index].tolist(),
-                "least_residue": float(residue),
-            }
-            for index, residue in zip(plan.driving_points, plan.residues, strict=True)
-        ],
-        "auto_mac_largest": plan.worst_likeness,
-        "condition": plan.condition,
-    }

@@ -31,6 +31,10 @@ class SolvedSystem:
     Attributes
     ----------
     machine : coupling.CoupledMachine
+    speed : float
+        Of operation [rad/s].
+    housing : SolvedHousing or None
+        Whose modes the machine stands on.
     mesh_phase : float or None
         Phase of the first mesh at which the contact stands; None for the mean contact.
     contact : coupling.ContactState
@@ -50,6 +54,8 @@ class SolvedSystem:
     """
 
     machine: room.CoupledMachine
+    speed: float
+    housing: SolvedHousing | None
     mesh_phase: float | None
     contact: room.ContactState
     modes: room.CoupledModes
@@ -59,6 +65,11 @@ class SolvedSystem:
     campbell: room.SystemCampbell | None = None
     unbalance: tuple[room.FrequencyResponse, ...] = ()
     unbalance_speeds: FloatArray | None = None
+
+    @property
+    def unloaded(self) -> room.ContactState:
+        """The contact with the mean mesh stiffness without load."""
+        return room.unloaded_contact(self.machine.system)
 
 
 def solve_system(
@@ -98,7 +109,9 @@ def solve_system(
     contact = room.mean_contact(system) if mesh_phase is None else _instant(case, machine, mesh_phase)
     modes = room.coupled_modes(system, contact)
     responses, error = _mesh_responses(case, machine, housing, modes, contact)
-    solved = SolvedSystem(machine, mesh_phase, contact, modes, room.stability(modes), responses, error)
+    assert case.operation is not None
+    speed = case.operation.speed
+    solved = SolvedSystem(machine, speed, housing, mesh_phase, contact, modes, room.stability(modes), responses, error)
     return _over_speed(case, solved, housing, progress, sidebands) if over_speed else solved
 
 

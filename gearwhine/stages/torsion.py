@@ -26,13 +26,32 @@ class TorsionReading:
     Attributes
     ----------
     probe : TorsionProbe
+    frequencies : (b,) array
+        [rad/s].
     angle, torque : (b,) complex arrays
         About the axis [rad]; and carried by the shaft to the right of the probe, at its right end to the left [N m].
     """
 
     probe: TorsionProbe
+    frequencies: FloatArray
     angle: ComplexArray
     torque: ComplexArray
+
+    @property
+    def largest_angle(self) -> tuple[float, float]:
+        """Largest angle [rad] and its frequency [rad/s]."""
+        return _largest(self.angle, self.frequencies)
+
+    @property
+    def largest_torque(self) -> tuple[float, float]:
+        """Largest torque [N m] and its frequency [rad/s]."""
+        return _largest(self.torque, self.frequencies)
+
+
+def _largest(amplitude: ComplexArray, frequencies: FloatArray) -> tuple[float, float]:
+    sizes = np.abs(amplitude)
+    highest = int(sizes.argmax())
+    return float(sizes[highest]), float(frequencies[highest])
 
 
 @dataclass(frozen=True)
@@ -56,6 +75,12 @@ class SolvedTorsion:
     places: FloatArray
     largest_torque: FloatArray
     worst_frequency: FloatArray
+
+    @property
+    def worst(self) -> tuple[float, float, float]:
+        """Largest torque of the whole shaft [N m], its place [m] and its frequency [rad/s]."""
+        place = int(self.largest_torque.argmax())
+        return float(self.largest_torque[place]), float(self.places[place]), float(self.worst_frequency[place])
 
 
 def solve_torsion(
@@ -83,7 +108,9 @@ def solve_torsion(
     worst = sizes.argmax(axis=0)
     return SolvedTorsion(
         response,
-        tuple(TorsionReading(probe, angles[:, k], carried[:, k]) for k, probe in enumerate(probes)),
+        tuple(
+            TorsionReading(probe, response.frequencies, angles[:, k], carried[:, k]) for k, probe in enumerate(probes)
+        ),
         places,
         sizes.max(axis=0),
         response.frequencies[worst],

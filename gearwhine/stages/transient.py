@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +33,8 @@ class SolvedTransient:
     Attributes
     ----------
     machine : coupling.CoupledMachine
+    speed : float
+        Of the first driver's rotor at operation [rad/s].
     method : str
         By which it was marched, "newmark" or "exact".
     turning : coupling.Turning or None
@@ -52,6 +53,7 @@ class SolvedTransient:
     """
 
     machine: room.CoupledMachine
+    speed: float
     method: str
     turning: room.Turning | None
     result: room.TransientFigures
@@ -70,6 +72,58 @@ class SolvedTransient:
     def modal(self) -> room.ModalRecord:
         """Of the signals."""
         return self.signals.modal
+
+    @property
+    def steps_per_second(self) -> float | None:
+        """Speed of the march; None where it took no time that a clock shows."""
+        return self.result.steps / self.result.seconds if self.result.seconds > 0.0 else None
+
+    @property
+    def revolutions(self) -> float:
+        """Turns of the first driver's rotor over a run; zero at steady speed."""
+        if self.turning is None:
+            return 0.0
+        return float(self.turning.at(self.turning.times[-1])[0][0]) * abs(self.speed) / _HERTZ
+
+    @property
+    def averages(self) -> int:
+        """Number of stretches over which the spectra were averaged."""
+        return next((one.averages for one in [*self.sensor_spectra.values(), *self.force_spectra.values()]), 1)
+
+    def sensor_rms(self, sensor: str) -> float:
+        """RMS acceleration of a sensor up to where the housing's modes are complete: beyond, none is its own [m/s²]."""
+        return float(self.sensor_spectra[sensor].rms(self.trusted_limit))
+
+    def sensor_peaks(self, sensor: str) -> list[room.Peak]:
+        """The lines of a sensor that are told of, highest first."""
+        return room.spectrum_peaks(self.sensor_spectra[sensor], count=20, limit=self.trusted_limit, floor=1e-5)
+
+    def force_peaks(self, contact: str) -> list[room.Peak]:
+        """The lines of a gear-mesh force that are told of, highest first."""
+        return room.spectrum_peaks(self.force_spectra[contact], count=8)
+
+    def back_flank_peak(self, pair: int) -> float | None:
+        """Largest force on the back flanks of a gear pair [N]; None where they cannot meet."""
+        meshes = self.machine.meshes
+        if meshes[pair].backlash is None:
+            return None
+        before = sum(mesh.backlash is not None for mesh in meshes[:pair])
+        return float(self.result.peak_force[len(meshes) + before])
+
+    def bearing_parts(self) -> list[tuple[str, room.SignalParts]]:
+        """Mean and alternating part of each bearing's load: forces along x, y, z [N], moments about x, y [N m]."""
+        return [(name, room.signal_parts(load.T)) for name, load in self.histories.bearing_load.items()]
+
+    def gear_parts(self) -> list[tuple[str, room.SignalParts]]:
+        """Mean and alternating part of the displacement of each gear's centre along x and y [m]."""
+        return [(name, room.signal_parts(motion[:, :2].T)) for name, motion in self.histories.gear_motion.items()]
+
+    def modal_spectrum(self) -> tuple[list[str], room.Spectrum] | None:
+        """Names and spectra of the modal coordinates; None where none is recorded."""
+        named = self.modal.coordinates
+        if not named:
+            return None
+        return list(named), self.record.spectrum(np.array(list(named.values())), self.trusted_limit)
 
 
 def is_traced(case: Case) -> bool:
@@ -115,6 +169,7 @@ def solve_transient(
     """
     require(case, "operation", "transient", command="run")
     assert case.transient is not None
+    assert case.operation is not None
     turning = driving(case, machine.rotors).turning
     fastest = 1.0 if turning is None else max(1.0, float(turning.rates.max()))
     limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
@@ -155,7 +210,9 @@ def solve_transient(
     stretch = record.last_stretch()
     of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
     method = room.march_method(machine.system, chosen.settings, turning or room.Turning.steady())
-    return SolvedTransient(machine, method, turning, figures, record, stretch, of_sensors, of_meshes, limit)
+    return SolvedTransient(
+        machine, case.operation.speed, method, turning, figures, record, stretch, of_sensors, of_meshes, limit
+    )
 
 
 def _in_space(case: Case, housing: SolvedHousing | HousingInMachine | None, named: room.Histories) -> room.Histories:
@@ -203,124 +260,6 @@ def starting_state(case: Case, machine: room.CoupledMachine) -> tuple[FloatArray
 def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
     """Mean force of the shaft on each bearing over the last stretch of the record: x, y, z [N], shape (3,)."""
     return {name: load[:, :3].mean(axis=0) for name, load in solved.histories.bearing_load.items()}
-
-
-def transient_document(case: Case, solved: SolvedTransient) -> dict[str, Any]:
-    """The transient as the command's JSON."""
-    assert case.operation is not None
-    result = solved.result
-    drives = len(solved.machine.meshes)
-    pairs = []
-    for number, (mesh, pressed) in enumerate(zip(solved.machine.meshes, solved.machine.pressed_contacts, strict=True)):
-        spectrum = solved.force_spectra[solved.machine.system.contacts[pressed].name]
-        pairs.append(
-            {
-                "driver": mesh.driver.name,
-                "driven": mesh.driven.name,
-                "flanks": "drive" if pressed == number else "back",
-                "mean_force_n": float(result.mean_force[pressed]),
-                "peak_force_n": float(result.peak_force[pressed]),
-                "contact_loss_fraction": float(result.contact_loss[pressed]),
-                "friction": _friction_document(solved, pressed),
-                "back_flank_peak_force_n": _back_flank_peak(solved, number, drives),
-                "force_peaks": [
-                    {"frequency_hz": peak.frequency, "amplitude_n": peak.amplitude} for peak in force_peaks(spectrum)
-                ],
-            }
-        )
-    return {
-        "speed_rpm": case.operation.speed * 60.0 / _HERTZ,
-        "run": _run_document(case, solved.turning),
-        "method": solved.method,
-        "steps": result.steps,
-        "rejected_steps": result.rejected,
-        "smallest_step_s": result.smallest_step,
-        "steps_per_second": result.steps / result.seconds if result.seconds > 0.0 else None,
-        "energy_error": result.energy.error,
-        "energy_j": {
-            "change": result.energy.change,
-            "loads": result.energy.loads,
-            "lost": result.energy.lost,
-            "teeth": result.energy.teeth,
-            "friction": result.energy.friction,
-        },
-        "coordinates": solved.machine.system.size,
-        "trusted_below_hz": solved.trusted_limit,
-        "record": record_document(solved),
-        "sensors": [
-            {
-                "name": name,
-                # Up to where the housing's modes are complete: what lies above is not the housing's.
-                "rms_m_per_s2": float(spectrum.rms(solved.trusted_limit)),
-                "peaks": [
-                    {"frequency_hz": peak.frequency, "amplitude_m_per_s2": peak.amplitude}
-                    for peak in sensor_peaks(solved, name)
-                ],
-            }
-            for name, spectrum in solved.sensor_spectra.items()
-        ],
-        "gear_pairs": pairs,
-    }
-
-
-def _run_document(case: Case, turning: room.Turning | None) -> dict[str, Any] | None:
-    """Speeds of the first driver's rotor over a run; None at steady speed."""
-    if turning is None:
-        return None
-    assert case.operation is not None
-    speeds = case.operation.speed * turning.rates * 60.0 / _HERTZ
-    return {
-        "from_rpm": float(speeds[0]),
-        "to_rpm": float(speeds[-1]),
-        "seconds": float(turning.times[-1]),
-        "revolutions": float(turning.at(turning.times[-1])[0][0]) * abs(case.operation.speed) / _HERTZ,
-    }
-
-
-def record_document(solved: SolvedTransient) -> dict[str, Any]:
-    """How much was recorded, how finely, and what the spectra were taken over."""
-    record, spectra = solved.record, [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
-    return {
-        "samples": record.samples,
-        "interval_s": record.sampling.interval,
-        "decimation": record.sampling.decimation.factor,
-        "spectra": {
-            "window": record.sampling.window,
-            "samples": min(record.sampling.stretch, record.samples),
-            "averages": next((one.averages for one in spectra), 1),
-        },
-    }
-
-
-def sensor_peaks(solved: SolvedTransient, sensor: str) -> list[room.Peak]:
-    """The lines of a sensor that are told of, highest first."""
-    return room.spectrum_peaks(solved.sensor_spectra[sensor], count=20, limit=solved.trusted_limit, floor=1e-5)
-
-
-def force_peaks(spectrum: room.Spectrum) -> list[room.Peak]:
-    """The lines of a gear-mesh force that are told of, highest first."""
-    return room.spectrum_peaks(spectrum, count=8)
-
-
-def _friction_document(solved: SolvedTransient, number: int) -> dict[str, float] | None:
-    """Friction of a mesh over the record; None where it has none."""
-    found = solved.histories.mesh_friction.get(solved.machine.system.contacts[number].name)
-    if found is None:
-        return None
-    return {
-        "mean_power_w": float(found[:, 1].mean()),
-        "peak_power_w": float(found[:, 1].max()),
-        "peak_force_n": float(np.abs(found[:, 0]).max()),
-    }
-
-
-def _back_flank_peak(solved: SolvedTransient, number: int, drives: int) -> float | None:
-    """Largest force on the back flanks of a mesh [N]; None where they cannot meet."""
-    meshes = solved.machine.meshes
-    if meshes[number].backlash is None:
-        return None
-    before = sum(mesh.backlash is not None for mesh in meshes[:number])
-    return float(solved.result.peak_force[drives + before])
 
 
 def _trusted_limit(housing: SolvedHousing | HousingInMachine | None, mesh_frequencies: tuple[float, ...]) -> float:

@@ -4,11 +4,15 @@ Each is the whole search again. On the housing's own mesh it would take as long 
 the coarser one, as if that were the housing; the measured set too, with which the random ones are compared.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from statistics import median
 
 from gearwhine.progress import Progress
 from gearwhine.stages.designs import HousingDesign
 from housing.updating import Each, Effort, HeldBack, NullFit, Procedure, Target, hold_back, null_fits
+
+_CLEAR = 0.1  # gap of dominance from which the choice of modes is a clear one
 
 
 @dataclass(frozen=True)
@@ -23,6 +27,31 @@ class NullTest:
 
     measured: NullFit
     fits: list[NullFit]
+
+    @property
+    def as_good_in_rms(self) -> float:
+        """Part of the random sets whose root-mean-square error is no larger than that of the measured one."""
+        return self._part(fit.rms_percent <= self.measured.rms_percent for fit in self.fits)
+
+    @property
+    def all_met(self) -> float:
+        """Part of the random sets for which all that is asked for is met."""
+        return self._part(fit.is_met for fit in self.fits)
+
+    @property
+    def median_rms_percent(self) -> float:
+        """Median of the random sets' root-mean-square errors."""
+        return median(fit.rms_percent for fit in self.fits)
+
+    def within(self, percent: float, *, clear: bool = False) -> float:
+        """Part of the random sets fitted within an error, if asked for with a clear choice of modes."""
+        return self._part(
+            fit.max_percent <= percent and (not clear or (fit.gap >= _CLEAR and fit.measures_agree))
+            for fit in self.fits
+        )
+
+    def _part(self, met: Iterable[bool]) -> float:
+        return sum(met) / len(self.fits)
 
 
 def whole_search(start: HousingDesign, effort: Effort, count: int) -> Procedure[HousingDesign]:

@@ -8,20 +8,25 @@ each meshed anew.
 import time
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.progress import Progress, silent
 from gearwhine.stages.designs import HousingDesign, HousingDesigns
 from gearwhine.stages.side_by_side import default_workers, side_by_side
-from gearwhine.stages.update_keys import FittedCase, fitted_case
+from gearwhine.stages.update_keys import FittedCase, FittedNumber, fitted_case, unit_in_si
 from gearwhine.stages.update_target import measurement_of
 from gearwhine.stages.update_worth import NullTest, held_back_modes, random_sets, whole_search
 from housing.updating import (
+    UNPAIRED,
     Each,
     Effort,
     HeldBack,
     Meshes,
     Misfit,
+    Parameter,
     Posterior,
     Raced,
     Step,
@@ -31,6 +36,94 @@ from housing.updating import (
     posterior,
     race,
 )
+
+_AT_END = 1e-3  # part of a range that counts as its end
+_PARTS = 4  # parameters named of each combination
+
+
+@dataclass(frozen=True)
+class FoundNumber:
+    """Parameter of an update and what was found for it.
+
+    Attributes
+    ----------
+    number : FittedNumber
+    value, deviation : float
+        With its standard deviation, in SI.
+    left : float
+        Standard deviation as a part of the prior's.
+    """
+
+    number: FittedNumber
+    value: float
+    deviation: float
+    left: float
+
+    @property
+    def parameter(self) -> Parameter:
+        """The parameter with its range and prior."""
+        return self.number.parameter
+
+    @property
+    def unit_in_si(self) -> float:
+        """The unit that the case gives it in."""
+        return unit_in_si(self.number.given)
+
+    @property
+    def is_at_end(self) -> bool:
+        """Whether the value stands at an end of its range."""
+        low, high = self.parameter.low, self.parameter.high
+        return bool(min(self.value - low, high - self.value) < _AT_END * (high - low))
+
+
+@dataclass(frozen=True)
+class UpdatedPair:
+    """Measured mode, and its partner before and after an update.
+
+    Attributes
+    ----------
+    measured : float
+        Circular frequency [rad/s].
+    before_error, error : float
+        ln(model / measured); NaN where it has no partner.
+    mode : int or None
+        Number of its partner after the update, from 1.
+    before_mac, mac : float or None
+        None without shapes.
+    strength : float or None
+        The partner's lateral acceleration strength [1/kg].
+    uncertainty : float or None
+        Relative standard deviation of the partner's frequency that the parameters leave.
+    """
+
+    measured: float
+    before_error: float
+    error: float
+    mode: int | None
+    before_mac: float | None
+    mac: float | None
+    strength: float | None
+    uncertainty: float | None
+
+    @property
+    def before(self) -> float:
+        """Circular frequency of the model before the update [rad/s]."""
+        return float(self.measured * np.exp(self.before_error))
+
+    @property
+    def after(self) -> float:
+        """Circular frequency of the model after the update [rad/s]."""
+        return float(self.measured * np.exp(self.error))
+
+    @property
+    def before_error_percent(self) -> float:
+        """Model minus measured before the update, in per cent of measured."""
+        return float(100.0 * np.expm1(self.before_error))
+
+    @property
+    def error_percent(self) -> float:
+        """Model minus measured after the update, in per cent of measured."""
+        return float(100.0 * np.expm1(self.error))
 
 
 @dataclass(frozen=True)
@@ -72,6 +165,47 @@ class SolvedUpdate:
     held_back: list[HeldBack]
     null: NullTest | None
     seconds: dict[str, float]
+
+    @cached_property
+    def found(self) -> tuple[FoundNumber, ...]:
+        """The parameters with their values after the update."""
+        numbers = self.fitted.numbers
+        values = self.posterior.values([number.parameter for number in numbers])
+        return tuple(
+            FoundNumber(number, *value, float(left))
+            for number, value, left in zip(numbers, values, self.posterior.deviations, strict=True)
+        )
+
+    @cached_property
+    def pairs(self) -> tuple[UpdatedPair, ...]:
+        """The measured modes with their partners before and after."""
+        before, after = self.misfit_before, self.misfit_after
+        left = self.posterior.frequency_deviations()
+        strengths = self.after.state.dominance.acceleration
+        return tuple(
+            UpdatedPair(
+                measured=float(measured),
+                before_error=float(before.errors[place]),
+                error=float(after.errors[place]),
+                mode=None if mode == UNPAIRED else int(mode) + 1,
+                before_mac=None if before.mac is None else float(before.mac[place]),
+                mac=None if after.mac is None else float(after.mac[place]),
+                strength=None if mode == UNPAIRED else float(strengths[mode]),
+                uncertainty=None if mode == UNPAIRED else float(left[mode]),
+            )
+            for place, (measured, mode) in enumerate(zip(self.target.frequencies, after.pairs, strict=True))
+        )
+
+    @property
+    def combinations(self) -> list[tuple[float, dict[str, float]]]:
+        """Combinations of parameters by what the data say of them: information, and the leading parts by name."""
+        rows = []
+        for information, direction in zip(self.posterior.information, self.posterior.directions, strict=True):
+            leading = np.argsort(-np.abs(direction))[:_PARTS]
+            sign = np.sign(direction[leading[0]])
+            parts = {self.found[place].parameter.name: float(sign * direction[place]) for place in leading}
+            rows.append((float(information), parts))
+        return rows
 
 
 def update_housing(

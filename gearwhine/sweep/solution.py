@@ -13,12 +13,13 @@ import numpy.typing as npt
 from gearwhine.case import Case, mesh_frequencies
 from gearwhine.doubtful import add_warnings
 from gearwhine.failures import explain
+from gearwhine.results.run import transient_document
 from gearwhine.stages.bearing_loads import bearing_load_warnings
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.instability import machine_warnings
 from gearwhine.stages.machine import HousingInMachine, basis_error, build_machine, housing_in_machine
-from gearwhine.stages.transient import SolvedTransient, mean_bearing_forces, solve_transient, transient_document
+from gearwhine.stages.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.sweep.points import code_digest
 
@@ -142,7 +143,7 @@ def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | No
     contacts = solved.machine.system.contacts
     # Under the drive flanks' name at every point, whichever are pressed there.
     pressed = {contacts[i].name: contacts[number].name for i, number in enumerate(solved.machine.pressed_contacts)}
-    document = transient_document(case, solved)
+    document = transient_document(solved)
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
     add_warnings(document, () if housing is None else housing.warnings)
     add_warnings(document, machine_warnings(solved.machine))

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from housing.correlation.assurance import largest_off_diagonal
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -97,3 +99,14 @@ class ShapeCorrelation:
     orthogonality_modes: tuple[int, ...]
     outside: FloatArray | None
     no_orthogonality: str = ""
+
+    @property
+    def largest_measured_likeness(self) -> float:
+        """Largest MAC between different measured modes."""
+        return largest_off_diagonal(self.measured_auto_mac)
+
+    @property
+    def largest_model_likeness(self) -> float:
+        """Largest MAC between different modes of the model in the band: those far outside need not be told apart."""
+        which = np.array(self.orthogonality_modes, dtype=np.int64) - 1
+        return largest_off_diagonal(self.model_auto_mac[np.ix_(which, which)]) if which.size else 0.0

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gearwhine import results
+from gearwhine.analyses.run import RunSolution, run_arrays
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.stages.gear_analysis import analyse_pairs
 from gearwhine.stages.gears import solve_gears
@@ -53,15 +53,8 @@ def write_whole(file: Path) -> None:
     system = solve_system(case, machine, housing)
     transient = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
     signature = solve_signature(transient, system.modes, housing.modes.frequencies_hz)
-    results.labelled(
-        case,
-        housing=housing,
-        rotors=rotors,
-        pairs=analyse_pairs(case, pairs),
-        system=system,
-        transient=transient,
-        signature=signature,
-    ).write(file)
+    whole = RunSolution(rotors, analyse_pairs(case, pairs), housing, None, system, transient, signature, None)
+    run_arrays(case, whole).write(file)
 
 
 @pytest.mark.slow

@@ -8,9 +8,10 @@ import pytest
 import xarray as xr
 
 from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.results.run import transient_document
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import solve_transient, transient_document
+from gearwhine.stages.transient import solve_transient
 
 FEW = ("--set", "rotor.input.modes=2", "--set", "rotor.output.modes=2")
 SHORT = (*FEW, "--set", "transient.revolutions=3", "--set", "transient.discard=1")
@@ -30,7 +31,7 @@ def documents() -> dict[str, dict[str, Any]]:
     for method in MARCHED:
         case = load_case("spur-pair", (*SHORT[1::2], f"transient.method='{method}'")).case
         machine = build_machine(case, None, solve_gears(case))
-        found[method] = transient_document(case, solve_transient(case, machine, mesh_frequencies(case)))
+        found[method] = transient_document(solve_transient(case, machine, mesh_frequencies(case)))
     return found
 
 

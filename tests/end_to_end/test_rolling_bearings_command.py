@@ -1,19 +1,23 @@
 """Bearings by 5x5 matrix and by rolling geometry, through the command."""
 
 import copy
+import json
 import tomllib
 from collections.abc import Callable
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from coupling import coupled_modes
 from gearwhine.case import CaseError, parse_case
+from gearwhine.cli import run_command
+from gearwhine.results.rotors import rotors_document
 from gearwhine.stages.bearings import build_bearings, rolling_state
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.rotor_documents import rotors_document
 from gearwhine.stages.rotors import solve_rotors
 
 FRISWELL = tomllib.loads(files("gearwhine.cases").joinpath("friswell-rotor.toml").read_text(encoding="utf-8"))
@@ -119,3 +123,38 @@ def test_a_bearing_that_its_load_does_not_hold_is_the_users_to_mend(
     outcome = gearwhine("rotors", "friswell-rotor", "--set", *changes, "--set", 'bearing.left.load={ x = "900 kN" }')
     assert outcome.code == 2
     assert "of their diameter" in outcome.err
+
+
+def test_a_rated_life_stands_in_document_file_terminal_and_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """C/P = 10 for balls: 1000 million revolutions; at 3000 rpm 5555.6 h."""
+    ring = "type = 'deep-groove', bore = '30 mm', outer_diameter = '62 mm', width = '16 mm'"
+    rated = f"{{ rolling = {{ catalogue = {{ {ring} }}, dynamic_rating = '10 kN' }} }}"
+    unrated = f"{{ rolling = {{ catalogue = {{ {ring} }} }} }}"
+    changes = [
+        f"bearing.left.stiffness={rated}",
+        f"bearing.right.stiffness={unrated}",
+        "bearing.left.load={ y = '-1 kN' }",
+        "bearing.right.load={ y = '-1 kN' }",
+        "operation.speed=3000 rpm",
+    ]
+    options = [part for change in changes for part in ("--set", change)]
+    assert run_command(["rotors", "friswell-rotor", "-q", "-o", str(tmp_path), *options]) == 0
+    printed = capsys.readouterr().out
+    assert "rated life L10 [h]" in printed
+    assert "5.56e+03" in printed
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    left, right = summary["rotors"][0]["rolling_bearings"]
+    assert left["life_h"] == pytest.approx(1e9 / (3000.0 * 60.0))
+    assert right["life_h"] is None
+    with xr.open_dataset(tmp_path / "results.nc") as data:
+        life = data["rolling_bearing_life"]
+        assert life.attrs["units"] == "h"
+        assert "ISO 281" in life.attrs["long_name"]
+        assert float(life.sel(rolling_bearing="shaft: left")) == pytest.approx(1e9 / (3000.0 * 60.0))
+        assert np.isnan(float(life.sel(rolling_bearing="shaft: right")))
+    assert run_command(["report", "friswell-rotor", "-q", "-o", str(tmp_path), *options]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "rated life L10 [h]" in page
+    assert "5.56e+03" in page

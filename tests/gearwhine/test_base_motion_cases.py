@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from gearwhine.case import CaseError, dump_case, parse_case
-from gearwhine.screen.case import show_check
+from gearwhine.output.terminal import shown_by
+from gearwhine.results import check
+from gearwhine.results.check import check_document
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import base_participation, solve_housing
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.summary import check_document
 from gearwhine.stages.transient import solve_transient
 
 BASE = {
@@ -33,7 +34,7 @@ def document_of(name: str, **operation: Any) -> dict[str, Any]:
 def test_written_cases_load_back_equal(capsys: pytest.CaptureFixture[str]) -> None:
     case = parse_case(document_of("spur-pair", base=BASE, gravity=["0 m/s^2", "-9.81 m/s^2", 0]))
     assert parse_case(tomllib.loads(dump_case(case))) == case
-    show_check(check_document(case))
+    shown_by(check.sections)(check_document(case))
     out = capsys.readouterr().out
     assert "gravity: 0, -9.81, 0 m/s²" in out
     assert "base moves: 30 Hz, a table over time" in out

@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.case.checks import warnings_of
-from gearwhine.screen import show_check
+from gearwhine.output.terminal import shown_by
+from gearwhine.results import check
+from gearwhine.results.check import check_document
+from gearwhine.results.housing import modes_document
 from gearwhine.stages.attachments import build_attachments
 from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.housing_documents import modes_document
-from gearwhine.stages.summary import check_document
 from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, write_mesh
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
@@ -189,7 +190,7 @@ def test_check_says_what_is_fastened(capsys: pytest.CaptureFixture[str]) -> None
     assert rubber["stiffness_n_per_m"] == {"axial": 4e6, "shear": 1e6}
     assert rubber["stiffness_n_m_per_rad"] == {"tilting": 100.0}
     assert rubber["damping_n_s_per_m"] == {"axial": 300.0}
-    show_check(document)
+    shown_by(check.sections)(document)
     shown = capsys.readouterr().out
     assert "joint tie (left to right): axial 1e+08 N/m" in shown
     assert "masses: motor 6 kg, probe 0.12 kg" in shown

@@ -6,14 +6,14 @@ from typing import Any
 import pytest
 
 from gearwhine.case import CaseError, dump_case, parse_case
-from gearwhine.screen.case import show_check
-from gearwhine.screen.gears import show_gears
+from gearwhine.output.terminal import show, shown_by
+from gearwhine.results import check
+from gearwhine.results.check import check_document
+from gearwhine.results.gears import gears_document, sections
 from gearwhine.stages.build import build_gear
 from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gear_documents import gears_document
 from gearwhine.stages.gear_torques import over_torques
 from gearwhine.stages.gears import pair_geometry, solve_gears
-from gearwhine.stages.summary import check_document
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
 TOOTH = {"module": "3.175 mm", "face_width": "30 mm", "material": "steel"}
@@ -108,10 +108,10 @@ def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) 
     angles = [math.degrees(gear["helix_angle_rad"]) for gear in pair["geometry"]["gears"]]
     assert angles == pytest.approx([15.0, -15.0])
     assert [point["point"] for point in pair["geometry"]["path_of_contact"]][::4] == ["SAP", "EAP"]
-    show_check(document)
+    shown_by(check.sections)(document)
     document = gears_document(over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL))))
     assert document["pairs"][0]["transmission_error_m"]["peak_to_peak"] > 0.0
-    show_gears(document)
+    show(document, sections(document))
     shown = " ".join(capsys.readouterr().out.split())
     assert "+ overlap" in shown
     assert "helix 15° left" in shown

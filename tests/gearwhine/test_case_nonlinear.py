@@ -10,9 +10,10 @@ import pytest
 
 from coupling import GapLaw, RollingLaw
 from gearwhine.case import CaseError, dump_case, parse_case
+from gearwhine.results.run import transient_document
 from gearwhine.stages.bearings import bearing_law, build_bearings
 from gearwhine.stages.machine import solve_machine
-from gearwhine.stages.transient import solve_transient, transient_document
+from gearwhine.stages.transient import solve_transient
 
 SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
 DEEP_GROOVE = {"count": 9, "element_diameter": "9 mm", "pitch_diameter": "46 mm", "clearance": "6 um"}
@@ -81,7 +82,7 @@ def test_all_of_it_moves_together() -> None:
     case = spur_pair(pair={"friction": 0.06, "backlash": "60 um"}, **rolling("nonlinear"))
     _, pairs, machine = solve_machine(case)
     solved = solve_transient(case, machine, (pairs[0].mesh_frequency,))
-    document = transient_document(case, solved)
+    document = transient_document(solved)
     assert document["energy_error"] < 5e-3
     assert case.operation is not None
     turned = 2.0 * np.pi * abs(case.operation.torque)

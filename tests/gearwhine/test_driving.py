@@ -14,12 +14,14 @@ import coupling as room
 from coupling import static_equilibrium
 from coupling.gears.kernels import tooth_force
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
-from gearwhine.screen.case import show_check
+from gearwhine.output.terminal import shown_by
+from gearwhine.results import check
+from gearwhine.results.check import check_document
+from gearwhine.results.run import transient_document
 from gearwhine.stages.driving import driving, train_inertia
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine, solve_machine
-from gearwhine.stages.summary import check_document
-from gearwhine.stages.transient import SolvedTransient, solve_transient, transient_document
+from gearwhine.stages.transient import SolvedTransient, solve_transient
 
 RPM = math.pi / 30.0
 LINE = {"speed": ["0 rpm", "3000 rpm"], "torque": ["90 N*m", "0 N*m"]}
@@ -69,7 +71,7 @@ def run(case: Case) -> SolvedTransient:
 def test_written_cases_load_back_equal(given: dict[str, Any]) -> None:
     case = parse_case(given)
     assert parse_case(tomllib.loads(dump_case(case))) == case
-    show_check(check_document(case))
+    shown_by(check.sections)(check_document(case))
 
 
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
@@ -152,7 +154,7 @@ def test_run_up_torque(speed: str) -> None:
     radius = solved.machine.meshes[0].geometry.driver.base_radius
     expected = (20.0 + far * 1000.0 * RPM / 0.2) / radius
     assert solved.result.mean_force[0] == pytest.approx(expected, rel=1e-3)
-    document = transient_document(case, solved)["run"]
+    document = transient_document(solved)["run"]
     assert (abs(document["from_rpm"]), abs(document["to_rpm"])) == pytest.approx((500.0, 1500.0))
     assert document["revolutions"] == pytest.approx(1000.0 / 60.0 * 0.2)
 
@@ -248,7 +250,7 @@ def test_a_braked_train_without_backlash_is_refused() -> None:
 def test_a_braked_train_coasts_on_its_back_flanks() -> None:
     case = parse_case(spur_pair({"revolutions": 2, "discard": 1}, torque="-100 N*m"))
     solved = run(case)
-    (pair,) = transient_document(case, solved)["gear_pairs"]
+    (pair,) = transient_document(solved)["gear_pairs"]
     assert pair["flanks"] == "back"
     assert pair["contact_loss_fraction"] == 0.0
     (mesh,) = solve_gears(case)

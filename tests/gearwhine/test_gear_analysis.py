@@ -15,10 +15,10 @@ import xarray as xr
 import coupling.gears as room
 from coupling import mesh_error_response
 from gearwhine.case import Case, load_case, parse_case
-from gearwhine.results import labelled
-from gearwhine.screen import show_gears
+from gearwhine.output.dataset import labelled
+from gearwhine.output.terminal import show
+from gearwhine.results.gears import GEARS, gears_document, sections
 from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs
-from gearwhine.stages.gear_documents import gears_document
 from gearwhine.stages.gear_torques import coarser_faces, over_torques
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
@@ -199,7 +199,7 @@ def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.C
     static = room.static_transmission_error(contact, 1000.0)
     (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
     assert pair.pitch_pressure is None
-    show_gears(gears_document((pair,)))
+    show(gears_document((pair,)), sections(gears_document((pair,))))
     assert "MPa at most, at" in (out := capsys.readouterr().out)
     assert "at the pitch point" not in out
 
@@ -275,7 +275,7 @@ def test_gears_by_base_radius_have_no_width_to_press_on() -> None:
 def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
     pair = analysed(*PITCHED)
     path = tmp_path / "results.nc"
-    labelled(case_of(*PITCHED), pairs=(pair,)).write(path)
+    labelled(case_of(*PITCHED), (GEARS, (pair,))).write(path)
     with xr.open_dataset(path) as data:
         curves = data.isel(gear_pair=0)
         assert all("units" in data[name].attrs for name in data.data_vars)

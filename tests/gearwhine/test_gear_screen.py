@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from gearwhine import screen
 from gearwhine.case import load_case
+from gearwhine.output.terminal import show
+from gearwhine.results.gears import gears_document, sections
 from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gear_documents import gears_document
 from gearwhine.stages.gear_torques import over_torques
 from gearwhine.stages.gears import solve_gears
 
@@ -23,7 +23,7 @@ def document(name: str, *settings: str) -> Document:
 
 
 def said(capsys: pytest.CaptureFixture[str], given: Document) -> str:
-    screen.show_gears(given)
+    show(given, sections(given))
     return capsys.readouterr().out
 
 

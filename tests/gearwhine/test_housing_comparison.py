@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearwhine import screen
 from gearwhine.case import CaseError, load_case
 from gearwhine.output import finite, json_text
+from gearwhine.output.terminal import shown_by
+from gearwhine.results.comparison import comparison_document, sections
 from gearwhine.stages.comparison import compare_housing
-from gearwhine.stages.comparison_documents import comparison_document
 from gearwhine.stages.housing import SolvedHousing, pair_modes, solve_housing
 from housing.measured import MeasuredGeometry, MeasuredModes
 
@@ -62,7 +62,7 @@ def test_the_twin_is_paired_by_shape(solved: SolvedHousing, twin: tuple[Measured
 def test_the_screen_says_what_is_missing(
     solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    screen.show_comparison(finite(comparison_document(pair_modes(solved, *twin), solved)))
+    shown_by(sections)(finite(comparison_document(pair_modes(solved, *twin), solved)))
     out = capsys.readouterr().out
     assert "confidence" in out
     assert "Measured mode 2 (" in out

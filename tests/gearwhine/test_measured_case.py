@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from gearwhine.case import CaseError, case_document, dump_case, load_case, parse_case
-from gearwhine.stages.measured import map_measured, measured_document, read_measured, survey_document
-from gearwhine.stages.summary import check_document
+from gearwhine.results.check import check_document, measured_document
+from gearwhine.results.comparison import survey_document
+from gearwhine.stages.measured import map_measured, read_measured
 from housing import survey_grid
 from housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
 from meshes import Mesh

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from gearwhine.case import CaseError
-from gearwhine.report import columns, report_page, sections_of
-from gearwhine.report.tables import table_of
+from gearwhine.output.html import report_page
+from gearwhine.output.sections import Column, columns_of, table_of
+from gearwhine.results import comparison, gears, housing, motion, rotors, run, steady, system, update
+from gearwhine.results.chapters import chapters_of
 from gearwhine.stages.contents import file_contents
 
 VOID = {"meta", "img"}
@@ -66,7 +68,7 @@ class Balanced(HTMLParser):
 
 def read(folder: Path) -> Balanced:
     parser = Balanced()
-    parser.feed(report_page(folder))
+    parser.feed(report_page(folder, chapters_of))
     parser.close()
     assert parser.open == []
     return parser
@@ -98,10 +100,10 @@ def test_a_run_is_told_whole_and_escaped(tmp_path: Path) -> None:
 
 
 def test_sections_follow_what_the_document_holds() -> None:
-    assert [section.title for section in sections_of(RUN)] == ["Housing modes", "Measured and modelled", "Motion"]
-    assert sections_of({"title": "nothing"}) == ()
+    assert [section.title for section in chapters_of(RUN)] == ["Housing modes", "Measured and modelled", "Motion"]
+    assert chapters_of({"title": "nothing"}) == ()
     modes = RUN["housing"]
-    assert [section.title for section in sections_of(modes)] == ["Housing modes"]  # type: ignore[arg-type]
+    assert [section.title for section in chapters_of(modes)] == ["Housing modes"]  # type: ignore[arg-type]
 
 
 def test_what_a_fit_is_worth_is_told_beside_it() -> None:
@@ -120,9 +122,9 @@ def test_what_a_fit_is_worth_is_told_beside_it() -> None:
         "before": {"rms_error_percent": 13.6, "max_error_percent": 24.0},
         "identifiability": {"learned_combinations": 8, "parameters": 18},
     }
-    (alone,) = sections_of(document)
+    (alone,) = chapters_of(document)
     assert any("Not known" in sentence for sentence in alone.sentences)
-    (tested,) = sections_of(document | {"null": worth, "held_back": [held]})
+    (tested,) = chapters_of(document | {"null": worth, "held_back": [held]})
     assert any(
         "80 % within 5 %" in sentence and "for 5 % all that is asked" in sentence for sentence in tested.sentences
     )
@@ -133,13 +135,16 @@ def test_what_a_fit_is_worth_is_told_beside_it() -> None:
 
 
 def test_an_unstable_machine_is_not_called_stable() -> None:
-    growing = {"stable": False, "growing": [{"frequency_hz": 90.0}]}
-    (section,) = sections_of({"system": {"modes": [], "stability": growing}})
-    assert section.sentences[0].startswith("Unstable: 1 of")
+    mode = {"frequency_hz": 90.0, "damping_ratio": -0.01, "kind": "torsion", "doubling_time_s": 0.1, "fed_by": []}
+    growing = {"stable": False, "growing": [mode]}
+    whole = {"modes": [], "coordinates": 3, "speed_rpm": 1000.0, "stability": growing}
+    (section,) = chapters_of({"system": whole})
+    assert any(sentence.startswith("UNSTABLE: 1 mode") for sentence in section.sentences)
+    assert not any("Stable" in sentence for sentence in section.sentences)
 
 
 def test_columns_without_values_are_left_out() -> None:
-    (table,) = sections_of(RUN)[1].tables
+    (table,) = chapters_of(RUN)[1].tables
     columns, rows = table.filled()
     assert "MAC" not in [column.heading for column in columns]
     assert rows == [["658.0", "684.0", "+3.95", "1"]]
@@ -195,7 +200,7 @@ def test_a_folder_without_results_is_refused(tmp_path: Path, content: str | None
     if content is not None:
         (tmp_path / "summary.json").write_text(content, encoding="utf-8")
     with pytest.raises(CaseError, match="a results folder with"):
-        report_page(tmp_path)
+        report_page(tmp_path, chapters_of)
 
 
 # Documents in which no two figures are alike, and each table's cells as they must read.
@@ -302,8 +307,28 @@ CELLS = {
         },
     ),
     "SYSTEM": (
-        {"frequency_hz": 812.345, "damping_ratio": 0.0234, "kind": "rotor", "where": "input"},
-        {"frequency [Hz]": "812.35", "damping ratio": "0.0234", "kind": "rotor", "where": "input"},
+        {
+            "frequency_hz": 812.345,
+            "damping_ratio": 0.0234,
+            "kind": "rotor",
+            "where": "input",
+            "energy": {"housing": 0.1, "rotor": 0.5, "torsion": 0.2, "axial": 0.05, "pedestal": 0.0, "residual": 0.15}
+            | {"mesh": 0.3},
+            "strain_energy": {"components": {"input": 0.6}, "bearings": {"left": 0.1}, "gear_meshes": {"a -> b": 0.3}},
+            "whirl": {"input": -0.8},
+        },
+        {
+            "frequency [Hz]": "812.35",
+            "damping ratio": "0.0234",
+            "kind": "rotor: input ↻",
+            "housing": "10 %",
+            "rotor": "50 %",
+            "torsion": "20 %",
+            "axial": "5 %",
+            "residual": "15 %",
+            "teeth": "30 %",
+            "strained most": "input 60 %",
+        },
     ),
     "ROTORS": (
         {
@@ -366,17 +391,34 @@ CELLS = {
 }
 
 
+TABLES: dict[str, tuple[Column, ...]] = {
+    "MODES": columns_of(housing.MODE),
+    "PAIRS": columns_of(comparison.PAIR),
+    "PARAMETERS": columns_of(update.PARAMETER),
+    "HELD_BACK": columns_of(update.HELD_BACK),
+    "ROTORS": columns_of(rotors.ROTOR),
+    "EVENTS": columns_of(steady.EVENT),
+    "GEARS": gears.OVERVIEW,
+    "MESHES": (*run.MESH_COLUMNS, *columns_of(steady.PAIR)[-1:]),
+    "LINES": motion.LINE_COLUMNS,
+    "BEARINGS": columns_of(run.BEARING),
+    "ORDERS": columns_of(run.ORDER),
+    "SYSTEM": (),  # depends on the modes
+}
+
+
 @pytest.mark.parametrize("table", CELLS)
 def test_every_cell_shows_its_own_quantity_in_its_unit(table: str) -> None:
     row, expected = CELLS[table]
-    (one,) = table_of(getattr(columns, table), [row])
+    columns_for = TABLES[table] if table != "SYSTEM" else system.mode_columns([row])
+    (one,) = table_of(columns_for, [row])
     shown, ((*texts,),) = one.filled()
     assert {column.heading: text for column, text in zip(shown, texts, strict=True)} == expected
     assert [column.heading for column in shown] == list(expected)
 
 
 def test_every_table_is_held_against_its_cells() -> None:
-    assert set(CELLS) == {name for name in vars(columns) if name.isupper()}
+    assert set(CELLS) == set(TABLES)
 
 
 def test_warnings_stand_before_the_results(tmp_path: Path) -> None:
@@ -389,7 +431,7 @@ def test_warnings_stand_before_the_results(tmp_path: Path) -> None:
 def test_modes_that_miss_their_proof_are_not_called_complete(tmp_path: Path) -> None:
     for complete, words in ((True, ", complete:"), (False, ", NOT complete:")):
         certificate = {"found": 6, "limit_hz": 3200.0, "expected": 7, "complete": complete, "max_residual": 2e-12}
-        (section,) = sections_of({"housing": {"certificate": certificate}})
+        (section,) = chapters_of({"housing": {"certificate": certificate}})
         assert words in section.sentences[0]
         assert "6 modes below 3200 Hz" in section.sentences[0]
         assert "demands 7" in section.sentences[0]

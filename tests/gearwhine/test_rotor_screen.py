@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from gearwhine import screen
+from gearwhine.output.terminal import show
+from gearwhine.results.rotors import sections
 
 Document = dict[str, Any]
 
@@ -90,7 +91,8 @@ def campbell(**more: Any) -> Document:
 
 def said(**more: Any) -> str:
     with redirect_stdout(io.StringIO()) as out:
-        screen.show_rotors({"rotors": [rotor(**more)]})
+        document = {"rotors": [rotor(**more)]}
+        show(document, sections(document))
     return out.getvalue()
 
 

@@ -2,20 +2,22 @@
 
 import io
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import redirect_stdout
 from typing import Any
 
 import pytest
 
-from gearwhine import screen
+from gearwhine.output.sections import Section
+from gearwhine.output.terminal import shown_by
+from gearwhine.results import comparison, housing, run, system
 
 Document = dict[str, Any]
 
 
-def _said(show: Callable[[Document], None], document: Document) -> str:
+def _said(sections: Callable[[Document], Iterable[Section]], document: Document, *, timed: bool = False) -> str:
     with redirect_stdout(io.StringIO()) as out:
-        show(document)
+        shown_by(sections, timed=timed)(document)
     return out.getvalue()
 
 
@@ -55,10 +57,10 @@ def _comparison(gap: float | None) -> Document:
 
 
 def test_brackets_are_printed_as_they_stand() -> None:
-    run = _said(screen.show_run, _run())
-    assert "rms [m/s²]" in run
-    assert "case [bold] :warning: [/nothing]" in run
-    assert "measured [Hz]" in _said(screen.show_comparison, _comparison(0.5))
+    told = _said(run.sections, _run(), timed=True)
+    assert "rms [m/s²]" in told
+    assert "case [bold] :warning: [/nothing]" in told
+    assert "measured [Hz]" in _said(comparison.sections, _comparison(0.5))
 
 
 @pytest.mark.parametrize(
@@ -66,16 +68,16 @@ def test_brackets_are_printed_as_they_stand() -> None:
     [(0.0, "0 %"), (0.003, "0.3 %"), (0.5, "50 %"), (1.0, "100 %"), (1e-6, "less than 0.01 %")],
 )
 def test_the_time_apart_is_a_plain_percentage(loss: float, said: str) -> None:
-    assert f"apart {said} of the time" in _said(screen.show_run, _run(loss))
+    assert f"apart {said} of the time" in _said(run.sections, _run(loss))
 
 
 def test_one_mode_is_no_modes() -> None:
-    assert "Housing: 1 mode below 900 Hz" in _said(screen.show_run, _run())
-    assert "1 model mode below 900 Hz" in _said(screen.show_comparison, _comparison(0.5))
+    assert "Housing: 1 mode below 900 Hz" in _said(run.sections, _run())
+    assert "1 model mode below 900 Hz" in _said(comparison.sections, _comparison(0.5))
 
 
 def test_no_share_is_minus_nothing_and_rigid_modes_have_none() -> None:
-    out = _said(screen.show_system, _system())
+    out = _said(system.sections, _system())
     assert "-0" not in out
     rows = [line for line in out.splitlines() if "rigid" in line or "torsion" in line][1:]  # the first is the head
     assert rows[0].split() == ["0.00", "0.0000", "rigid"]
@@ -87,27 +89,27 @@ def test_no_share_is_minus_nothing_and_rigid_modes_have_none() -> None:
 def test_motion_along_the_axis_and_of_pedestals_is_shown_where_there_is_any() -> None:
     thrust = _system()
     thrust["modes"][1]["energy"] = thrust["modes"][1]["energy"] | {"torsion": 0.25, "axial": 0.75}
-    out = _said(screen.show_system, thrust)
+    out = _said(system.sections, thrust)
     assert "axial" in out
     assert "75 %" in out
     assert "pedestal" not in out
-    assert "axial" not in _said(screen.show_system, _system())
+    assert "axial" not in _said(system.sections, _system())
 
 
 def test_modes_far_above_the_housing_limit_are_counted_only() -> None:
-    out = _said(screen.show_system, _system(trusted_below_hz=1000.0))
+    out = _said(system.sections, _system(trusted_below_hz=1000.0))
     assert "2500.00" not in out
     assert out.rstrip().endswith("1 more mode above 2000 Hz.")
-    assert "above" not in _said(screen.show_system, _system(trusted_below_hz=1250.0))
-    assert "2500.00" in _said(screen.show_system, _system(trusted_below_hz=None))
+    assert "above" not in _said(system.sections, _system(trusted_below_hz=1250.0))
+    assert "2500.00" in _said(system.sections, _system(trusted_below_hz=None))
 
 
 @pytest.mark.parametrize("gap", [None, math.inf])
 def test_a_gap_to_nothing_is_said_in_words(gap: float | None) -> None:
-    out = _said(screen.show_comparison, _comparison(gap))
+    out = _said(comparison.sections, _comparison(gap))
     assert "no other mode in the band" in out
     assert "coin toss" not in out
-    assert "ln 0.050 (below 0.1 the choice is a coin toss)" in _said(screen.show_comparison, _comparison(0.05))
+    assert "ln 0.050 (below 0.1 the choice is a coin toss)" in _said(comparison.sections, _comparison(0.05))
 
 
 def _modes(*, ok: bool = True, strength: float | None = None) -> Document:
@@ -129,7 +131,7 @@ def _modes(*, ok: bool = True, strength: float | None = None) -> Document:
     }
     return _run()["housing"] | {
         "modes": [mode],
-        "health": {"lines": lines, "supports": [{"name": "foot", "fixes": 0, "share": shares}]},
+        "health": {"lines": lines, "supports": [{"name": "foot", "fixes": 3, "share": shares}]},
         "static_error": None,
         "effective_mass": {"directions": names} | parts,
         "selection": None,
@@ -139,7 +141,7 @@ def _modes(*, ok: bool = True, strength: float | None = None) -> Document:
 
 
 def test_a_sound_model_is_told_in_a_line_and_what_is_not_is_shown() -> None:
-    sound, doubtful = _said(screen.show_modes, _modes()), _said(screen.show_modes, _modes(ok=False))
+    sound, doubtful = _said(housing.sections, _modes()), _said(housing.sections, _modes(ok=False))
     assert "2 of 2 checks keep their bounds" in sound
     assert "what it says" not in sound
     assert "what holds it" in doubtful
@@ -148,7 +150,7 @@ def test_a_sound_model_is_told_in_a_line_and_what_is_not_is_shown() -> None:
 
 
 def test_detail_shows_every_check_and_ends_with_the_files() -> None:
-    said = _said(screen.show_modes_in_detail, _modes())
+    said = _said(housing.detailed_sections, _modes())
     for text in ("alike", "what holds it", "for information"):
         assert text in said
     assert said.rstrip().endswith("Written to out: modes.nc")
@@ -156,13 +158,13 @@ def test_detail_shows_every_check_and_ends_with_the_files() -> None:
 
 
 def test_shares_stand_under_their_own_directions_whatever_the_order_of_the_document() -> None:
-    lines = _said(screen.show_modes_in_detail, _modes()).splitlines()
+    lines = _said(housing.detailed_sections, _modes()).splitlines()
     (head,) = [line.split() for line in lines if "fixes" in line]
     (foot,) = [line.split() for line in lines if line.split()[:1] == ["foot"]]
     assert head == ["support", "fixes", "x", "y", "rot", "x"]
-    assert foot == ["foot", "10.0", "%", "20.0", "%", "30.0", "%"]
+    assert foot == ["foot", "3", "of", "6", "10.0", "%", "20.0", "%", "30.0", "%"]
 
 
 def test_strength_has_a_column_only_where_there_are_seats() -> None:
-    assert "strength" not in _said(screen.show_modes, _modes())
-    assert "1.000e-02" in _said(screen.show_modes, _modes(strength=0.01))
+    assert "strength" not in _said(housing.sections, _modes())
+    assert "1.000e-02" in _said(housing.sections, _modes(strength=0.01))

@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from rich.console import Console
 
 from gearwhine.case import CaseError, load_case, mesh_frequencies
 from gearwhine.cli import run_command
-from gearwhine.screen.steady import show_curve
+from gearwhine.results.steady import curve_sentences
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
 from gearwhine.stages.steady import solve_steady
@@ -69,7 +68,7 @@ def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytes
         assert moduli.max() == pytest.approx(motion["largest_multiplier"], rel=1e-12)
 
 
-def test_a_branch_that_is_left_is_told_on_screen(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_branch_that_is_left_is_told_on_screen() -> None:
     left = {
         "speed_rpm": [3000.0, 3500.0],
         "stable": [True, True],
@@ -78,10 +77,9 @@ def test_a_branch_that_is_left_is_told_on_screen(capsys: pytest.CaptureFixture[s
         "gear_pairs": [],
         "bifurcations": [],
     }
-    show_curve(Console(width=200), left)
-    assert "Left before the end of the range: followed from 3000 to 3500 rpm; as many" in capsys.readouterr().out
-    show_curve(Console(width=200), left | {"ending": "end"})
-    assert "Left before" not in capsys.readouterr().out
+    told = "\n".join(curve_sentences(left))
+    assert "Left before the end of the range: followed from 3000 to 3500 rpm; as many" in told
+    assert "Left before" not in "\n".join(curve_sentences(left | {"ending": "end"}))
 
 
 def test_what_stands_still_or_has_no_range_is_refused() -> None:

@@ -14,10 +14,11 @@ from coupling.gears import ToothContact, piecewise
 from coupling.periodic import orbit, periodic_response, shooting, superposed_response
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
-from gearwhine.report.sections import sections_of
+from gearwhine.results.chapters import chapters_of
+from gearwhine.results.steady import steady_document
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
-from gearwhine.stages.steady import solve_steady, steady_document
+from gearwhine.stages.steady import solve_steady
 
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
 
@@ -139,7 +140,7 @@ def test_the_command_says_which_was_done(tmp_path: Path, capsys: pytest.CaptureF
     with xr.open_dataset(tmp_path / "out" / "results.nc") as data:
         assert data["excitation_mesh_force"].dims == ("excitation", "contact", "period_part")
         assert data["excitation_period"].values == pytest.approx([1 / 1050, 72 / 1050 / 19, 72 * 56 / 1050 / 19])
-    text = " ".join(sentence for section in sections_of(document) for sentence in section.sentences)
+    text = " ".join(sentence for section in chapters_of(document) for sentence in section.sentences)
     assert "these are superposed" in text
     assert run_command(["steady", str(place), "-q"]) == 0
     assert "these are superposed" in capsys.readouterr().out.replace("\n", " ")
@@ -172,7 +173,7 @@ def test_the_steady_motion_of_a_braked_machine_is_told_of_its_back_flanks() -> N
     case = load_case("spur-pair", changes).case
     machine = build_machine(case, None, solve_gears(case))
     assert machine.pressed_contacts == (1,)
-    (motion,) = steady_document(case, solve_steady(case, machine, None))["motions"]
+    (motion,) = steady_document(case.title, solve_steady(case, machine, None))["motions"]
     base_radius = 0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0))
     (pair,) = motion["gear_pairs"]
     assert pair["mean_force_n"] == pytest.approx(100.0 / base_radius, rel=1e-3)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gearwhine.case import CadFile, load_case
-from gearwhine.stages.geometry import bores_document, build_mesh
+from gearwhine.stages.geometry import bores_along_axes, build_mesh
 from meshes import GeometryError, find_bores, mesh_cad
 from meshes.gmsh_session import gmsh_session
 
@@ -50,9 +50,9 @@ def test_shafts_along_x_of_the_file_lie_along_z_of_the_machine(bored: Path) -> N
     mesh = build_mesh(case)
     np.testing.assert_allclose(mesh.bounds, [[0.0, 0.0, 0.0], [0.09, 0.06, 0.12]], atol=1e-9)
     assert "main" in mesh.surfaces
-    rows = bores_document(mesh)
-    assert [(row["axis"], round(1e3 * row["diameter_m"])) for row in rows] == [("z", 40), ("x", 8)]
-    assert rows[0]["center_m"] == pytest.approx([0.045, 0.03, 0.06], abs=1e-4)
+    rows = bores_along_axes(mesh)
+    assert [(axis, round(1e3 * bore.diameter)) for axis, bore in rows] == [("z", 40), ("x", 8)]
+    assert rows[0][1].center == pytest.approx([0.045, 0.03, 0.06], abs=1e-4)
 
 
 def test_a_turn_is_the_same_as_a_change_of_axes() -> None:

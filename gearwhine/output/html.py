@@ -1,8 +1,8 @@
-"""The page itself: one HTML file with its pictures inside, without scripts, that prints as it reads."""
+"""Report of a results folder: one HTML page with its pictures inside, without scripts, that prints as it reads."""
 
 import base64
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from html import escape
 from pathlib import Path
@@ -11,9 +11,8 @@ from typing import Any
 from gearwhine import __version__
 from gearwhine.analyses.results_folder import results_in
 from gearwhine.case import Case, CaseError, Problem, dump_case
-from gearwhine.output import SUMMARY
-from gearwhine.report.sections import Section, sections_of
-from gearwhine.report.tables import Table
+from gearwhine.output.files import SUMMARY
+from gearwhine.output.sections import NOTHING, Document, Section, Table, is_number
 from gearwhine.stages.contents import file_contents
 
 _DIFFERENCES = 6  # keys of the case that are named
@@ -24,6 +23,7 @@ body { font: 15px/1.5 system-ui, sans-serif; color: #202428; max-width: 64rem; m
 h1 { font-size: 1.5rem; margin-bottom: 0; }
 h2 { font-size: 1.3rem; margin: 2.6rem 0 .4rem; border-bottom: 2px solid #202428; }
 h3 { font-size: 1.1rem; margin-top: 1.8rem; border-bottom: 1px solid #e4e7ea; }
+h4 { font-size: 1rem; margin: 1.2rem 0 .2rem; }
 p { margin: .4rem 0; } .note { color: #6a7178; } .doubt { color: #a33; }
 table { border-collapse: collapse; margin: .8rem 0; }
 caption { text-align: left; color: #6a7178; padding: .2rem 0; }
@@ -35,13 +35,18 @@ img { max-width: 100%; } pre { background: #f5f6f7; padding: .8rem; overflow-x: 
 """
 
 
-def report_page(folder: Path, case: Case | None = None) -> str:
+Chapters = Callable[[Document], Iterable[Section]]
+
+
+def report_page(folder: Path, chapters: Chapters, case: Case | None = None) -> str:
     """All results in a folder as HTML, the newest first, each with when it was made and whether it fits the case.
 
     Parameters
     ----------
     folder
         The output folder of one command or several.
+    chapters
+        Makes the chapters of a command's document.
     case
         Against which the case of each result is held; without it the newest result's.
 
@@ -58,17 +63,17 @@ def report_page(folder: Path, case: Case | None = None) -> str:
         f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head><body>\n'
         f"<h1>{escape(title)}</h1>\n"
         f'<p class="note">gearwhine {escape(__version__)}; amplitudes are peaks unless they say rms.</p>\n'
-        + "".join(_result(folder / own, document, present) for own, document in results)
+        + "".join(_result(folder / own, document, present, chapters) for own, document in results)
         + "</body></html>\n"
     )
 
 
-def _result(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> str:
+def _result(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None, chapters: Chapters) -> str:
     """One command's results."""
     pictures = sorted(path for path in place.glob("*.png") if _is_picture(path))
     shown: set[Path] = set()
     parts = []
-    for section in sections_of(document):
+    for section in chapters(document):
         own = [path for path in pictures if path not in shown and path.name.startswith(section.pictures)]
         shown.update(own)
         parts.append(_section(section, own))
@@ -168,28 +173,23 @@ def _is_picture(path: Path) -> bool:
     return path.is_file() and not path.is_symlink() and path.stat().st_size <= _LARGEST_PICTURE
 
 
-def _section(section: Section, pictures: Sequence[Path]) -> str:
-    sentences = "".join(f"<p>{escape(sentence)}</p>\n" for sentence in section.sentences)
-    tables = "".join(_table(table) for table in section.tables)
-    return f"<h3>{escape(section.title)}</h3>\n{sentences}{tables}{_figures(pictures)}"
+def _section(section: Section, pictures: Sequence[Path], level: int = 3) -> str:
+    heading = f"<h{level}>{escape(section.title + section.note)}</h{level}>\n" if section.title else ""
+    content = "".join(
+        _table(one) if isinstance(one, Table) else f"<p>{escape(one.strip())}</p>\n" for one in section.content
+    )
+    inner = "".join(_section(one, [], level + 1) for one in section.inner)
+    return f"{heading}{content}{inner}{_figures(pictures)}"
 
 
 def _table(table: Table) -> str:
     columns, rows = table.filled()
     # A column is text where none of its values is a number.
-    words = [not any(_is_number(row[place]) for row in rows) for place in range(len(columns))]
+    words = [not any(is_number(row[place]) for row in rows) for place in range(len(columns))]
     head = _row("th", [column.heading for column in columns], words)
-    body = "".join(_row("td", row, words) for row in rows)
+    body = "".join(_row("td", [text if text != NOTHING else "–" for text in row], words) for row in rows)
     caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
     return f"<table>{caption}<thead>{head}</thead><tbody>{body}</tbody></table>\n"
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _row(cell: str, texts: Iterable[str], words: Sequence[bool]) -> str:

@@ -1,0 +1,155 @@
+"""Labelled arrays of a result: its declared quantities with their dimensions and units, in memory or as NetCDF."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine import __version__
+from gearwhine.case import Case, dump_case
+from gearwhine.output.quantity import ABSENT, RPM, Field, Fields, Part, Quantity
+from housing.netcdf import Variables, write_netcdf
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Stream(Protocol):
+    """Arrays that are too long to be held at once: they are written behind the others."""
+
+    def labels(self) -> Variables:
+        """Coordinates along their dimensions, which stand in the file before."""
+
+    def append_to(self, path: Path) -> None:
+        """Write them piece by piece into a file that holds the others."""
+
+    def add_to(self, variables: Variables) -> None:
+        """Add them in memory to the others."""
+
+
+@dataclass(frozen=True)
+class LabelledArrays:
+    """A result as arrays with dimensions, units and long names.
+
+    Attributes
+    ----------
+    variables : mapping of str to (dimensions, values, attributes)
+        A variable that is named for its only dimension is the coordinate along it.
+    scalars : mapping of the same kind
+        Coordinates without a dimension.
+    attributes : mapping of str to str
+        Of the whole.
+    streams : tuple of Stream
+    """
+
+    variables: Variables
+    scalars: Variables
+    attributes: dict[str, str]
+    streams: tuple[Stream, ...] = field(default=())
+
+    def write(self, path: Path) -> None:
+        """Write a NetCDF4 file that any tool opens."""
+        write_netcdf(path, self.variables, self.attributes, coordinates=self.scalars)
+        for stream in self.streams:
+            stream.append_to(path)
+
+    def dataset(self) -> xr.Dataset:
+        """The same as an xarray dataset."""
+        import xarray as xr
+
+        variables = dict(self.variables)
+        for stream in self.streams:
+            stream.add_to(variables)
+        return xr.Dataset(variables, self.scalars, self.attributes)
+
+
+def labelled(case: Case, *parts: tuple[Fields, Any], streams: Sequence[Stream] = ()) -> LabelledArrays:
+    """Solved objects, each with the declaration of its quantities, as labelled arrays; what is None is left out."""
+    variables: Variables = {}
+    for fields, solved in parts:
+        variables |= {} if solved is None else arrays_of(fields, solved)
+    for stream in streams:
+        variables = stream.labels() | variables
+    scalars: Variables = {}
+    if case.operation is not None:
+        told = {"units": "rpm", "long_name": "speed of the first driver"}
+        scalars["speed"] = ((), case.operation.speed * RPM, told)
+    return LabelledArrays(variables, scalars, file_attributes(case), tuple(streams))
+
+
+def file_attributes(case: Case) -> dict[str, str]:
+    """Attributes of every file of results."""
+    return {
+        "title": case.title,
+        "source": f"gearwhine {__version__}",
+        "case": dump_case(case),
+        "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
+    }
+
+
+def arrays_of(fields: Iterable[Field], solved: Any) -> Variables:
+    """The declared quantities of a solved object that have a name in the file, with their labels."""
+    found: Variables = {}
+    _add_fields(fields, [solved], (), found)
+    return found
+
+
+def _add_fields(fields: Iterable[Field], objects: Sequence[Any], along: tuple[str, ...], found: Variables) -> None:
+    """Add the quantities of objects that stand along a dimension, None for those that are missing; or of one alone."""
+    for each in fields:
+        if isinstance(each, Quantity):
+            if each.name:
+                _add_quantity(each, objects, along, found)
+            continue
+        inner = [_taken(each, one) for one in objects]
+        if isinstance(each, Part):
+            if any(one is not None for one in inner):
+                _add_fields(each.fields, inner, along, found)
+        elif each.dimension:
+            rows = [row for one in inner if one is not None for row in one]
+            if rows:
+                _add_fields(each.fields, rows, (each.dimension,), found)
+
+
+def _taken(field: Field, of: Any) -> Any:
+    value = None if of is None else field.of(of)
+    return None if value is ABSENT else value
+
+
+def _add_quantity(quantity: Quantity, objects: Sequence[Any], along: tuple[str, ...], found: Variables) -> None:
+    values = [_taken(quantity, one) for one in objects]
+    known = next((number for number, value in enumerate(values) if value is not None), None)
+    if known is None:
+        return
+    if isinstance(values[known], dict):
+        labels = quantity.dimensions[0]
+        found.setdefault(labels, ((labels,), list(values[known]), {}))
+        values = [None if value is None else np.array(list(value.values())) for value in values]
+    if quantity.name in found and quantity.dimensions != (quantity.name,):
+        raise ValueError(f"{quantity.name!r} is declared twice")
+    told: dict[str, Any] = {} if quantity.unit == "" else {"units": quantity.unit}
+    told |= {} if quantity.long_name == "" else {"long_name": quantity.long_name}
+    told |= {} if quantity.attributes is None else quantity.attributes(objects[known])
+    if quantity.common or not along:
+        found[quantity.name] = (quantity.dimensions, values[known], told)
+    else:
+        found[quantity.name] = ((*along, *quantity.dimensions), _stacked(values, len(quantity.dimensions)), told)
+
+
+def _stacked(values: Sequence[Any], axes: int) -> npt.NDArray[Any]:
+    """Values of all rows in one array; where one is missing or shorter than another, the rest is NaN."""
+    arrays = [np.empty((0,) * axes) if value is None else np.asarray(value) for value in values]
+    shapes = {array.shape for array in arrays}
+    if all(value is not None for value in values) and len(shapes) == 1:
+        return np.array(arrays)
+    shape = tuple(max(lengths) for lengths in zip(*(array.shape for array in arrays), strict=True))
+    whole = np.full((len(arrays), *shape), np.nan)
+    for row, (array, value) in enumerate(zip(arrays, values, strict=True)):
+        if value is not None:
+            whole[row : row + 1][(slice(None), *map(slice, array.shape))] = array
+    return whole

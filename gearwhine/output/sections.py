@@ -1,0 +1,141 @@
+"""Sections of a result: sentences and tables over its document, for the terminal and the report alike.
+
+They read the document by its keys alone, so that the report can be made of the summaries that commands leave in a
+folder.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from gearwhine.output.quantity import Quantity
+
+Document = Mapping[str, Any]
+Row = Mapping[str, Any]
+
+NOTHING = ""
+"""Text of a cell without a value."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """Column of a table.
+
+    Attributes
+    ----------
+    heading : str
+        With the unit.
+    of : str or callable
+        Key of the value in a row, keys of parts before it with points between; or a callable that takes the text of
+        the cell from the row.
+    form : str
+        Format of a number.
+    scale : float
+        Of a number.
+    """
+
+    heading: str
+    of: str | Callable[[Row], str]
+    form: str = ".4g"
+    scale: float = 1.0
+
+    def text(self, row: Row) -> str:
+        """The cell of a row; empty where there is no value."""
+        if not isinstance(self.of, str):
+            return self.of(row)
+        value: Any = row
+        for step in self.of.split("."):
+            value = value.get(step) if isinstance(value, Mapping) else None
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        if isinstance(value, int | float):
+            return format(value * self.scale if self.scale != 1.0 else value, self.form)
+        if isinstance(value, list):
+            return ", ".join(format(entry, self.form) if isinstance(entry, float) else str(entry) for entry in value)
+        return NOTHING if value is None else str(value)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under columns; columns in which no row has anything are left out."""
+
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+    caption: str = ""
+
+    def filled(self) -> tuple[tuple[Column, ...], list[list[str]]]:
+        """The columns that hold something, and the text of each row in them."""
+        texts = {column: [column.text(row) for row in self.rows] for column in self.columns}
+        kept = tuple(column for column in self.columns if any(text != NOTHING for text in texts[column]))
+        return kept, [[texts[column][number] for column in kept] for number in range(len(self.rows))]
+
+
+@dataclass(frozen=True)
+class Section:
+    """Sentences and tables in their order under a title.
+
+    Attributes
+    ----------
+    title : str
+        Empty where the sentences need none.
+    content : tuple of str or Table
+    note : str
+        Beside the title.
+    pictures : tuple of str
+        Words with which the file names of its pictures begin, for the report.
+    inner : tuple of Section
+        Behind its own content.
+    """
+
+    title: str
+    content: tuple[str | Table, ...] = ()
+    note: str = ""
+    pictures: tuple[str, ...] = field(default=())
+    inner: tuple["Section", ...] = ()
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Its own sentences."""
+        return tuple(one for one in self.content if isinstance(one, str))
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """Its own tables."""
+        return tuple(one for one in self.content if isinstance(one, Table))
+
+
+def columns_of(fields: Iterable[object]) -> tuple[Column, ...]:
+    """The columns of declared quantities that have a heading."""
+    return tuple(
+        Column(one.heading, (one.shown if callable(one.shown) else one.key), _form(one), one.scale)
+        for one in fields
+        if isinstance(one, Quantity) and one.heading
+    )
+
+
+def table_of(columns: tuple[Column, ...], rows: Sequence[Row], caption: str = "") -> tuple[Table, ...]:
+    """A table, or none where there are no rows."""
+    return (Table(columns, tuple(rows), caption),) if rows else ()
+
+
+def counted(number: int, what: str) -> str:
+    """A number of things, such as ``1 mode`` and ``2 modes``."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def percent(part: float) -> str:
+    """A part of the whole that is never shown as nothing where there is some."""
+    return "less than 0.01 %" if 0.0 < part < 1e-4 else f"{100 * part:.3g} %"
+
+
+def is_number(text: str) -> bool:
+    """Whether a cell begins with a number and a unit at most: such columns stand to the right."""
+    try:
+        float(text.removesuffix("%").removesuffix("°").strip())
+    except ValueError:
+        return False
+    return True
+
+
+def _form(quantity: Quantity) -> str:
+    return quantity.shown if isinstance(quantity.shown, str) and quantity.shown else ".4g"

@@ -1,0 +1,90 @@
+"""Results on the terminal: the sections of a document, its files and its time."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.padding import Padding
+from rich.table import Table as Grid
+from rich.text import Text
+
+from gearwhine.output.sections import Document, Section, Table, is_number
+
+_WIDTH = 120
+
+
+def open_console() -> Console:
+    """Standard output, as wide as the terminal."""
+    # Without markup a bracket is a bracket: units and the names in a case are printed as they stand.
+    console = Console(highlight=False, markup=False, emoji=False)
+    if console.is_terminal:
+        return console
+    # Where there is no terminal, lines are not cut at the 80 columns that rich then assumes.
+    return Console(highlight=False, markup=False, emoji=False, width=_WIDTH, soft_wrap=True)
+
+
+def shown_by(
+    sections: Callable[[Document], Iterable[Section]], *, timed: bool = False
+) -> Callable[[dict[str, Any]], None]:
+    """Command's way to show its document: by the sections made of it, and the time where it is worth a line."""
+    return lambda document: show(document, sections(document), timed=timed)
+
+
+def show(document: Document, sections: Iterable[Section], *, timed: bool = False) -> None:
+    """Print the title of a case, the sections of its document, where modes come from and which files were written."""
+    console = open_console()
+    if "title" in document:
+        console.print(document["title"], style="bold")
+    for section in sections:
+        show_section(console, section)
+    show_origin(console, document)
+    show_written(console, document)
+    if timed:
+        console.print(f"Time: {document['seconds']['total']:.1f} s")
+
+
+def show_files(document: Document) -> None:
+    """Print which files were written, for commands that show nothing else."""
+    show(document, ())
+
+
+def show_section(console: Console, section: Section, indent: int = 0) -> None:
+    """Print a section; content under a title is set in by two columns."""
+    if section.title:
+        console.print(Text.assemble(" " * indent, (section.title, "bold"), section.note))
+        indent += 2
+    for one in section.content:
+        if isinstance(one, Table):
+            if one.caption:
+                console.print(f"{' ' * indent}{one.caption}")
+            console.print(Padding(_grid(one), (0, 0, 1, indent), expand=False))
+        else:
+            console.print(f"{' ' * indent}{one}")
+    for inner in section.inner:
+        show_section(console, inner, indent)
+
+
+def show_written(console: Console, document: Document) -> None:
+    """The files written; a mode file that was only read is not among them."""
+    read = document["modes_read_from"].rpartition("/")[2] if document.get("reused") else None
+    written = [name for name in document.get("files", ()) if name != read]
+    if written:
+        console.print(f"Written to {document['folder']}: {', '.join(written)}")
+
+
+def show_origin(console: Console, document: Document) -> None:
+    """Where modes were read from in place of being solved for."""
+    if document.get("reused"):
+        console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
+
+
+def _grid(table: Table) -> Grid:
+    columns, rows = table.filled()
+    grid = Grid(box=SIMPLE_HEAD, show_edge=False)
+    for place, column in enumerate(columns):
+        numbers = any(is_number(row[place]) for row in rows)
+        grid.add_column(column.heading, justify="right" if numbers else "left")
+    for row in rows:
+        grid.add_row(*row)
+    return grid

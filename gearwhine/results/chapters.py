@@ -1,0 +1,24 @@
+"""Chapters of the report: those parts of a command's document that are there, each by its own module."""
+
+from collections.abc import Callable
+from typing import Any
+
+from gearwhine.output.sections import Document, Section
+from gearwhine.results import comparison, gears, housing, rotors, run, steady, sweep, system, update
+
+
+def chapters_of(document: Document) -> tuple[Section, ...]:
+    """The chapters of a command's document, those without anything left out."""
+    modes = document.get("housing", document if "certificate" in document and "mesh" in document else {})
+    makers: tuple[tuple[Callable[[Document], Section], Any], ...] = (
+        (housing.report, modes),
+        (comparison.report, document.get("compare", document if "pairing" in document else {})),
+        (update.report, document if "parameters" in document else {}),
+        (rotors.report, document if document.get("rotors") else {}),
+        (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
+        (system.report, document.get("system", document if "stability" in document else {})),
+        (run.report, document if "steps" in document else {}),
+        (sweep.report, document if "points" in document and "axes" in document else {}),
+        (steady.report, document if "motions" in document else {}),
+    )
+    return tuple(make(given) for make, given in makers if given)

@@ -1,0 +1,503 @@
+"""Check of a case: quantities known by arithmetic alone, and how the terminal shows them."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Document, Section, counted
+from gearwhine.progress import Progress, silent
+from gearwhine.results.gears import GEOMETRY
+from gearwhine.results.housing import MESH_SIZE
+from gearwhine.results.mesh import BORE, bore_line, kinds_of_elements
+from gearwhine.stages.geometry import bores_along_axes
+from gearwhine.stages.summary import check_case
+
+if TYPE_CHECKING:
+    from gearwhine.case import Joint, Mount
+    from housing import Joint as BuiltJoint
+
+
+def _given(key: str, of: Any) -> Quantity:
+    """A quantity whose key is left out where there is none."""
+
+    def taken(one: Any) -> Any:
+        found = of(one)
+        return ABSENT if found is None else found
+
+    return Quantity(key, taken)
+
+
+def _part(key: str, of: Any, fields: Any) -> Part:
+    """A part whose key is left out where there is none."""
+
+    def taken(one: Any) -> Any:
+        found = of(one)
+        return ABSENT if found is None else found
+
+    return Part(key, taken, fields)
+
+
+def _bushing(given: "Mount | Joint") -> dict[str, Any]:
+    """Springs and dashpots by motion, those that are not zero; each key with its unit."""
+    document: dict[str, Any] = {"name": given.name}
+    for key, turning_unit, unit in (("stiffness", "n_m_per_rad", "n_per_m"), ("damping", "n_m_s_per_rad", "n_s_per_m")):
+        table = getattr(given, key)
+        if table is None:
+            continue
+        for motion, amount in zip(type(table).model_fields, amounts(table), strict=True):
+            if amount:
+                turning = motion in ("rx", "ry", "rz", "tilting", "torsional")
+                document.setdefault(f"{key}_{turning_unit if turning else unit}", {})[motion] = amount
+    return document
+
+
+def _joint(joint: "Joint") -> dict[str, Any]:
+    """A joint with what it connects."""
+    if joint.surfaces is not None:
+        return _bushing(joint) | {"surfaces": joint.surfaces}
+    return _bushing(joint) | {"diameter_m": joint.diameter, "center_m": joint.center}
+
+
+def _bolt(joint: "BuiltJoint") -> dict[str, Any]:
+    """A bolt of a box's cover with its springs."""
+    shear, _, axial, tilting, _, torsional = joint.bushing.stiffness
+    return {
+        "name": joint.name,
+        "position_m": joint.center,
+        "stiffness_n_per_m": {"axial": axial, "shear": shear},
+        "stiffness_n_m_per_rad": {"tilting": tilting, "torsional": torsional},
+    }
+
+
+def _names(key: str, table: str) -> Quantity:
+    return Quantity(key, lambda checked: [one.name for one in getattr(checked.case.housing, table)])
+
+
+def _of_mesh(key: str, of: Any) -> Quantity:
+    """A quantity of the mesh of a file."""
+    return _given(key, lambda checked: None if checked.mesh.mesh is None else of(checked.mesh.mesh))
+
+
+HOUSING = (
+    Quantity(
+        "geometry",
+        lambda checked: "box" if checked.case.housing.box else "mesh" if checked.case.housing.mesh else "cad",
+    ),
+    Quantity("material", lambda checked: checked.case.housing.material),
+    Quantity("frequency_limit_hz", lambda checked: checked.case.housing.frequency_limit),
+    Quantity("modes", lambda checked: checked.case.housing.modes),
+    _names("seats", "seat"),
+    _names("supports", "support"),
+    Quantity("mounts", lambda checked: [_bushing(mount) for mount in checked.case.housing.mount]),
+    Quantity("joints", lambda checked: [_joint(joint) for joint in checked.case.housing.joint]),
+    Rows(
+        "masses",
+        lambda checked: checked.case.housing.mass,
+        (Quantity("name", lambda mass: mass.name), Quantity("mass_kg", lambda mass: mass.mass)),
+    ),
+    _names("sensors", "sensor"),
+    Quantity(
+        "regions", lambda checked: [f"{region.name} of {region.material}" for region in checked.case.housing.region]
+    ),
+    Quantity("size_m", lambda checked: checked.mesh.size),
+    _given("mesh_size_m", lambda checked: checked.mesh.mesh_size),
+    _given("cover_bolts", lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)]),
+    Rows("bores", lambda checked: ABSENT if checked.mesh.mesh is None else bores_along_axes(checked.mesh.mesh), BORE),
+    _of_mesh("surfaces", lambda mesh: sorted(mesh.surfaces)),
+    _of_mesh("volumes", lambda mesh: sorted(mesh.volumes)),
+    _part("mesh", lambda checked: checked.mesh.mesh if checked.case.housing.mesh else None, MESH_SIZE),
+    _given("kinds", lambda checked: checked.mesh.mesh.kinds if checked.case.housing.mesh else None),
+)
+"""Of a housing as it is given, and of its mesh as far as it is known."""
+
+ROTOR = (
+    Quantity("name", lambda one: one.given.name),
+    Quantity("length_m", lambda one: one.built.length),
+    Quantity("segments", lambda one: len(one.built.segments)),
+    Quantity("couplings", lambda one: sum(isinstance(segment, CouplingSegment) for segment in one.given.segments)),
+    Quantity("mass_kg", lambda one: one.built.mass),
+    Quantity("polar_inertia_kg_m2", lambda one: one.built.polar_inertia),
+    Quantity("speed_rpm", lambda one: None if one.speed is None else one.speed * RPM),
+    Quantity("mass_model", lambda one: one.given.mass),
+)
+"""Of a rotor."""
+
+
+def _span(speeds: Sequence[float]) -> list[float] | None:
+    """First speed, last one and their number."""
+    return [min(speeds) * RPM, max(speeds) * RPM, len(speeds)] if speeds else None
+
+
+def _response_speeds(row: tuple[Case, Any]) -> Sequence[float]:
+    case, rotor = row
+    return response_speeds(case, rotor.name) if rotor.unbalance or rotor.bow else ()
+
+
+def _swinging_torques(row: tuple[Case, Any]) -> int:
+    case, rotor = row
+    torsion = None if case.rotor_analysis is None else case.rotor_analysis.torsional_response
+    return 0 if torsion is None else sum(torque.rotor == rotor.name for torque in torsion.torques)
+
+
+ANALYSIS = (
+    Quantity("rotor", lambda row: row[1].name),
+    Quantity("campbell_rpm", lambda row: _span(campbell_speeds(row[0], row[1].name))),
+    Quantity("response_rpm", lambda row: _span(_response_speeds(row))),
+    Quantity("torques", _swinging_torques),
+)
+"""Of the case and a rotor: at which speeds ``gearwhine rotors`` looks at it, where it does."""
+
+BEARING = (
+    Quantity("name", lambda bearing: bearing.name),
+    Quantity("rotor", lambda bearing: bearing.rotor),
+    Quantity("seat", lambda bearing: bearing.seat),
+    Quantity(
+        "table_rpm",
+        lambda bearing: (
+            None if bearing.speeds is None else [speed * RPM for speed in (bearing.speeds[0], bearing.speeds[-1])]
+        ),
+    ),
+    Quantity("pedestal_kg", lambda bearing: None if bearing.pedestal is None else bearing.pedestal.mass),
+)
+"""Of a bearing of the case."""
+
+PAIR = (
+    Quantity("driver", lambda pair: pair.given.driver),
+    Quantity("driven", lambda pair: pair.given.driven),
+    Quantity("ratio", lambda pair: pair.geometry.ratio),
+    Quantity("contact_ratio", lambda pair: pair.geometry.contact_ratio),
+    Quantity("overlap_ratio", lambda pair: pair.geometry.overlap_ratio),
+    Quantity("total_contact_ratio", lambda pair: pair.geometry.total_contact_ratio),
+    Quantity("centre_distance_m", lambda pair: pair.geometry.working_centre_distance),
+    Quantity("working_pressure_angle_deg", lambda pair: np.degrees(pair.geometry.working_pressure_angle)),
+    Quantity(
+        "backlash_m",
+        lambda pair: {
+            "circumferential": pair.geometry.circumferential_backlash,
+            "normal": pair.geometry.normal_backlash,
+        },
+    ),
+    Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
+    Quantity("mean_force_n", lambda pair: pair.mean_force),
+    Quantity("stiffness_model", lambda pair: pair.given.stiffness.model),
+    Part("geometry", lambda pair: pair.geometry, GEOMETRY),
+)
+"""Of a gear pair."""
+
+_TORQUE_LINE = (
+    Quantity("speed_rpm", lambda line: np.array(line.speed) * RPM),
+    Quantity("torque_n_m", lambda line: line.torque),
+)
+OPERATION = (
+    Quantity("speed_rpm", lambda case: case.operation.speed * RPM),
+    Quantity("torque_n_m", lambda case: case.operation.torque),
+    Rows(
+        "torques",
+        applied_torques,
+        (
+            Quantity("rotor", lambda torque: torque.shaft),
+            Quantity("at_m", lambda torque: torque.at),
+            Quantity("torque_n_m", lambda torque: torque.torque),
+        ),
+    ),
+    _given("gravity_m_per_s2", lambda case: case.operation.gravity),
+    _part(
+        "base",
+        lambda case: case.operation.base,
+        (
+            Quantity("point_m", lambda base: base.point),
+            Quantity("harmonics_hz", lambda base: [one.frequency for one in base.harmonic]),
+            Quantity("over_time", lambda base: base.over_time is not None),
+        ),
+    ),
+    _part("motor", lambda case: case.operation.motor, _TORQUE_LINE),
+    _part("load", lambda case: case.operation.load, _TORQUE_LINE),
+)
+"""Of the operation; motor and load by their torque over speed, as the free speed of a run follows it."""
+
+TRANSIENT = (
+    _given("revolutions", lambda given: given.revolutions if given.run is None else None),
+    _given("recorded_revolutions", lambda given: given.revolutions - given.discard if given.run is None else None),
+    _part(
+        "run",
+        lambda given: given.run,
+        (
+            Quantity("seconds", lambda run: run.duration),
+            Quantity("free", lambda run: run.free),
+            Quantity("times_s", lambda run: run.line[0]),
+            Quantity("speeds_rpm", lambda run: np.array(run.line[1]) * RPM),
+        ),
+    ),
+    _given("discarded_revolutions", lambda given: None if given.run is None else given.discard),
+    Quantity("tolerance", lambda given: given.tolerance),
+)
+"""Of a transient at one speed, or of a run over speed."""
+
+_SURVEY = (
+    Quantity("remarks", lambda survey: survey.remarks),
+    Part(
+        "",
+        lambda survey: survey.modes,
+        (
+            Quantity("frequencies_hz", lambda modes: modes.frequencies / HERTZ),
+            Quantity("damping_ratios", lambda modes: modes.damping_ratios),
+            Quantity("complex", lambda modes: modes.shapes is not None and np.any(np.nan_to_num(modes.shapes).imag)),
+        ),
+    ),
+    Part(
+        "",
+        lambda survey: survey.geometry,
+        (
+            Quantity("points", lambda geometry: len(geometry.positions)),
+            Quantity("degrees_of_freedom", lambda geometry: len(geometry.points)),
+            Quantity("extent_m", lambda geometry: np.ptp(geometry.positions, axis=0)),
+        ),
+    ),
+    _part(
+        "responses",
+        lambda survey: survey.responses,
+        (
+            Quantity("of", lambda responses: responses.motion),
+            Quantity("references", lambda responses: len(responses.reference_points)),
+            Quantity("lines", lambda responses: len(responses.frequencies)),
+            Quantity("from_hz", lambda responses: responses.frequencies[0] / HERTZ),
+            Quantity("to_hz", lambda responses: responses.frequencies[-1] / HERTZ),
+        ),
+    ),
+)
+
+
+def _alignment(given: Any) -> bool | str | None:
+    if given.survey is None or given.survey.geometry is None:
+        return None
+    return given.align if isinstance(given.align, bool) else "landmarks"
+
+
+MEASURED = (
+    _given("frequencies_hz", lambda given: list(given.frequencies or ()) if given.survey is None else None),
+    _given("file", lambda given: None if given.survey is None else str(given.file)),
+    Part("", lambda given: given.survey, _SURVEY),
+    _given("align", _alignment),
+)
+"""Of what was measured on the housing."""
+
+CHECK = (
+    Quantity("title", lambda checked: checked.case.title),
+    _part("housing", lambda checked: None if checked.mesh is None else checked, HOUSING),
+    Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
+    Rows("rotor_analysis", lambda checked: [(checked.case, one) for one in checked.case.rotor] or ABSENT, ANALYSIS),
+    _given("bearings", lambda checked: _bearings(checked.case) or None),
+    Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
+    _part("operation", lambda checked: None if checked.case.operation is None else checked.case, OPERATION),
+    _part("transient", lambda checked: checked.case.transient, TRANSIENT),
+    _part("sweep", lambda checked: checked.case.sweep, (Quantity("speeds", lambda sweep: len(sweep.speeds)),)),
+    _part("measured", lambda checked: checked.case.measured, MEASURED),
+    _given("provenance", lambda checked: checked.case.provenance or None),
+    _given("warnings", lambda checked: checked.warnings or None),
+)
+"""Of a checked case."""
+
+
+def _bearings(case: Case) -> list[dict[str, Any]]:
+    """Every bearing and where it stands, those of the rotors' own files on the ground."""
+    own = {(bearing.rotor, bearing.name) for bearing in case.bearing}
+    return [document_of(BEARING, bearing) for bearing in case.bearing] + [
+        {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}
+        for rotor in case.rotor
+        for bearing in (rotor.saved.bearings if rotor.saved else ())
+        if (rotor.name, bearing.name) not in own
+    ]
+
+
+def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
+    """Everything that follows from the case by arithmetic alone, and what the file of its geometry holds."""
+    return document_of(CHECK, check_case(case, progress))
+
+
+def measured_document(case: Case) -> dict[str, Any]:
+    """What a case says was measured, before anything is solved."""
+    return document_of(MEASURED, case.measured)
+
+
+_WIDTH = 12  # of the column with the names of parts
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """The parts of a case in words, a part's name before its first line."""
+    return tuple(
+        Section(part, tuple(f"{'':{_WIDTH - 2}}{line}" for line in lines), note=f"{'':{_WIDTH - len(part)}}{first}")
+        for part, (first, *lines) in _parts(document)
+    )
+
+
+def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
+    parts = {
+        "housing": _housing_lines(document["housing"]) if "housing" in document else [],
+        "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
+        "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
+        "analysis": [line for one in document.get("rotor_analysis", ()) for line in _analysis_lines(one)],
+        "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair)],
+        "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
+        "transient": [_transient_line(document["transient"])] if "transient" in document else [],
+        "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
+        "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
+        "standing": [f"{key}: {text}" for key, text in document.get("provenance", {}).items()],
+    }
+    return ((part, lines) for part, lines in parts.items() if lines)
+
+
+def _operation_lines(operation: Document) -> Iterator[str]:
+    yield f"{operation['speed_rpm']:.6g} rpm, {operation['torque_n_m']:.6g} N·m"
+    for torque in operation["torques"]:
+        place = "" if torque["at_m"] is None else f" at {1e3 * torque['at_m']:.4g} mm"
+        yield f"torque on {torque['rotor']}{place}: {torque['torque_n_m']:+.6g} N·m about z"
+    for key in ("motor", "load"):
+        if key in operation:
+            points = zip(operation[key]["speed_rpm"], operation[key]["torque_n_m"], strict=True)
+            yield f"{key}: " + ", ".join(f"{torque:.6g} N·m at {speed:.6g} rpm" for speed, torque in points)
+    if "gravity_m_per_s2" in operation:
+        yield "gravity: " + ", ".join(f"{part:g}" for part in operation["gravity_m_per_s2"]) + " m/s²"
+    if "base" in operation:
+        base = operation["base"]
+        moves = [f"{frequency:.6g} Hz" for frequency in base["harmonics_hz"]]
+        yield "base moves: " + ", ".join(moves + ["a table over time"] * base["over_time"])
+
+
+def _measured_lines(given: Document) -> list[str]:
+    """The measured modes; of a file also what was read from it."""
+    lines = []
+    if "frequencies_hz" in given:
+        lines.append(", ".join(f"{one:.6g}" for one in given["frequencies_hz"]) + " Hz")
+    if "points" in given:
+        kind = "" if "frequencies_hz" not in given else f"; {'complex' if given['complex'] else 'real'} shapes"
+        size = " x ".join(f"{1e3 * side:.4g}" for side in given["extent_m"])
+        points = f"{counted(given['points'], 'point')} over {size} mm"
+        lines.append(f"{points}, {counted(given['degrees_of_freedom'], 'measured direction')}{kind}")
+    if "responses" in given:
+        found = given["responses"]
+        lines.append(
+            f"responses in {found['of']} to {counted(found['references'], 'force')}, {found['lines']} lines from "
+            f"{found['from_hz']:.6g} to {found['to_hz']:.6g} Hz"
+        )
+    return lines
+
+
+def _transient_line(given: Document) -> str:
+    tolerance = f"tolerance {given['tolerance']:g}"
+    if "run" not in given:
+        recorded = given["recorded_revolutions"]
+        return f"{given['revolutions']:g} revolutions, the last {recorded:g} recorded; {tolerance}"
+    run = given["run"]
+    speeds = " → ".join(f"{speed:.6g}" for speed in dict.fromkeys(run["speeds_rpm"]))
+    line = f"free from {speeds} rpm" if run["free"] else f"{speeds} rpm"
+    discarded = given["discarded_revolutions"]
+    first = f", the first {discarded:g} revolutions not recorded" if discarded else ""
+    return f"{line} in {run['seconds']:g} s{first}; {tolerance}"
+
+
+def _housing_lines(housing: Document) -> list[str]:
+    shape = {"box": "box", "cad": "CAD file", "mesh": "mesh"}[housing["geometry"]]
+    if "size_m" in housing:
+        shape += f" of {' x '.join(f'{1e3 * length:.6g}' for length in housing['size_m'])} mm"
+    if "mesh_size_m" in housing:
+        shape += f", elements of {1e3 * housing['mesh_size_m']:g} mm"
+    if "mesh" in housing:
+        shape += f", {housing['mesh']['nodes']} nodes, {kinds_of_elements(housing['kinds'])}"
+    limit, count = housing["frequency_limit_hz"], housing["modes"]
+    wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {counted(count, 'mode')}"
+    lines = [f"{shape}, {housing['material']}; {wanted}"]
+    lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("regions", "seats", "supports") if housing[kind]]
+    for kind in ("mounts", "joints"):
+        lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+    if housing.get("cover_bolts"):
+        first, *others = housing["cover_bolts"]
+        lines.append(_bushing_line("cover", first) + (f"; so {counted(len(others), 'more bolt')}" if others else ""))
+    lines += [bore_line(bore) for bore in housing.get("bores", ())]
+    if housing["masses"]:
+        lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
+    return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
+
+
+def _bushing_line(kind: str, bushing: Document) -> str:
+    between = f" ({' to '.join(bushing['surfaces'])})" if "surfaces" in bushing else ""
+    if "diameter_m" in bushing:
+        place = ", ".join(f"{1e3 * value:.6g}" for value in bushing["center_m"])
+        between = f" (circles of {1e3 * bushing['diameter_m']:.6g} mm at {place} mm)"
+    parts = [
+        f"{motion} {amount:.4g} {unit}"
+        for key, unit in (
+            ("stiffness_n_per_m", "N/m"),
+            ("stiffness_n_m_per_rad", "N·m/rad"),
+            ("damping_n_s_per_m", "N·s/m"),
+            ("damping_n_m_s_per_rad", "N·m·s/rad"),
+        )
+        for motion, amount in bushing.get(key, {}).items()
+    ]
+    return f"{kind} {bushing['name']}{between}: {', '.join(parts)}"
+
+
+def _rotor_line(rotor: Document) -> str:
+    speed = "" if rotor["speed_rpm"] is None else f", {rotor['speed_rpm']:+.6g} rpm"
+    length = f"{1e3 * rotor['length_m']:g} mm"
+    parts = f" with {counted(rotor['couplings'], 'coupling')}" if rotor["couplings"] else ""
+    return f"{rotor['name']}: {length}{parts}, {rotor['mass_kg']:.4g} kg, {rotor['mass_model']}{speed}"
+
+
+def _bearing_line(bearing: Document) -> str:
+    line = f"{bearing['name']}: {bearing['rotor']} on {bearing['seat']}"
+    if bearing["pedestal_kg"] is not None:
+        line += f", by a pedestal of {bearing['pedestal_kg']:g} kg"
+    if bearing["table_rpm"] is not None:
+        line += ", tables over {:.6g} to {:.6g} rpm".format(*bearing["table_rpm"])
+    return line
+
+
+def _analysis_lines(analysis: Document) -> Iterator[str]:
+    for key, what in (("campbell_rpm", "Campbell diagram"), ("response_rpm", "response to unbalance and bow")):
+        if analysis[key] is not None:
+            low, high, count = analysis[key]
+            yield f"{analysis['rotor']}: {what} at {counted(count, 'speed')}, {low:.6g} to {high:.6g} rpm"
+    if analysis["torques"]:
+        yield f"{analysis['rotor']}: torsional response to {counted(analysis['torques'], 'torque')}"
+
+
+def _pair_lines(pair: Document) -> list[str]:
+    lines = [
+        f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, {_contact_ratios(pair)}, "
+        f"stiffness {pair['stiffness_model']}",
+        f"shafts {1e3 * pair['centre_distance_m']:.6g} mm apart, working pressure angle "
+        f"{pair['working_pressure_angle_deg']:.4g}°{_backlash(pair['backlash_m'])}",
+    ]
+    lines += [_tooth_line(gear) for gear in pair["geometry"]["gears"]]
+    if pair["mesh_frequency_hz"] is not None:
+        lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
+    return lines
+
+
+def _contact_ratios(pair: Document) -> str:
+    """The contact ratio; of helical gears with the overlap."""
+    text = f"contact ratio {pair['contact_ratio']:.5f}"
+    if pair["overlap_ratio"] == 0.0:
+        return text
+    return f"{text} + overlap {pair['overlap_ratio']:.5f} = {pair['total_contact_ratio']:.5f}"
+
+
+def _tooth_line(gear: Document) -> str:
+    """A gear's circles, and the span over its teeth."""
+    angle = math.degrees(gear["helix_angle_rad"])
+    helix = f", helix {abs(angle):.6g}° {'right' if angle > 0.0 else 'left'}" if angle else ""
+    circles = ", ".join(f"{name} {1e3 * gear['diameters_m'][name]:.6g}" for name in ("tip", "form", "root"))
+    span = gear["span"]
+    measured = "" if span is None else f"; span of {span['teeth']}: {1e3 * span['length_m']:.6g} mm"
+    cut = " (undercut)" if gear["undercut"] else ""
+    return f"{gear['name']}: {gear['teeth']} teeth{helix}, diameters {circles} mm{cut}{measured}"
+
+
+def _backlash(backlash: dict[str, float]) -> str:
+    """The backlash by centre distance and thickness, where there is any that could be measured."""
+    clearance = 1e3 * backlash["circumferential"]
+    return "" if abs(clearance) < 1e-6 else f", backlash of the teeth {clearance:.4g} mm"

@@ -1,0 +1,372 @@
+"""Measured and model modes: quantities of their pairs, MAC and responses, and how terminal and report show them."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, columns_of, counted, table_of
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.stages.response_comparison import ResponseLikeness
+    from housing import Comparison
+    from housing.measured import MappedSurvey
+
+PAIR = (
+    Quantity(
+        "measured_hz",
+        lambda pair: pair.measured / HERTZ,
+        "measured_frequency",
+        (),
+        "Hz",
+        "measured frequency",
+        heading="measured [Hz]",
+        shown=".1f",
+    ),
+    Quantity(
+        "model_hz",
+        lambda pair: pair.model / HERTZ,
+        "model_frequency",
+        (),
+        "Hz",
+        "frequency of the model",
+        heading="model [Hz]",
+        shown=".1f",
+    ),
+    Quantity(
+        "error_percent",
+        lambda pair: pair.error_percent,
+        "frequency_error",
+        (),
+        "percent",
+        "error of the model's frequency",
+        heading="error [%]",
+        shown="+.2f",
+    ),
+    Quantity("measured_mode", lambda pair: pair.measured_mode, "measured_mode", (), "1", "number of the measured mode"),
+    Quantity(
+        "mode", lambda pair: pair.mode, "model_mode", (), "1", "number of the housing mode", heading="mode", shown="d"
+    ),
+    Quantity("mac", lambda pair: pair.mac, heading="MAC", shown=".3f"),
+    Quantity("confidence", lambda pair: pair.confidence, heading="confidence", shown=".2f"),
+    Quantity("strength", lambda pair: pair.strength, heading="strength [1/kg]", shown=".4g"),
+    Quantity("close_modes", lambda pair: pair.close_modes),
+    Quantity("mixed", lambda pair: pair.mixed),
+)
+"""Of a measured mode and its partner in the model."""
+
+ALIKE = (Quantity("modes", lambda pair: [pair.first, pair.second]), Quantity("mac", lambda pair: pair.mac))
+"""Of two modes of one set that the survey finds alike."""
+
+
+def _alike(key: str, of: Any, *, one_frequency: bool | None = None) -> Rows:
+    """Modes that look alike; of measured ones those that are one mode found twice, or those that are not."""
+    return Rows(key, lambda shapes: [pair for pair in of(shapes) if one_frequency in (None, pair.one_frequency)], ALIKE)
+
+
+def _numbers(frequencies: "npt.NDArray[np.float64]") -> Any:
+    return np.arange(1, 1 + len(frequencies))
+
+
+SHAPES = (
+    Quantity(
+        "",
+        lambda shapes: _numbers(shapes.measured_frequencies),
+        "measured",
+        ("measured",),
+        "1",
+        "number of the measured mode",
+    ),
+    Quantity(
+        "",
+        lambda shapes: _numbers(shapes.model_frequencies),
+        "housing_mode",
+        ("housing_mode",),
+        "1",
+        "number of the housing mode",
+    ),
+    Rows(
+        "unpaired_measured",
+        lambda shapes: [(shapes, number) for number in shapes.unpaired_measured],
+        (
+            Quantity("measured_mode", lambda row: row[1]),
+            Quantity("measured_hz", lambda row: row[0].measured_frequencies[row[1] - 1] / HERTZ),
+            Quantity("most_like", lambda row: np.argmax(row[0].mac[:, row[1] - 1]) + 1),
+            Quantity("mac", lambda row: row[0].mac[:, row[1] - 1].max()),
+        ),
+    ),
+    Rows(
+        "unpaired_model",
+        lambda shapes: [(shapes, number) for number in shapes.unpaired_model],
+        (
+            Quantity("mode", lambda row: row[1]),
+            Quantity("model_hz", lambda row: row[0].model_frequencies[row[1] - 1] / HERTZ),
+        ),
+    ),
+    _alike("duplicates", lambda shapes: shapes.measured_look_alikes, one_frequency=True),
+    Part(
+        "look_alikes",
+        lambda shapes: shapes,
+        (
+            _alike("measured", lambda shapes: shapes.measured_look_alikes, one_frequency=False),
+            _alike("model", lambda shapes: shapes.model_look_alikes),
+        ),
+    ),
+    Rows(
+        "close_modes",
+        lambda shapes: shapes.close,
+        (
+            Quantity("modes", lambda group: group.model),
+            Quantity("measured_modes", lambda group: group.measured),
+            Quantity("largest_angle_deg", lambda group: np.degrees(group.largest_angle)),
+        ),
+    ),
+    Part(
+        "auto_mac_off_diagonal",
+        lambda shapes: shapes,
+        (
+            Quantity("model", lambda shapes: shapes.largest_model_likeness),
+            Quantity("measured", lambda shapes: shapes.largest_measured_likeness),
+        ),
+    ),
+    Part(
+        "cross_orthogonality",
+        lambda shapes: shapes,
+        (
+            Quantity("modes", lambda shapes: shapes.orthogonality_modes),
+            Quantity("values", lambda shapes: shapes.cross_orthogonality),
+            Quantity("outside", lambda shapes: shapes.outside),
+            Quantity("missing_because", lambda shapes: shapes.no_orthogonality or None),
+        ),
+    ),
+    Quantity("phase_collinearity", lambda shapes: shapes.collinearity),
+    Quantity("mac", lambda shapes: shapes.mac, "mac", ("housing_mode", "measured"), "1", "modal assurance criterion"),
+    Quantity(
+        "", lambda shapes: shapes.comac, "comac", ("degree_of_freedom",), "1", "coordinate modal assurance criterion"
+    ),
+)
+"""Of measured shapes beside the model's: what is missing, double, close or alike, and how good the survey is."""
+
+COMPARISON = (
+    Rows("pairs", lambda comparison: comparison.pairs, PAIR, "pair"),
+    Quantity("rms_error_percent", lambda comparison: comparison.rms_error_percent),
+    Quantity("max_error_percent", lambda comparison: comparison.max_error_percent),
+    Quantity("pairing", lambda comparison: comparison.pairing),
+    Quantity("band_hz", lambda comparison: [edge / HERTZ for edge in comparison.band]),
+    Quantity("gap", lambda comparison: comparison.gap),
+    Quantity("measures_agree", lambda comparison: comparison.measures_agree),
+    Part("", lambda comparison: comparison.shapes, SHAPES),
+)
+"""Of the pairs of measured and model modes."""
+
+SURVEY = (
+    Quantity("points", lambda survey: len(survey.distances)),
+    Quantity("degrees_of_freedom", lambda survey: survey.matrix.shape[0]),
+    Quantity("rms_distance_m", lambda survey: survey.rms_distance),
+    Quantity("worst_distance_m", lambda survey: survey.distances.max()),
+    Quantity("worst_point", lambda survey: survey.geometry.labels[int(np.argmax(survey.distances))]),
+    Quantity("tolerance_m", lambda survey: survey.tolerance),
+    Quantity("far_points", lambda survey: survey.far),
+    Part(
+        "alignment",
+        lambda survey: ABSENT if survey.alignment is None else survey.alignment,
+        (
+            Quantity("by", lambda alignment: alignment.by),
+            Quantity("rotation", lambda alignment: alignment.motion.rotation),
+            Quantity("translation_m", lambda alignment: alignment.motion.translation),
+            Quantity("turned_degrees", lambda alignment: alignment.motion.angle_degrees),
+            Quantity("rms_m", lambda alignment: alignment.rms),
+            Quantity("largest_m", lambda alignment: alignment.largest),
+            Quantity("other_positions", lambda alignment: len(alignment.others)),
+            Quantity("remarks", lambda alignment: alignment.remarks),
+        ),
+    ),
+)
+"""Of a survey on the model."""
+
+RESPONSES = (
+    Quantity("criterion", lambda likeness: "FRAC"),
+    Quantity("lines", lambda likeness: likeness.n_lines),
+    Quantity("from_hz", lambda likeness: likeness.band[0] / HERTZ),
+    Quantity("to_hz", lambda likeness: likeness.band[1] / HERTZ),
+    Quantity("measured", lambda likeness: likeness.n_measured),
+    Quantity("mean", lambda likeness: likeness.mean),
+    Quantity(
+        "frac",
+        lambda likeness: likeness.frac,
+        document=lambda frac: [[None if np.isnan(value) else value for value in row] for row in frac],
+    ),
+)
+"""Of measured responses beside the model's."""
+
+
+def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> dict[str, Any]:
+    """The comparison as the command's JSON."""
+    shapes = comparison.shapes
+    last = comparison.pairs[-1].measured if shapes is None else float(shapes.measured_frequencies[-1])
+    # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
+    highest = min(float(np.ceil(last / HERTZ / 1000.0) * 1000.0), solved.trusted_limit_hz)
+    count = int(np.count_nonzero(solved.modes.frequencies_hz < highest))
+    return document_of(COMPARISON, comparison) | {"model_modes": {"below_hz": highest, "count": count}}
+
+
+def survey_document(survey: "MappedSurvey") -> dict[str, Any]:
+    """How a survey lies on the model, as the command's JSON."""
+    return document_of(SURVEY, survey)
+
+
+def responses_document(likeness: "ResponseLikeness | str") -> dict[str, Any]:
+    """The likeness of responses as the command's JSON, or why there is none."""
+    return {"missing_because": likeness} if isinstance(likeness, str) else document_of(RESPONSES, likeness)
+
+
+_POOR = 0.3  # MACs between different modes from which on a survey is said to confuse them
+_REAL = 0.9  # modal phase collinearity below which a shape is said to be complex
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: the pairs, and how clear the pairing is."""
+    sentences = [f"Paired by {document['pairing']}."]
+    if document.get("rms_error_percent") is not None:
+        sentences.append(
+            f"Errors: {document['rms_error_percent']:.2f} % root mean square, "
+            f"{document['max_error_percent']:.2f} % at most."
+        )
+    if document.get("gap") is not None:
+        agree = "agree" if document.get("measures_agree") else "do not agree"
+        sentences.append(f"Gap of dominance {document['gap']:.3f}; the three measures {agree}.")
+    pictures = ("comparison", "mac", "auto-mac", "comac", "cross-orthogonality")
+    tables = table_of(columns_of(PAIR), document.get("pairs", ()))
+    return Section("Measured and modelled", (*sentences, *tables), pictures=pictures)
+
+
+_PAIRS = (
+    Column("mode", "mode", "d"),
+    Column("measured [Hz]", "measured_hz", ".0f"),
+    Column("model [Hz]", "model_hz", ".1f"),
+    Column("error", lambda pair: f"{pair['error_percent']:+.2f} %"),
+    Column("MAC", "mac", ".3f"),
+    Column("confidence", "confidence", ".2f"),
+    Column("strength [1/kg]", "strength", ".2e"),
+)
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """The pairs, how clear the pairing is, and how the measured survey lies on the model."""
+    told = _by_shapes(document) if "auto_mac_off_diagonal" in document else _by_dominance(document)
+    survey = _survey(document["survey"]) if "survey" in document else ()
+    return (Section("", (*table_of(_PAIRS, document["pairs"]), *told, *survey)),)
+
+
+def _by_dominance(document: Document) -> Iterator[str]:
+    count, gap = document["model_modes"], document["gap"]
+    agree = "agree" if document["measures_agree"] else "do not all agree"
+    distance = "no other mode in the band"
+    if gap is not None and math.isfinite(gap):
+        distance = f"ln {gap:.3f} (below 0.1 the choice is a coin toss)"
+    yield (
+        f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, "
+        f"rms {document['rms_error_percent']:.2f} %; "
+        f"{counted(count['count'], 'model mode')} below {count['below_hz']:.0f} Hz."
+    )
+    yield f"Gap between the last chosen mode and the next: {distance}; the three measures of dominance {agree}."
+    yield "Such a match is weak evidence where the model was calibrated to these frequencies: see the case's notes."
+
+
+def _by_shapes(document: Document) -> Iterator[str]:
+    """What is missing, double, close or alike, and whether the survey serves."""
+    count = document["model_modes"]
+    held = counted(count["count"], "model mode")
+    if document["pairs"]:
+        yield (
+            f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, "
+            f"rms {document['rms_error_percent']:.2f} %; {held} below {count['below_hz']:.0f} Hz."
+        )
+        yield "Confidence: what the best assignment loses without the pair, as a part of its score; no probability."
+    else:
+        yield f"Paired by {document['pairing']}: no measured mode is like one of {held}."
+    for mode in document["unpaired_measured"]:
+        yield (
+            f"Measured mode {mode['measured_mode']} ({mode['measured_hz']:.0f} Hz) has no partner: most like mode "
+            f"{mode['most_like']}, MAC {mode['mac']:.2f}."
+        )
+    if document["unpaired_model"]:
+        names = ", ".join(f"{mode['mode']} ({mode['model_hz']:.0f} Hz)" for mode in document["unpaired_model"])
+        yield f"Model modes in the measured band that no measured mode is: {names}."
+    for pair in document["duplicates"]:
+        yield f"Measured modes {_both(pair)} may be one mode found twice (MAC {pair['mac']:.2f})."
+    for whose, pairs in document["look_alikes"].items():
+        for pair in pairs:
+            yield (
+                f"The survey cannot tell {whose} modes {_both(pair)} apart (MAC {pair['mac']:.2f}): "
+                "it needs more points."
+            )
+    for group in document["close_modes"]:
+        angle = group["largest_angle_deg"]
+        apart = "" if angle is None or math.isnan(angle) else f", largest angle {angle:.1f}°"
+        yield (
+            f"Modes {_listed(group['modes'])} are close and compared as one space: measured "
+            f"{_listed(group['measured_modes'])}{apart}."
+        )
+    yield from _survey_quality(document)
+    if "responses" in document:
+        yield from _responses(document["responses"])
+    if document["cross_orthogonality"]["missing_because"]:
+        yield f"No cross-orthogonality: {document['cross_orthogonality']['missing_because']}."
+
+
+def _survey_quality(document: Document) -> Iterator[str]:
+    worst = document["auto_mac_off_diagonal"]
+    remark = "; a survey with more points would tell modes apart better" if worst["model"] > _POOR else ""
+    yield (
+        f"Largest MAC between different modes: {worst['measured']:.2f} of the test, {worst['model']:.2f} of the model"
+        f"{remark}."
+    )
+    bent = [number for number, value in enumerate(document["phase_collinearity"], start=1) if value < _REAL]
+    if bent:
+        yield f"Complex shapes (phase collinearity below {_REAL:g}): measured {_listed(bent)}."
+
+
+def _responses(responses: Document) -> Iterator[str]:
+    if "missing_because" in responses:
+        yield f"No likeness of responses: {responses['missing_because']}."
+    elif responses["mean"] is not None:
+        values = [value for row in responses["frac"] for value in row if value is not None]
+        yield (
+            f"Likeness of {counted(len(values), 'response')} over {responses['lines']} lines from "
+            f"{responses['from_hz']:.0f} to {responses['to_hz']:.0f} Hz (FRAC): mean {responses['mean']:.2f}, from "
+            f"{min(values):.2f} to {max(values):.2f}; a resonance a few per cent off costs most of it."
+        )
+
+
+def _survey(survey: Document) -> Iterator[str]:
+    """How the measured survey lies on the model."""
+    yield (
+        f"Survey: {counted(survey['points'], 'point')}, {counted(survey['degrees_of_freedom'], 'measured direction')}; "
+        f"{1e3 * survey['rms_distance_m']:.3g} mm from the surface in the mean, "
+        f"{1e3 * survey['worst_distance_m']:.3g} mm at worst (point {survey['worst_point']})."
+    )
+    if far := survey["far_points"]:
+        shown = ", ".join(far[:10]) + (", …" if len(far) > 10 else "")
+        yield f"Farther than {1e3 * survey['tolerance_m']:.3g} mm: {shown}."
+    if "alignment" in survey:
+        alignment = survey["alignment"]
+        yield (
+            f"Aligned by {alignment['by']}, turned by {alignment['turned_degrees']:.1f}°; "
+            f"{1e3 * alignment['rms_m']:.3g} mm left in the mean, {1e3 * alignment['largest_m']:.3g} mm at most."
+        )
+        for remark in alignment["remarks"]:
+            yield f"Note: {remark}."
+
+
+def _both(pair: Document) -> str:
+    return " and ".join(str(number) for number in pair["modes"])
+
+
+def _listed(numbers: list[int]) -> str:
+    return ", ".join(str(number) for number in numbers)

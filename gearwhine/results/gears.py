@@ -1,0 +1,628 @@
+"""Gear pairs: quantities of geometry, mesh stiffness, transmission error and load, and how they are shown."""
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import coupling.gears
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
+from gearwhine.stages.gear_shapes import doubts
+from gearwhine.stages.gears import backlash_doubts
+
+if TYPE_CHECKING:
+    from gearwhine.stages.gear_analysis import PairAnalysis
+
+_MOST_YIELDING = 0.1
+"""In modules: teeth break before they yield so much."""
+
+
+def _start(gear: coupling.gears.Gear, relief: coupling.gears.TipRelief) -> float:
+    """Roll angle at which a tip relief begins, however that is given [rad]."""
+    return relief.start(gear.roll_angle(gear.tip_radius), gear.base_radius)
+
+
+def _span(row: Any) -> dict[str, Any] | None:
+    # Not every gear can be measured in every way: a face too narrow, teeth too short.
+    with suppress(coupling.gears.GearError):
+        span = coupling.gears.span_measurement(row[1])
+        return {"teeth": span.teeth, "length_m": span.length}
+    return None
+
+
+def _over_balls(row: Any) -> dict[str, Any] | None:
+    with suppress(coupling.gears.GearError):
+        balls = coupling.gears.over_balls(row[1])
+        return {"ball_diameter_m": balls.diameter, "length_m": balls.length}
+    return None
+
+
+def _relief(row: Any) -> dict[str, Any] | None:
+    gear = row[1]
+    relief = gear.tip_relief
+    if relief is None:
+        return None
+    return {"amount_m": relief.amount, "start_roll_angle_rad": _start(gear, relief), "shape": relief.shape}
+
+
+_MM, _MICRO, _MEGA = 1e3, 1e6, 1e-6
+
+GEAR = (
+    Quantity("name", lambda row: row[1].name, heading="[mm]"),
+    Quantity("teeth", lambda row: row[1].teeth, heading="teeth", shown="d"),
+    Quantity("virtual_teeth", lambda row: row[1].virtual_teeth),
+    Quantity("module_m", lambda row: row[1].module),
+    Quantity("pressure_angle_rad", lambda row: row[1].pressure_angle),
+    Quantity("helix_angle_rad", lambda row: row[1].helix_angle),
+    Quantity("lead_m", lambda row: None if row[1].helix_angle == 0.0 else row[1].lead),
+    Quantity("profile_shift", lambda row: row[1].profile_shift, heading="shift [modules]"),
+    Quantity("rack_tip_radius_m", lambda row: row[1].rack_tip_radius),
+    Quantity("undercut", lambda row: row[1].is_undercut),
+    Quantity("face_width_m", lambda row: row[1].face_width if row[2] else None, heading="face", shown=".5g", scale=_MM),
+    Quantity(
+        "diameters_m",
+        lambda row: {
+            "tip": 2.0 * row[1].tip_radius,
+            "reference": 2.0 * row[1].pitch_radius,
+            "base": 2.0 * row[1].base_radius,
+            "form": 2.0 * row[1].form_radius,
+            "root": 2.0 * row[1].root_circle_radius,
+        },
+    ),
+    Quantity(
+        "normal_thickness_m",
+        lambda row: {
+            "reference": coupling.gears.normal_tooth_thickness(row[1], row[1].pitch_radius),
+            "tip": coupling.gears.normal_tooth_thickness(row[1], row[1].tip_radius),
+        },
+    ),
+    Quantity("tip_clearance_m", lambda row: row[0].tip_clearance(row[1]), heading="clearance", shown=".3f", scale=_MM),
+    Quantity(
+        "span",
+        _span,
+        heading="span",
+        shown=lambda row: (
+            "" if row["span"] is None else f"{_MM * row['span']['length_m']:.3f} over {row['span']['teeth']}"
+        ),
+    ),
+    Quantity("over_balls", _over_balls),
+    Quantity("tip_relief", _relief),
+)
+"""Of a pair's geometry, one of its gears, and whether the case gives the face width: proportions and measures."""
+
+_CIRCLES = (
+    *(Column(f"{head} ⌀", f"diameters_m.{key}", ".3f", _MM) for head, key in (("tip", "tip"), ("pitch", "reference"))),
+    *(Column(f"{key} ⌀", f"diameters_m.{key}", ".3f", _MM) for key in ("base", "root")),
+    Column("tip width", "normal_thickness_m.tip", ".3f", _MM),
+)
+
+_PATH_KEYS = {
+    "position_base_pitches": "position",
+    "driver_roll_angle_rad": "driver_roll_angle",
+    "driven_roll_angle_rad": "driven_roll_angle",
+    "driver_radius_m": "driver_radius",
+    "driven_radius_m": "driven_radius",
+    "driver_specific_sliding": "driver_sliding",
+    "driven_specific_sliding": "driven_sliding",
+}
+
+
+def _points(path: coupling.gears.PathOfContact) -> list[dict[str, Any]]:
+    return [
+        {"point": point} | {key: getattr(path, name)[row] for key, name in _PATH_KEYS.items()}
+        for row, point in enumerate(coupling.gears.POINTS_OF_CONTACT)
+    ]
+
+
+def _of_sides(name: str, unit: str, what: str) -> Quantity:
+    """A quantity of the named points on both gears."""
+    return Quantity(
+        "",
+        lambda path: np.array([getattr(path, f"{side}_{name}") for side in ("driver", "driven")]),
+        f"contact_point_{name}",
+        ("side", "contact_point"),
+        unit,
+        f"{what} of the point",
+    )
+
+
+PATH = (
+    Quantity(
+        "",
+        lambda path: list(coupling.gears.POINTS_OF_CONTACT),
+        "contact_point",
+        ("contact_point",),
+        "",
+        "of the driver",
+        common=True,
+    ),
+    Quantity("", lambda path: ["driver", "driven"], "side", ("side",), common=True),
+    Quantity(
+        "",
+        lambda path: path.position,
+        "contact_point_position",
+        ("contact_point",),
+        "1",
+        "place on the path of contact in base pitches",
+    ),
+    _of_sides("roll_angle", "rad", "roll angle"),
+    _of_sides("radius", "m", "distance from the gear's centre"),
+    _of_sides("sliding", "1", "specific sliding"),
+)
+"""Of a path of contact: its named points on both gears."""
+
+
+def _gears(geometry: coupling.gears.GearPairGeometry, widths_given: tuple[bool, bool] = (True, True)) -> list[Any]:
+    gears = (geometry.driver, geometry.driven)
+    return [(geometry, gear, wide) for gear, wide in zip(gears, widths_given, strict=True)]
+
+
+GEOMETRY = (
+    Rows("gears", _gears, GEAR),
+    Quantity("path_of_contact", lambda geometry: _points(coupling.gears.path_of_contact(geometry))),
+)
+"""Of a pair's geometry: the shape of both gears, and the named points of their path of contact."""
+
+_PHASE, _TOOTH = ("mesh_phase",), ("mesh_phase", "tooth_pair")
+CURVES = (
+    Quantity("", lambda found: found.phases, "mesh_phase", _PHASE, "1", "part of the mesh period", common=True),
+    Quantity(
+        "",
+        lambda found: found.stiffness,
+        "mesh_stiffness",
+        _PHASE,
+        "N/m",
+        "mesh stiffness of all pairs on the path of contact",
+    ),
+    Quantity(
+        "",
+        lambda found: found.mesh.tangent_stiffness,
+        "loaded_mesh_stiffness",
+        _PHASE,
+        "N/m",
+        "stiffness of the pairs that touch under the mean torque",
+    ),
+    Quantity(
+        "",
+        lambda found: found.mesh.transmission_error,
+        "transmission_error",
+        _PHASE,
+        "m",
+        "static transmission error under the mean torque, along the line of action",
+    ),
+    Quantity(
+        "",
+        lambda found: found.unloaded,
+        "unloaded_transmission_error",
+        _PHASE,
+        "m",
+        "transmission error without load, along the line of action",
+    ),
+    Quantity(
+        "",
+        lambda found: found.position,
+        "tooth_pair_position",
+        _TOOTH,
+        "1",
+        "place on the path of contact in base pitches",
+    ),
+    Quantity("", lambda found: found.share, "load_share", _TOOTH, "1", "part of the load on the pair"),
+    Quantity(
+        "",
+        lambda found: found.pressure,
+        "contact_pressure",
+        _TOOTH,
+        "Pa",
+        "Hertzian pressure of the pair, the largest over its face",
+    ),
+    Quantity(
+        "",
+        lambda found: found.face_place,
+        "face_place",
+        ("slice",),
+        "m",
+        "distance of the slice from the middle of the face",
+    ),
+    Quantity(
+        "",
+        lambda found: found.mesh.line_loads,
+        "line_load",
+        (*_TOOTH, "slice"),
+        "N/m",
+        "transverse load per face width",
+    ),
+)
+"""Of a pair at even phases of the mesh period."""
+
+HUNTING = (
+    Quantity("", lambda mesh: mesh.phases, "hunting_phase", ("hunting_step",), "1", "mesh periods"),
+    Quantity(
+        "",
+        lambda mesh: mesh.transmission_error,
+        "hunting_transmission_error",
+        ("hunting_step",),
+        "m",
+        "static transmission error under the mean torque",
+    ),
+    Quantity("mean", lambda mesh: mesh.mean_transmission_error),
+    Quantity("peak_to_peak", lambda mesh: mesh.peak_to_peak_transmission_error),
+)
+"""Over the whole hunting period."""
+
+_LOADS = ("harris_load",)
+HARRIS_MAP = (
+    Quantity(
+        "torque_n_m",
+        lambda pair: pair.harris.forces * pair.solved.geometry.driver.base_radius,
+        "harris_torque",
+        _LOADS,
+        "N m",
+        "torque on the driver",
+    ),
+    Quantity("", lambda pair: pair.harris.phases, "harris_phase", ("harris_step",), "1", "part of the mesh period"),
+    Quantity(
+        "",
+        lambda pair: pair.harris.transmission_error,
+        "harris_transmission_error",
+        (*_LOADS, "harris_step"),
+        "m",
+        "static transmission error under the torque",
+    ),
+    Quantity("peak_to_peak_m", lambda pair: pair.harris.peak_to_peak),
+    Quantity("quietest_torque_n_m", lambda pair: pair.harris.quietest * pair.solved.geometry.driver.base_radius),
+)
+"""The transmission error over the mesh period for a range of torques."""
+
+STIFFNESS = (
+    Quantity("mean", lambda pair: pair.solved.contact.mean_stiffness),
+    Quantity("min", lambda pair: pair.stiffness.min()),
+    Quantity("max", lambda pair: pair.stiffness.max()),
+    Quantity("loaded_mean", lambda pair: pair.solved.static.mean_stiffness),
+)
+TRANSMISSION_ERROR = (
+    Quantity("mean", lambda pair: pair.solved.static.mean_transmission_error),
+    Quantity("peak_to_peak", lambda pair: pair.solved.static.peak_to_peak_transmission_error),
+    Quantity(
+        "harmonics",
+        lambda pair: pair.harmonics,
+        "transmission_error_harmonic",
+        ("harmonic",),
+        "m",
+        "peak amplitude of the transmission error at whole multiples of the mesh frequency, from the first",
+    ),
+    Quantity("unloaded_peak_to_peak", lambda pair: float(np.ptp(pair.unloaded))),
+    Part("over_hunting_period", lambda pair: pair.solved.hunting, HUNTING),
+)
+LOAD_SHARING = (
+    Quantity("pairs_in_contact", lambda pair: pair.pairs_in_contact),
+    Quantity("loaded_contact_ratio", lambda pair: pair.loaded_contact_ratio),
+    Quantity("largest_share", lambda pair: pair.shares[1].max()),
+    Quantity("corner_force_n", lambda pair: pair.corner_force),
+    Quantity("position_base_pitches", lambda pair: pair.shares[0]),
+    Quantity("driver_roll_angle_rad", lambda pair: pair.solved.geometry.driver_roll_angle(pair.shares[0])),
+    Quantity("share", lambda pair: pair.shares[1]),
+)
+"""How many pairs of teeth carry for how long, and the part of the load that one has along its path."""
+PRESSURE = (
+    Quantity("max", lambda pair: pair.largest_pressure[0]),
+    Quantity("at_driver_roll_angle_rad", lambda pair: pair.largest_pressure[1]),
+    Quantity("pitch_point", lambda pair: pair.pitch_pressure),
+)
+
+
+def _aim(pair: "PairAnalysis") -> dict[str, Any]:
+    """What the relief is sought for."""
+    given, optimum = pair.given.relief_aim, pair.optimum
+    assert optimum is not None
+    kind = "peak-to-peak" if given is None else "harmonics" if given.sensor is None else "sensor"
+    return {
+        "kind": kind,
+        "sensor": None if given is None else given.sensor,
+        "weights": None if given is None else {str(n): weight for n, weight in given.weights.items()},
+        "unit": "m/s^2" if kind == "sensor" else "m",
+        "without_relief": float(optimum.value_unmodified[0]),
+        "best": float(optimum.value[0]),
+    }
+
+
+def _best_start(side: str) -> Quantity:
+    def of(pair: "PairAnalysis") -> float | None:
+        relief = None if pair.optimum is None else pair.optimum.relief
+        return None if relief is None else _start(getattr(pair.solved.geometry, side), relief)
+
+    return Quantity(f"{side}_start_roll_angle_rad", of)
+
+
+RELIEF = (
+    Quantity("aim", _aim),
+    Quantity("shape", lambda pair: None if pair.optimum.relief is None else pair.optimum.relief.shape),
+    Quantity("amount_m", lambda pair: 0.0 if pair.optimum.relief is None else pair.optimum.relief.amount),
+    Quantity("length_m", lambda pair: None if pair.optimum.relief is None else pair.optimum.relief.length),
+    _best_start("driver"),
+    _best_start("driven"),
+    Quantity("torque_n_m", lambda pair: pair.solved.torque),
+    Quantity("peak_to_peak_m", lambda pair: pair.optimum.peak_to_peak[0]),
+    Quantity("peak_to_peak_without_relief_m", lambda pair: pair.optimum.unmodified[0]),
+    Quantity("peak_to_peak_as_given_m", lambda pair: pair.as_given),
+)
+"""The relief that suits the torque, beside that of the case and none at all."""
+
+
+def _where(present: Any, pair: "PairAnalysis") -> "PairAnalysis | None":
+    return None if present is None else pair
+
+
+PAIR = (
+    Quantity("", lambda pair: pair.label.replace("→", "->"), "gear_pair"),
+    Quantity("driver", lambda pair: pair.solved.pair.driver, heading="driver"),
+    Quantity("driven", lambda pair: pair.solved.pair.driven, heading="driven"),
+    Quantity("model", lambda pair: pair.given.stiffness.model),
+    Quantity("contact_ratio", lambda pair: pair.solved.geometry.contact_ratio, heading="contact ratio", shown=".4f"),
+    Quantity("overlap_ratio", lambda pair: pair.solved.geometry.overlap_ratio),
+    Quantity("total_contact_ratio", lambda pair: pair.solved.geometry.total_contact_ratio),
+    Quantity("centre_distance_m", lambda pair: pair.solved.geometry.working_centre_distance),
+    Quantity("working_pressure_angle_rad", lambda pair: pair.solved.geometry.working_pressure_angle),
+    Quantity("backlash_m", lambda pair: pair.solved.backlash),
+    Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
+    Quantity("torque_n_m", lambda pair: pair.solved.torque),
+    Quantity("mean_force_n", lambda pair: pair.solved.static.force),
+    Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
+    Quantity("path_of_contact", lambda pair: _points(coupling.gears.path_of_contact(pair.solved.geometry))),
+    Part("", lambda pair: coupling.gears.path_of_contact(pair.solved.geometry), PATH),
+    Part("", lambda pair: pair.curves(), CURVES),
+    Part(
+        "",
+        lambda pair: pair.flanks,
+        (
+            Quantity(
+                "",
+                lambda flanks: flanks[0],
+                "flank_roll_angle",
+                ("side", "flank_place"),
+                "rad",
+                "roll angle from form circle to tip",
+            ),
+            Quantity(
+                "",
+                lambda flanks: flanks[1],
+                "flank_deviation",
+                ("side", "flank_place"),
+                "m",
+                "material over the involute",
+            ),
+        ),
+    ),
+    Part("stiffness_n_per_m", lambda pair: pair, STIFFNESS),
+    Part("transmission_error_m", lambda pair: pair, TRANSMISSION_ERROR),
+    Part("load_sharing", lambda pair: _where(pair.shares, pair), LOAD_SHARING),
+    Part("contact_pressure_pa", lambda pair: _where(pair.pressure, pair), PRESSURE),
+    Part("harris_map", lambda pair: _where(pair.harris, pair), HARRIS_MAP),
+    Part("optimal_tip_relief", lambda pair: _where(pair.optimum, pair), RELIEF),
+    Quantity(
+        "roll_angle_rad",
+        lambda pair: 2.0 * np.pi * pair.solved.static.phases / pair.solved.geometry.driver.teeth,
+    ),
+    Quantity("stiffness", lambda pair: pair.stiffness),
+    Quantity("loaded_stiffness", lambda pair: pair.solved.static.tangent_stiffness),
+    Quantity("transmission_error", lambda pair: pair.solved.static.transmission_error),
+    Quantity("unloaded_transmission_error", lambda pair: pair.unloaded),
+)
+"""Of one gear pair under the case's torque; angles in rad, positions in base pitches."""
+
+GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
+"""Of all gear pairs of a case."""
+
+
+def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
+    """The gear pairs as the command's JSON, with warnings where there are any."""
+    warnings = [doubt for pair in pairs for doubt in _doubts(pair)]
+    return document_of(GEARS, pairs) | ({"warnings": warnings} if warnings else {})
+
+
+def _doubts(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
+    """Doubts of the shape and the clearance, and what the mesh at rest does not show, or cannot bear."""
+    solved, geometry = pair.solved, pair.solved.geometry
+    yield from doubts(geometry)
+    yield from backlash_doubts(pair.given, geometry)
+    for gear in (geometry.driver, geometry.driven):
+        if gear.eccentricity > 0.0:
+            message = (
+                f"gear {gear.name!r}: its eccentricity adds {1e6 * gear.eccentricity:.4g} µm once per turn, either "
+                "way, to the transmission error; the motion has it, the curves here are without it"
+            )
+            yield {"name": "runout", "message": message}
+    yielding = solved.static.mean_transmission_error - float(pair.unloaded.mean())
+    if yielding > _MOST_YIELDING * geometry.driver.module:
+        message = (
+            f"{geometry.label}: the teeth yield {1e6 * yielding:.4g} µm under {solved.torque:.4g} N·m, "
+            f"{yielding / geometry.driver.module:.2g} modules; none bear so much, and the model is of small deflections"
+        )
+        yield {"name": "overload", "message": message}
+
+
+_HARMONICS = 4  # of the transmission error, named
+_WORTH_IT = 0.9  # a relief with less than this part of the given one's error is worth naming as better
+OVERVIEW = (
+    *columns_of(PAIR),
+    Column("mean stiffness [N/µm]", "stiffness_n_per_m.mean", ".1f", _MEGA),
+    Column("mean transmission error [µm]", "transmission_error_m.mean", ".2f", _MICRO),
+    Column("peak to peak [µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
+)
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: all pairs beside each other, then each as the terminal shows it."""
+    overview = table_of(OVERVIEW, document["pairs"])
+    inner = sections(document) if all("path_of_contact" in pair for pair in document["pairs"]) else ()
+    return Section("Gears", overview, pictures=("gears-",), inner=inner)
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Each gear pair: geometry, path of contact, stiffness, transmission error, load, and the best relief."""
+    return tuple(
+        Section(
+            f"{pair['driver']} → {pair['driven']}",
+            (*_proportions(pair), *_path(pair), *_mesh(pair), *_load(pair), *_best_relief(pair)),
+            note=f"  mesh stiffness by the model {pair['model']!r}",
+        )
+        for pair in document["pairs"]
+    )
+
+
+def _proportions(pair: Document) -> tuple[Table, ...]:
+    """The proportions of both gears, and what a micrometer reads over some of their teeth."""
+    first = pair["gears"][0]
+    title = f"Gears: module {_MM * first['module_m']:.5g} mm, pressure angle {_degrees(first['pressure_angle_rad'])}"
+    if helix := first["helix_angle_rad"]:
+        title += f", helix angle {_degrees(abs(helix))}, the driver's {'right' if helix > 0.0 else 'left'}-hand"
+    shifted = any(gear["profile_shift"] for gear in pair["gears"])
+    columns = [column for column in columns_of(GEAR) if shifted or column.of != "profile_shift"]
+    return table_of((*columns[:-2], *_CIRCLES, *columns[-2:]), pair["gears"], title)
+
+
+def _path(pair: Document) -> tuple[Table, ...]:
+    """The named points of the path of contact on both gears."""
+    columns = [Column("", "point")]
+    for side in ("driver", "driven"):
+        columns += [
+            Column(f"{side}: roll", partial(_roll, f"{side}_roll_angle_rad")),
+            Column("⌀ [mm]", f"{side}_radius_m", ".3f", 2 * _MM),
+            Column("sliding", partial(_sliding, f"{side}_specific_sliding")),
+        ]
+    title = "Path of contact, with roll angles and specific sliding"
+    return table_of(tuple(columns), pair["path_of_contact"], title)
+
+
+def _degrees(angle: float, form: str = ".5g") -> str:
+    return f"{math.degrees(angle):{form}}°"
+
+
+def _roll(key: str, point: Document) -> str:
+    return _degrees(point[key], ".2f")
+
+
+def _sliding(key: str, point: Document) -> str:
+    """To two places; endless where a flank does not move along itself."""
+    value = point[key]
+    return f"{value:z.2f}" if value is not None and math.isfinite(value) else "-∞"
+
+
+def _mesh(pair: Document) -> list[str]:
+    """How the two stand, how often they mesh, how stiff they are and how they err."""
+    ratio = f"Contact ratio {pair['contact_ratio']:.5f}"
+    if pair["overlap_ratio"]:
+        ratio += f", with the overlap of {pair['overlap_ratio']:.4f} in all {pair['total_contact_ratio']:.4f}"
+    ratio += f"; shafts {_MM * pair['centre_distance_m']:.4f} mm apart"
+    ratio += f", working pressure angle {_degrees(pair['working_pressure_angle_rad'], '.6g')}"
+    lines = [ratio]
+    if pair["backlash_m"] is not None:
+        lines[0] += f", backlash {_MM * pair['backlash_m']:.4g} mm"
+    if pair["mesh_frequency_hz"] is not None:
+        lines.append(f"Mesh frequency {pair['mesh_frequency_hz']:.2f} Hz")
+        lines[-1] += f", torque on the driver {pair['torque_n_m']:.5g} N·m, mesh force {pair['mean_force_n']:.1f} N"
+    stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
+    lines.append(
+        f"Mesh stiffness {_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "
+        f"{_MEGA * stiffness['max']:.2f}"
+    )
+    if pair["mean_force_n"]:
+        lines[-1] += f"; of the teeth that touch under the load {_MEGA * stiffness['loaded_mean']:.2f} in the mean"
+    state = "Static transmission error" if pair["mean_force_n"] else "Transmission error without load"
+    lines.append(f"{state} {_error(error)}")
+    if error["over_hunting_period"]:
+        lines[-1] += " in the first mesh period"
+        lines.append(f"  over the hunting period: {_error(error['over_hunting_period'])}")
+    if error["peak_to_peak"] > 0.0:
+        named = ", ".join(f"{_MICRO * amplitude:.3f}" for amplitude in error["harmonics"][:_HARMONICS])
+        lines.append(f"  at the mesh frequency and its multiples: {named} µm")
+    return lines
+
+
+def _error(error: Document) -> str:
+    return f"{_MICRO * error['mean']:.3f} µm in the mean, {_MICRO * error['peak_to_peak']:.3f} µm peak to peak"
+
+
+def _load(pair: Document) -> list[str]:
+    """Who carries for how long, and how hard the flanks press."""
+    lines = []
+    if sharing := pair["load_sharing"]:
+        parts = ", ".join(f"{count} for {percent(part)}" for count, part in sharing["pairs_in_contact"].items() if part)
+        lines.append(
+            f"Pairs of teeth that carry: {parts} of the time, {sharing['loaded_contact_ratio']:.4f} in the mean; "
+            f"one carries {percent(sharing['largest_share'])} at most"
+        )
+        if sharing["corner_force_n"]:
+            lines.append(f"Corners carry up to {sharing['corner_force_n']:.4g} N beyond the path of contact")
+    if pressure := pair["contact_pressure_pa"]:
+        where = _degrees(pressure["at_driver_roll_angle_rad"], ".2f")
+        lines.append(f"Contact pressure {_MEGA * pressure['max']:.0f} MPa at most, at {where} roll of the driver")
+        if pressure["pitch_point"] is not None:
+            lines[-1] += f"; {_MEGA * pressure['pitch_point']:.0f} MPa at the pitch point"
+    return lines
+
+
+def _best_relief(pair: Document) -> list[str]:
+    """What the given relief does, which torque it suits best, and what would suit the case's torque."""
+    best = pair["optimal_tip_relief"]
+    if best is None:
+        return []
+    without, given, least = (
+        _MICRO * best[f"peak_to_peak_{which}"] for which in ("without_relief_m", "as_given_m", "m")
+    )
+    at = f"at {best['torque_n_m']:.4g} N·m"
+    alike = ", all teeth alike" if pair["transmission_error_m"]["over_hunting_period"] else ""
+    if any(gear["tip_relief"] for gear in pair["gears"]):
+        lines = [
+            f"The relief of {_given(pair)} leaves {given:.2f} µm peak to peak {at}{alike}, none {without:.2f} µm",
+        ]
+        # At the least of the torques, any pair is quiet.
+        if (quietest := pair["harris_map"]["quietest_torque_n_m"]) > pair["harris_map"]["torque_n_m"][0]:
+            lines.append(f"  it is quietest near {quietest:.3g} N·m")
+    else:
+        lines = [f"Without relief {given:.2f} µm peak to peak {at}{alike}"]
+    aim = best["aim"]
+    if best["length_m"] is None:
+        return [*lines, f"No tip relief, the same on both gears, lowers the {_aim_in_words(aim)}: leave it out"]
+    starts = [math.degrees(best[f"{side}_start_roll_angle_rad"]) for side in ("driver", "driven")]
+    text = (
+        f"{_MM * best['amount_m']:.4f} mm on both gears from {_alike(starts, '.2f', '°')} of roll, over "
+        f"{_MM * best['length_m']:.2f} mm of the line of action: {least:.2f} µm"
+    )
+    if aim["kind"] != "peak-to-peak":
+        without_relief, with_best = _value(aim, "without_relief"), _value(aim, "best")
+        lines.append(f"Aim, the {_aim_in_words(aim)}: {without_relief} without relief, {with_best} with the best")
+        return [*lines, f"Best {best['shape']} relief: {text} peak to peak"]
+    close = least > _WORTH_IT * given
+    return [*lines, f"Hardly better would be {text}" if close else f"Best {best['shape']} relief: {text}"]
+
+
+def _aim_in_words(aim: Document) -> str:
+    """What the relief is sought for."""
+    if aim["kind"] == "peak-to-peak":
+        return "peak-to-peak transmission error"
+    if aim["kind"] == "sensor":
+        return f"level at {aim['sensor']}, rms over the multiples of the mesh frequency"
+    weights = ", ".join(f"{weight:.4g} at {n}" for n, weight in aim["weights"].items())
+    return f"weighted harmonics of the mesh frequency ({weights})"
+
+
+def _value(aim: Document, key: str) -> str:
+    return f"{aim[key]:.4g} m/s²" if aim["kind"] == "sensor" else f"{_MICRO * aim[key]:.3f} µm"
+
+
+def _given(pair: Document) -> str:
+    """The reliefs of both gears in short, such as ``0.023/0.025 mm from 24°``."""
+    reliefs = [gear["tip_relief"] for gear in pair["gears"]]
+    amounts = [_MM * relief["amount_m"] if relief else 0.0 for relief in reliefs]
+    starts = [math.degrees(relief["start_roll_angle_rad"]) for relief in reliefs if relief]
+    return f"{_alike(amounts, '.4g', ' mm')} from {_alike(starts, '.4g', '°')}"
+
+
+def _alike(values: Sequence[float], form: str, unit: str) -> str:
+    """Two figures with a stroke between, or one where they read the same."""
+    shown = list(dict.fromkeys(f"{value:{form}}" for value in values))
+    return "/".join(shown) + unit

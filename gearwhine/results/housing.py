@@ -1,0 +1,347 @@
+"""Housing modes: quantities of the modes, their proof and the model's health, how they are shown; shapes as a file."""
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from gearwhine.stages.housing import SolvedHousing
+
+
+class _Mode(NamedTuple):
+    """Mode of the housing: its number from 1, and all that belongs to it alone."""
+
+    number: int
+    frequency: float
+    damping_ratio: float
+    strength: float | None
+    effective_mass: Any
+    survey_shape: "npt.NDArray[np.float64]"
+
+
+def _modes(solved: "SolvedHousing") -> list[_Mode]:
+    frequencies, ratios = solved.modes.frequencies_hz, solved.total_damping_ratios
+    numbers = range(1, len(frequencies) + 1)
+    strengths = [None] * len(numbers) if solved.strengths is None else solved.strengths.acceleration
+    masses = solved.checks["effective_mass"]["fractions"]
+    return [
+        _Mode(*row) for row in zip(numbers, frequencies, ratios, strengths, masses, solved.survey_shapes, strict=True)
+    ]
+
+
+MODE = (
+    Quantity(
+        "number",
+        lambda mode: mode.number,
+        "housing_mode",
+        unit="1",
+        long_name="number of the housing mode",
+        heading="mode",
+        shown="d",
+    ),
+    Quantity(
+        "frequency_hz",
+        lambda mode: mode.frequency,
+        "housing_frequency",
+        unit="Hz",
+        long_name="housing natural frequency",
+        heading="frequency [Hz]",
+        shown=".2f",
+    ),
+    Quantity(
+        "damping_ratio",
+        lambda mode: mode.damping_ratio,
+        "housing_damping_ratio",
+        unit="1",
+        long_name="housing modal damping ratio",
+        heading="damping ratio",
+        shown=".4f",
+    ),
+    Quantity(
+        "strength",
+        lambda mode: mode.strength,
+        "housing_strength",
+        unit="kg-1",
+        long_name="lateral acceleration strength",
+        heading="strength [1/kg]",
+        shown=".4g",
+    ),
+    Quantity("effective_mass", lambda mode: mode.effective_mass),
+    Quantity(
+        "",
+        lambda mode: mode.survey_shape,
+        "survey_shape",
+        ("survey_point", "component"),
+        "kg-0.5",
+        "mass-normalised mode shapes at the survey points",
+    ),
+)
+"""Of one mode."""
+
+CERTIFICATE = (
+    Quantity("limit_hz", lambda certificate: certificate.limit / HERTZ),
+    Quantity("expected", lambda certificate: certificate.expected),
+    Quantity("found", lambda certificate: certificate.found),
+    Quantity("complete", lambda certificate: certificate.complete),
+    Quantity("max_residual", lambda certificate: certificate.max_residual),
+    Quantity("max_overlap", lambda certificate: certificate.max_overlap),
+)
+"""Proof of the modes by the inertia count."""
+
+MESH_SIZE = (
+    Quantity("nodes", lambda mesh: len(mesh.points)),
+    Quantity("elements", lambda mesh: mesh.n_elements),
+    Quantity("dofs", lambda mesh: 3 * len(mesh.points)),
+)
+"""Of a mesh."""
+
+_MOTIONS = ["x", "y", "z", "rotation_x", "rotation_y"]  # of a bearing
+STATIC_ERROR = (
+    Quantity("without_attachments", lambda solved: solved.missing_compliance.max()),
+    Quantity("with_attachments", lambda solved: solved.modes.attachments.proof.error),
+    Quantity("attachments", lambda solved: len(solved.modes.attachments.frequencies)),
+    Quantity(
+        "without_attachments_at",
+        lambda solved: dict(zip(solved.loaded, solved.missing_compliance.max(axis=1), strict=True)),
+    ),
+    Quantity("directions", lambda solved: _MOTIONS),
+    Quantity(
+        "without_attachments_along", lambda solved: dict(zip(solved.loaded, solved.missing_compliance, strict=True))
+    ),
+)
+"""Part of the static compliance that the modes lack where the machine bears on the housing."""
+
+SELECTION = (
+    Quantity("from", lambda solved: list(solved.loaded)),
+    Quantity("to", lambda solved: list(solved.sensors)),
+    Part(
+        "",
+        lambda solved: solved.selection,
+        (
+            Quantity("band_hz", lambda chosen: [edge / HERTZ for edge in chosen.band]),
+            Quantity("tolerance", lambda chosen: chosen.tolerance),
+            Quantity("keep", lambda chosen: chosen.kept + 1),
+            Quantity("ranking", lambda chosen: chosen.ranking + 1),
+            Quantity("strength_m_per_n", lambda chosen: chosen.strength),
+            Quantity("error_left", lambda chosen: chosen.error_left),
+        ),
+    ),
+)
+"""Modes that carry the motion from bearings to sensors, by number from 1."""
+
+ORIGIN = (
+    Quantity("reused", lambda solved: solved.source is not None),
+    Quantity("modes_read_from", lambda solved: ABSENT if solved.source is None else str(solved.source)),
+    Quantity("seconds_when_solved", lambda solved: ABSENT if solved.source is None else solved.record.notes["seconds"]),
+    Quantity("warnings", lambda solved: solved.warnings),
+)
+"""Where the modes come from, for every command that uses them."""
+
+
+def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
+    """The housing, where it has residual attachments whose static error is known."""
+    return None if solved is None or solved.modes.attachments is None else solved
+
+
+HOUSING: Fields = (
+    Quantity("", lambda solved: ["x", "y", "z"], "component", ("component",)),
+    Rows("modes", _modes, MODE, "housing_mode"),
+    Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
+    Part("mesh", lambda solved: solved.mesh, MESH_SIZE),
+    Quantity("mass_kg", lambda solved: solved.mass),
+    Quantity("center_of_mass_m", lambda solved: solved.checks["health"]["center_of_gravity_m"]),
+    Quantity("attached_mass_kg", lambda solved: solved.attached_mass),
+    Quantity(
+        "effective_mass",
+        lambda solved: {key: part for key, part in solved.checks["effective_mass"].items() if key != "fractions"},
+    ),
+    Part("static_error", static_error, STATIC_ERROR),
+    Quantity("health", lambda solved: solved.checks["health"]),
+    Quantity("solid", lambda solved: solved.checks["solid"]),
+    Quantity("seconds", lambda solved: solved.seconds),
+    Quantity(
+        "",
+        lambda solved: solved.survey.positions,
+        "survey_position",
+        ("survey_point", "component"),
+        "m",
+        "survey points on the housing's outer faces",
+    ),
+    Quantity(
+        "", lambda solved: solved.survey.normals, "survey_normal", ("survey_point", "component"), "1", "outward normals"
+    ),
+    Part("", lambda solved: solved, ORIGIN),
+)
+"""Of a solved housing."""
+
+_SELECTED: Fields = (Part("selection", lambda solved: None if solved.selection is None else solved, SELECTION),)
+
+
+def modes_document(solved: "SolvedHousing", *, detail: bool = False) -> dict[str, Any]:
+    """The modes as the command's JSON; in detail also which of them carry the motion from bearings to sensors."""
+    return document_of((*HOUSING, *_SELECTED) if detail else HOUSING, solved)
+
+
+def origin_document(solved: "SolvedHousing | None") -> dict[str, Any]:
+    """Where a housing's modes come from, as every command's JSON says it; nothing without a housing."""
+    return {} if solved is None else document_of(ORIGIN, solved)
+
+
+def write_shapes(path: Path, housing: "SolvedHousing") -> None:
+    """Write the mesh with every mode shape as a point array, for ParaView and its like."""
+    import meshio
+
+    shapes = {
+        f"mode {number:02d}, {frequency:.1f} Hz": shape
+        for number, (frequency, shape) in enumerate(
+            zip(housing.modes.frequencies_hz, housing.modes.shapes, strict=True), start=1
+        )
+    }
+    cells = [(block.kind, block.nodes) for block in housing.mesh.blocks]
+    # Uncompressed: packing shapes takes ten times as long as writing them, and saves a tenth.
+    content = meshio.Mesh(housing.mesh.points, cells, point_data=shapes)
+    meshio.write(path, content, file_format="vtu", compression=None)
+
+
+_SHORT = {"rotation_x": "rot x", "rotation_y": "rot y", "rotation_z": "rot z"}
+_SHOWN = 1e-3  # of effective mass: less is left blank, so that what counts is seen
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: the modes and the proof that none is missing."""
+    sentences = []
+    if certificate := document.get("certificate"):
+        complete = "complete" if certificate.get("complete") else "NOT complete"
+        sentences.append(
+            f"{certificate['found']} modes below {certificate['limit_hz']:.0f} Hz, {complete}: the inertia count "
+            f"demands {certificate['expected']}; largest relative residual {certificate['max_residual']:.0e}."
+        )
+    if mesh := document.get("mesh"):
+        sentences.append(
+            f"{mesh['elements']} elements, {mesh['dofs']} degrees of freedom, {document.get('mass_kg', 0.0):.2f} kg."
+        )
+    tables = table_of(columns_of(MODE), document.get("modes", ()))
+    return Section("Housing modes", (*sentences, *tables), pictures=("modes", "mode-", "gallery"))
+
+
+_MODES = (
+    Column("mode", "number", "d"),
+    Column("frequency [Hz]", "frequency_hz", ".2f"),
+    Column("damping", "damping_ratio", ".4g"),
+    Column("strength [1/kg]", "strength", ".3e"),
+)
+_CHECKS = (
+    Column("check", "name"),
+    Column("value", lambda line: f"{line['value']:.0f}" if line["bound"] == 0 else f"{line['value']:.1e}"),
+    Column("bound", lambda line: "" if line["bound"] is None else f"{line['bound']:.0e}" if line["bound"] else "0"),
+    Column("", lambda line: "" if line["bound"] is None else "ok" if line["ok"] else "look"),
+    Column("what it says", "why"),
+)
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """The modes, the checks of the model that break their bounds, and the static compliance at the bearings."""
+    lines = [line for line in document["health"]["lines"] if line["bound"] is not None]
+    broken = [line for line in lines if not line["ok"]]
+    health: tuple[str | Table, ...] = (
+        *table_of(_CHECKS, broken),
+        f"Health of the model: {len(lines) - len(broken)} of {len(lines)} checks keep their bounds "
+        "(--detail shows all).",
+    )
+    return (Section("", (*_modes_content(document), *health, *_static_error(document))),)
+
+
+def detailed_sections(document: Document) -> tuple[Section, ...]:
+    """The modes with every check, effective masses, the supports, and the modes that carry the forces."""
+    content: tuple[str | Table, ...] = (
+        *_modes_content(document),
+        *table_of(_CHECKS, document["health"]["lines"]),
+        *_static_error(document),
+        *_effective_mass(document),
+        *_supports(document["health"]["supports"], document["effective_mass"]["directions"]),
+    )
+    selection = document["selection"]
+    return (Section("", content if selection is None else (*content, _selection(selection))),)
+
+
+def _modes_content(document: Document) -> tuple[str | Table, ...]:
+    return (*table_of(_MODES, document["modes"]), modes_sentence(document))
+
+
+def modes_sentence(document: Document) -> str:
+    """How many modes, how they are proved, and what they cost."""
+    certificate, mesh = document["certificate"], document["mesh"]
+    return (
+        f"Housing: {counted(certificate['found'], 'mode')} below {certificate['limit_hz']:.5g} Hz, the inertia demands "
+        f"{certificate['expected']}; largest residual {certificate['max_residual']:.0e}; {document['mass_kg']:.2f} kg, "
+        f"{mesh['dofs']} degrees of freedom, {document['seconds']['total']:.1f} s"
+    )
+
+
+def _static_error(document: Document) -> Iterator[str]:
+    if error := document["static_error"]:
+        yield static_error_sentence(error)
+
+
+def static_error_sentence(error: Document) -> str:
+    """The static compliance at the bearings in words."""
+    return (
+        f"Static compliance at the bearings: the modes alone lack up to {100 * error['without_attachments']:.3g} %; "
+        f"with {counted(error['attachments'], 'residual attachment')} {error['with_attachments']:.0e} of it is left."
+    )
+
+
+def _effective_mass(document: Document) -> tuple[Table, ...]:
+    """Effective masses of each mode, and what these, higher ones and the supports have in all."""
+    mass = document["effective_mass"]
+    columns = (
+        Column("mode", "mode"),
+        Column("frequency [Hz]", "frequency"),
+        *(
+            Column(_SHORT.get(name, name), partial(_percent, "parts", place))
+            for place, name in enumerate(mass["directions"])
+        ),
+    )
+    rows = [
+        {"mode": mode["number"], "frequency": f"{mode['frequency_hz']:.2f}", "parts": mode["effective_mass"]}
+        for mode in document["modes"]
+    ]
+    rows += [{"frequency": "these modes", "parts": mass["captured"]}]
+    rows += [{"frequency": "higher modes", "parts": mass["missing"]}]
+    if any(mass["held_by_supports"]):
+        rows += [{"frequency": "fixed patches", "parts": mass["held_by_supports"]}]
+    caption = "Effective modal mass, as a part of the whole; rotations about the centre of gravity"
+    return table_of(columns, rows, caption)
+
+
+def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, ...]:
+    columns = (
+        Column("support", "name"),
+        Column("fixes", lambda support: f"{support['fixes']} of 6" if support["fixes"] else ""),
+        *(Column(_SHORT.get(name, name), partial(_percent, "share", name)) for name in directions),
+    )
+    caption = "What the supports hold of the housing as a whole; shares of the springs' stiffness"
+    return table_of(columns, supports, caption)
+
+
+def _selection(selection: Document) -> str:
+    kept = len(selection["keep"])
+    modes = ", ".join(str(number) for number in selection["keep"]) or "none"
+    low, high = selection["band_hz"]
+    return (
+        f"From {', '.join(selection['from'])} to {', '.join(selection['to'])}, {low:.4g} to {high:.4g} Hz: "
+        f"{kept} of {len(selection['ranking'])} modes carry the receptance to "
+        f"{100 * selection['error_left'][kept]:.2g} % of its largest: {modes}."
+    )
+
+
+def _percent(key: str, direction: str | int, row: Document) -> str:
+    part = row[key][direction]
+    return f"{100 * part:.1f} %" if abs(part) >= _SHOWN else ""

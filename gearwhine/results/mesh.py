@@ -1,0 +1,80 @@
+"""Mesh of the housing: quantities of its size, quality and bores, and how the terminal shows them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Document, Section
+from gearwhine.results.housing import MESH_SIZE
+from gearwhine.stages.geometry import bores_along_axes
+from meshes import Mesh, mesh_quality
+
+BORE = (
+    Quantity("center_m", lambda row: row[1].center),
+    Quantity("diameter_m", lambda row: row[1].diameter),
+    Quantity("length_m", lambda row: row[1].length),
+    Quantity("axis", lambda row: row[0]),
+)
+"""Of a bore: the axis that it lies along, and the bore."""
+
+QUALITY = (
+    Quantity("volume_m3", lambda quality: quality.volume),
+    Quantity("edge_length_m", lambda quality: dict(zip(("min", "median", "max"), quality.edge_length, strict=True))),
+    Quantity("shape_number", lambda quality: dict(zip(("min", "median"), quality.shape, strict=True))),
+)
+"""Of the elements: the shape number is 1 at best."""
+
+MESH = (
+    Part("mesh", lambda mesh: mesh, MESH_SIZE),
+    Quantity("order", lambda mesh: mesh.order),
+    Quantity("kinds", lambda mesh: mesh.kinds),
+    Quantity("surfaces", lambda mesh: {name: sum(map(len, facets)) for name, facets in sorted(mesh.surfaces.items())}),
+    Quantity("volumes", lambda mesh: {name: len(members) for name, members in sorted(mesh.volumes.items())}),
+    Part("", mesh_quality, QUALITY),
+    Rows("bores", bores_along_axes, BORE),
+)
+"""Of a mesh: elements by kind, facets of each surface, elements of each volume, quality and bores."""
+
+
+def mesh_document(mesh: Mesh, warnings: Sequence[Document]) -> dict[str, Any]:
+    """The mesh as the command's JSON."""
+    return document_of(MESH, mesh) | {"warnings": list(warnings)}
+
+
+_KINDS = {
+    "tetra": "tetrahedra of 4 nodes",
+    "tetra10": "tetrahedra of 10 nodes",
+    "hexahedron": "bricks of 8 nodes",
+    "hexahedron20": "bricks of 20 nodes",
+    "hexahedron27": "bricks of 27 nodes",
+    "wedge": "wedges of 6 nodes",
+    "wedge15": "wedges of 15 nodes",
+}
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """The mesh's size and quality."""
+    return (Section("", tuple(_sentences(document))),)
+
+
+def _sentences(document: Document) -> Iterator[str]:
+    edge, shape = document["edge_length_m"], document["shape_number"]
+    yield f"{document['mesh']['nodes']} nodes, {kinds_of_elements(document['kinds'])}"
+    yield f"Volume {document['volume_m3']:.6g} m³; median edge {1e3 * edge['median']:.3g} mm"
+    yield f"Shape number (1 is ideal): median {shape['median']:.2f}, smallest {shape['min']:.2f}"
+    yield f"Surfaces: {', '.join(document['surfaces']) or 'none named'}"
+    yield f"Volumes: {', '.join(document['volumes']) or 'none named'}"
+    for bore in document["bores"]:
+        yield bore_line(bore).capitalize()
+
+
+def kinds_of_elements(kinds: Mapping[str, int]) -> str:
+    """How many elements of which kind, in words."""
+    return " and ".join(f"{count} {_KINDS[kind]}" for kind, count in kinds.items())
+
+
+def bore_line(bore: Document) -> str:
+    """A bore's diameter, axis, place and length."""
+    place = ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in bore["center_m"])
+    along = "" if bore["axis"] == "z" else f" along {bore['axis']}"
+    return f"bore of {1e3 * bore['diameter_m']:.5g} mm{along} at ({place}) mm, {1e3 * bore['length_m']:.4g} mm long"

@@ -1,0 +1,70 @@
+"""Motion of a machine, marched or periodic: the quantities of its gear meshes and the lines of its sensors."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from gearwhine.output.quantity import Quantity
+from gearwhine.output.sections import Column, Document, Table, percent, table_of
+
+_TOLD = 0.03  # an error of a line that is worth its place
+_LINES_OF_A_SENSOR = 6  # in the report
+_HIGHEST = 5  # on the terminal
+
+MESH = (
+    Quantity("driver", lambda row: row[0].driver.name, heading="driver"),
+    Quantity("driven", lambda row: row[0].driven.name, heading="driven"),
+    Quantity("mean_force_n", lambda row: float(row[1].mean_force[row[2]]), heading="mean force [N]", shown=".0f"),
+    Quantity("peak_force_n", lambda row: float(row[1].peak_force[row[2]]), heading="largest force [N]", shown=".0f"),
+    Quantity(
+        "contact_loss_fraction",
+        lambda row: float(row[1].contact_loss[row[2]]),
+        heading="apart [%]",
+        shown=".2f",
+        scale=100.0,
+    ),
+)
+"""Of a gear mesh, figures of the motion by contacts, and the number of the contact that its mean load presses."""
+
+SENSOR_COLUMNS = (
+    Column("sensor", "name"),
+    Column("rms [m/s²]", "rms_m_per_s2", ".3g"),
+    Column(
+        "highest lines: Hz (m/s², peak)",
+        lambda row: "  ".join(_line(line) for line in row.get("peaks", row.get("lines", ()))[:_HIGHEST]),
+    ),
+)
+LINE_COLUMNS = (
+    Column("sensor", "sensor"),
+    Column("line [Hz]", "frequency_hz", ".1f"),
+    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
+    Column("level [dB re 1e-6 m/s²]", "level_db", ".1f"),
+    Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
+    Column("what it is", "name"),
+    Column("mostly by", "by"),
+)
+
+
+def mesh_sentence(pair: Document) -> str:
+    """Forces of a gear mesh in words."""
+    side = " on its back flanks" if pair.get("flanks") == "back" else ""
+    return (
+        f"Gear mesh {pair['driver']} → {pair['driven']}{side}: mean force {pair['mean_force_n']:.0f} N, "
+        f"peak {pair['peak_force_n']:.0f} N, apart {percent(pair['contact_loss_fraction'])} of the time"
+    )
+
+
+def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
+    """The highest lines of each sensor, with the housing mode that has most of each."""
+    rows: list[dict[str, Any]] = []
+    for sensor in sensors:
+        for line in sensor.get(key, ())[:_LINES_OF_A_SENSOR]:
+            parts = line.get("contributions", {}).get("housing_modes", ())
+            rows.append({**line, "sensor": sensor["name"], "by": parts[0]["name"] if parts else None})
+    return table_of(LINE_COLUMNS, rows, "Highest lines of each sensor")
+
+
+def _line(line: Document) -> str:
+    """A sensor's line, such as ``733 (0.58)``; beside it the error that the modal basis may leave, where it counts."""
+    doubt = line.get("uncertainty", 0.0)
+    beside = "" if doubt <= _TOLD else f" ± {100.0 * doubt:.0f} %" if doubt < 1.0 else ", unsure"
+    return f"{line['frequency_hz']:.0f} ({line['amplitude_m_per_s2']:.2g}{beside})"

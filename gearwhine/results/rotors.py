@@ -1,0 +1,752 @@
+"""Rotors: quantities of modes, whirl, critical speeds and responses, and how terminal and report show them."""
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.doubtful import warning
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+
+if TYPE_CHECKING:
+    from gearwhine.stages.rotors import Crossings, SolvedRotor
+    from rotors.rolling import RollingState
+
+_ROTATING = (
+    "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
+    "above its frequency; whirl and its stability are told without it here, and with it by `gearwhine system`"
+)
+
+
+def _in_rpm(speed: float | None) -> float | None:
+    return None if speed is None else speed * RPM
+
+
+def _strain_energy(one: "SolvedRotor") -> dict[str, Any]:
+    """Shares of each planar mode's strain energy in the segments and the bearings, a row for each mode."""
+    segments, bearings = one.lateral.strain_energy_shares(one.rotor.joints)
+    return {"frequency_hz": one.lateral.frequencies / HERTZ, "segments": segments, "bearings": bearings}
+
+
+def _whirl_strain(row: tuple["SolvedRotor", Any]) -> dict[str, Any]:
+    """Shares of each whirl mode's strain energy, in the mean of a cycle, a row for each mode."""
+    one, whirl = row
+    shares = whirl.strain_energy_shares(one.rotor.joints)
+    parts = {"segments": shares.lengths, "bearings": shares.bearings}
+    pedestals = any(bearing.pedestal is not None for bearing in one.bearings)
+    return parts | ({"pedestals": shares.pedestals} if pedestals else {})
+
+
+def _crossings(key: str, of: Any) -> tuple[Rows, Quantity]:
+    """Damped critical speeds of a rotor for one order, or why they are not known; ``of`` takes (rotor, crossings)."""
+
+    def known(whole: Any) -> list[tuple["SolvedRotor", Any]] | None:
+        one, found = of(whole)
+        return None if isinstance(found, str) else [(one, each) for each in found]
+
+    def unknown(whole: Any) -> "Crossings | None":
+        found: Crossings = of(whole)[1]
+        return found if isinstance(found, str) else None
+
+    return Rows(key, known, CROSSING), Quantity(f"why_no_{key}", unknown)
+
+
+CROSSING = (
+    Quantity("speed_rpm", lambda row: row[1].speed * RPM),
+    Quantity("direction", lambda row: row[1].direction),
+    Quantity("axial_share", lambda row: row[1].axial_share),
+    Quantity("log_decrement", lambda row: row[1].log_decrement),
+    Quantity("margin", lambda row: abs(row[1].speed / row[0].operation) - 1.0 if row[0].operation else None),
+)
+"""Of a damped critical speed: the rotor, and the crossing of its Campbell diagram."""
+
+WHIRL = (
+    Quantity("speed_rpm", lambda row: row[1].speed * RPM),
+    Quantity("frequency_hz", lambda row: row[1].frequencies / HERTZ),
+    Quantity("damping_ratio", lambda row: row[1].damping_ratios),
+    Quantity("log_decrement", lambda row: row[1].log_decrements),
+    Quantity("direction", lambda row: row[1].direction),
+    Quantity("axial_share", lambda row: row[1].axial_share),
+    Quantity("stable", lambda row: row[1].stable),
+    Quantity("strain_energy", _whirl_strain),
+)
+"""Of the rotor and its whirl modes at one speed."""
+
+_STEPS = ("campbell_step", "whirl_branch")
+CAMPBELL = (
+    Quantity(
+        "speed_rpm", lambda one: one.campbell.speeds * RPM, "campbell_speed", _STEPS[:1], "rpm", "speed of the rotor"
+    ),
+    Quantity(
+        "frequency_hz",
+        lambda one: one.campbell.frequencies / HERTZ,
+        "campbell_frequency",
+        _STEPS,
+        "Hz",
+        "natural frequency of whirl",
+    ),
+    Quantity(
+        "log_decrement",
+        lambda one: one.campbell.log_decrements,
+        "campbell_log_decrement",
+        _STEPS,
+        "1",
+        "log decrement of whirl",
+    ),
+    Quantity(
+        "direction",
+        lambda one: one.campbell.direction,
+        "campbell_direction",
+        _STEPS,
+        "1",
+        "1 counter-clockwise, -1 clockwise",
+    ),
+    Quantity("axial_share", lambda one: one.campbell.axial_share),
+    Quantity("unstable_from_rpm", lambda one: _in_rpm(one.campbell.unstable_from)),
+    Quantity("proved_at_rpm", lambda one: one.campbell.speeds[one.campbell.proved] * RPM),
+    *_crossings("critical_speeds", lambda one: (one, one.crossings)),
+    Rows(
+        "orders",
+        lambda one: [(one, order, found) for order, found in one.orders.items()],
+        (
+            Quantity("order", lambda row: row[1]),
+            *_crossings("critical_speeds", lambda row: (row[0], row[2])),
+        ),
+    ),
+)
+"""Whirl over speed: a row for each speed, a column for each branch, which keeps its place through its crossings."""
+
+
+def _loaded(row: tuple["SolvedRotor", str]) -> "RollingState":
+    return row[0].rolling[row[1]]
+
+
+def _life(row: tuple["SolvedRotor", str]) -> float | None:
+    """Hours at the speed of operation that 90 % of like bearings reach."""
+    one, name = row
+    return one.lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in one.lives else None
+
+
+ROLLING = (
+    Quantity("", lambda row: f"{row[0].rotor.name}: {row[1]}", "rolling_bearing"),
+    Quantity("name", lambda row: row[1], heading="bearing"),
+    Quantity(
+        "load_n",
+        lambda row: _loaded(row).load[:3],
+        heading="x, y, z [N]",
+        shown=lambda row: ", ".join(f"{load:z.5g}" for load in row["load_n"]),
+    ),
+    Quantity("elements", lambda row: sum(each.count for each in _loaded(row).bearing.rows)),
+    Quantity(
+        "loaded_elements",
+        lambda row: _loaded(row).loaded,
+        heading="loaded",
+        shown=lambda row: f"{row['loaded_elements']} of {row['elements']}",
+    ),
+    Quantity("peak_pressure_pa", lambda row: _loaded(row).peak_pressure, heading="peak [GPa]", shown=".3g", scale=1e-9),
+    Quantity(
+        "stiffness",  # over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad
+        lambda row: _loaded(row).stiffness,
+        heading="stiffness [N/m]",
+        shown=lambda row: ", ".join(f"{row['stiffness'][motion][motion]:.3g}" for motion in range(3)),
+    ),
+    Quantity(
+        "life_h",
+        _life,
+        "rolling_bearing_life",
+        (),
+        "h",
+        "basic rating life L10 by ISO 281 at the speed of operation",
+        heading="rated life L10 [h]",
+        shown=".3g",
+    ),
+    Quantity("displacement_m", lambda row: _loaded(row).displacement[:3]),
+    Quantity("residual", lambda row: _loaded(row).residual),
+)
+"""Of a rotor and the name of one of its rolling bearings, under its load."""
+
+STATIC = (
+    Quantity("gravity_m_per_s2", lambda one: one.weight.deflection.gravity),
+    Quantity("bearings_at_rpm", lambda one: None if one.rest_speed is None else _in_rpm(one.weight.speed)),
+    Rows(
+        "bearings",
+        lambda one: list(
+            zip(one.weight.deflection.bearings, one.weight.deflection.bearing_loads, strict=True),
+        ),
+        (
+            Quantity("name", lambda row: row[0], heading="bearing carries"),
+            Quantity("load_n", lambda row: row[1][:3]),
+            Quantity("moment_n_m", lambda row: row[1][3:]),
+        ),
+    ),
+    Quantity("largest_deflection_m", lambda one: one.weight.largest[0]),
+    Quantity("largest_deflection_at_m", lambda one: one.weight.largest[1]),
+    Quantity("place_m", lambda one: one.weight.places),
+    Quantity("deflection_m", lambda one: one.weight.displacement),
+)
+"""Bearing loads under gravity and the shaft's sag."""
+
+_PROBE = ("response_step",)
+PROBE = (
+    Quantity("", lambda row: f"{row[0].probe.rotor}: {row[0].probe.name}", "probe"),
+    Quantity("", lambda row: row[0].speeds * RPM, "response_speed", _PROBE, "rpm", "speed of the rotor"),
+    Quantity("name", lambda row: row[0].probe.name),
+    Quantity("at_m", lambda row: row[0].probe.at),
+    Quantity("angle_deg", lambda row: math.degrees(row[0].probe.angle)),
+    Quantity(
+        "amplitude_m",
+        lambda row: np.abs(row[0].amplitude),
+        "probe_amplitude",
+        _PROBE,
+        "m",
+        "reading of the probe, zero to peak",
+    ),
+    Quantity(
+        "phase_lag_deg",
+        lambda row: row[0].phase_lag,
+        "probe_phase_lag",
+        _PROBE,
+        "rad",
+        "lag of the reading behind the mark",
+        document=np.degrees,
+    ),
+    Quantity(
+        "major_axis_m", lambda row: row[0].major_axis, "orbit_major_axis", _PROBE, "m", "half the length of the orbit"
+    ),
+    Quantity("largest_amplitude_m", lambda row: row[0].largest[0]),
+    Quantity("largest_at_rpm", lambda row: row[0].largest[1] * RPM),
+    Quantity("operation_amplitude_m", lambda row: None if row[1] is None else np.abs(row[1].amplitude[0])),
+    Quantity("operation_phase_lag_deg", lambda row: None if row[1] is None else np.degrees(row[1].phase_lag[0])),
+)
+"""Of a probe: its reading over speed, and at operation."""
+
+
+def _readings(response: Any) -> list[tuple[Any, Any]]:
+    """Each probe's reading over speed, and the one at operation where there is any."""
+    return list(zip(response.readings, response.at_operation or [None] * len(response.readings), strict=True))
+
+
+RESPONSE = (
+    Quantity("speed_rpm", lambda solved: solved.response.speeds * RPM),
+    Quantity("amplitude_convention", lambda solved: "zero to peak"),
+    Rows("probes", _readings, PROBE, "probe"),
+    Rows(
+        "bearings",
+        lambda solved: [
+            (name, np.abs(solved.response.bearing_forces[:, place, :2]).T)
+            for place, name in enumerate(solved.response.bearings)
+        ],
+        (Quantity("name", lambda row: row[0]), Quantity("force_n", lambda row: row[1])),
+    ),
+)
+"""Readings of probes over speed under unbalance and bow; forces on the bearings over x and y."""
+
+_TORSION = ("torsion_step",)
+TORSION_PROBE = (
+    Quantity("", lambda reading: f"{reading.probe.rotor}: {reading.probe.name}", "torsion_probe"),
+    Quantity(
+        "",
+        lambda reading: reading.frequencies / HERTZ,
+        "torsion_frequency",
+        _TORSION,
+        "Hz",
+        "frequency of the torques",
+    ),
+    Quantity("name", lambda reading: reading.probe.name),
+    Quantity("at_m", lambda reading: reading.probe.at),
+    Quantity(
+        "angle_rad", lambda reading: np.abs(reading.angle), "torsion_angle", _TORSION, "rad", "angle, zero to peak"
+    ),
+    Quantity(
+        "angle_phase_deg",
+        lambda reading: np.angle(reading.angle),
+        "torsion_angle_phase",
+        _TORSION,
+        "rad",
+        "phase of the angle",
+        document=np.degrees,
+    ),
+    Quantity(
+        "torque_n_m",
+        lambda reading: np.abs(reading.torque),
+        "torsion_torque",
+        _TORSION,
+        "N m",
+        "torque in the shaft, zero to peak",
+    ),
+    Quantity(
+        "torque_phase_deg",
+        lambda reading: np.angle(reading.torque),
+        "torsion_torque_phase",
+        _TORSION,
+        "rad",
+        "phase of that torque",
+        document=np.degrees,
+    ),
+    Quantity("largest_angle_rad", lambda reading: reading.largest_angle[0]),
+    Quantity("largest_angle_at_hz", lambda reading: reading.largest_angle[1] / HERTZ),
+    Quantity("largest_torque_n_m", lambda reading: reading.largest_torque[0]),
+    Quantity("largest_torque_at_hz", lambda reading: reading.largest_torque[1] / HERTZ),
+)
+"""Of a probe: angle and torque over frequency."""
+
+TORSION = (
+    Quantity("frequency_hz", lambda solved: solved.response.frequencies / HERTZ),
+    Quantity("damping_ratio", lambda solved: solved.response.damping_ratio),
+    Quantity("amplitude_convention", lambda solved: "zero to peak"),
+    Rows("probes", lambda solved: solved.readings, TORSION_PROBE, "torsion_probe"),
+    Quantity("largest_torque_n_m", lambda solved: solved.worst[0]),
+    Quantity("largest_torque_at_m", lambda solved: solved.worst[1]),
+    Quantity("largest_torque_at_hz", lambda solved: solved.worst[2] / HERTZ),
+)
+"""Torsional response to torques that swing."""
+
+
+def _critical_speed_map(whirl: str, direction: int) -> Quantity:
+    """Critical speeds over the stiffness of all bearings, in one sense of whirl."""
+    return Quantity(
+        f"{whirl}_critical_speeds_rpm",
+        lambda found: found.speeds * RPM if found.direction == direction else ABSENT,
+        "map_critical_speed",
+        ("map_step", "map_curve"),
+        "rpm",
+        f"undamped critical speeds of {whirl} whirl",
+    )
+
+
+STIFFNESS_MAP = (
+    Quantity(
+        "stiffness_n_per_m",
+        lambda found: found.stiffnesses,
+        "map_stiffness",
+        ("map_step",),
+        "N/m",
+        "stiffness of every bearing",
+        common=True,
+    ),
+    _critical_speed_map("forward", 1),
+    _critical_speed_map("backward", -1),
+)
+
+CERTIFICATE = (
+    Quantity("limit_hz", lambda certificate: certificate.limit / HERTZ),
+    Quantity("expected", lambda certificate: certificate.expected),
+    Quantity("found", lambda certificate: certificate.found),
+    Quantity("complete", lambda certificate: certificate.complete),
+    Quantity("max_residual", lambda certificate: certificate.max_residual),
+)
+"""Proof of the frequencies at rest by their count."""
+
+ROTOR = (
+    Quantity("name", lambda one: one.rotor.name, "rotor", heading="rotor"),
+    Quantity("mass_kg", lambda one: one.rotor.mass, heading="mass [kg]", shown=".3f"),
+    Quantity("length_m", lambda one: one.rotor.length),
+    Quantity("bearings", lambda one: [bearing.name for bearing in one.bearings]),
+    Quantity(
+        "",
+        lambda one: one.rest.frequencies / HERTZ,
+        "rotor_rest_frequency",
+        ("rest_mode",),
+        "Hz",
+        "lateral natural frequencies at rest, both planes",
+    ),
+    Quantity(
+        "lateral_hz",
+        lambda one: one.rest.frequencies[one.lateral_at_rest] / HERTZ,
+        heading="bending at rest [Hz]",
+        shown=".1f",
+    ),
+    Quantity("lateral_axial_share", lambda one: one.rest.axial_share[one.lateral_at_rest]),
+    Quantity(
+        "torsional_hz",
+        lambda one: one.torsional.frequencies / HERTZ,
+        "rotor_torsional_frequency",
+        ("torsional_mode",),
+        "Hz",
+        "free torsional natural frequencies",
+        heading="torsion [Hz]",
+        shown=".1f",
+    ),
+    Quantity("axial_hz", lambda one: one.axial / HERTZ, heading="along the axis [Hz]", shown=".1f"),
+    Quantity("", lambda one: one.places, "rotor_place", ("place",), "m", "distance from the rotor's left end"),
+    Quantity(
+        "",
+        lambda one: one.lateral.evaluate(one.places)[0],
+        "rotor_lateral_shape",
+        ("lateral_mode", "place"),
+        "kg-0.5",
+        "orthonormal lateral mode shapes",
+    ),
+    Quantity(
+        "",
+        lambda one: one.torsional.evaluate(one.places),
+        "rotor_torsional_shape",
+        ("torsional_mode", "place"),
+        "kg-0.5 m-1",
+        "orthonormal torsional mode shapes",
+    ),
+    Quantity("strain_energy", _strain_energy),
+    Quantity("rest_bearings_at_rpm", lambda one: _in_rpm(one.rest_speed)),
+    Quantity("operation_rpm", lambda one: _in_rpm(one.operation)),
+    Rows("whirl", lambda one: [(one, whirl) for whirl in one.whirl], WHIRL),
+    Quantity(
+        "",
+        lambda one: one.whirl_deflection,
+        "rotor_whirl_deflection",
+        ("whirl_mode", "place"),
+        "kg-0.5",
+        "largest deflection over a cycle of the whirl modes at operation, of unit norm in mass",
+    ),
+    Quantity(
+        "",
+        lambda one: one.whirl_moment,
+        "rotor_whirl_moment",
+        ("whirl_mode", "place"),
+        "N kg-0.5",
+        "largest bending moment over a cycle of the whirl modes at operation, of unit norm in mass",
+    ),
+    Quantity(
+        "critical_speeds_rpm", lambda one: one.critical.speeds * RPM, heading="critical speeds [rpm]", shown=".0f"
+    ),
+    Quantity("critical_directions", lambda one: one.critical.direction.round(6)),
+    Quantity("critical_axial_share", lambda one: one.critical.axial_share),
+    Quantity("critical_margins", lambda one: one.margins),
+    Part("campbell", lambda one: None if one.campbell is None else one, CAMPBELL),
+    Part("static", lambda one: ABSENT if isinstance(one.weight, str) else one, STATIC),
+    Part(
+        "static",
+        lambda one: one if isinstance(one.weight, str) else ABSENT,
+        (Quantity("bearings", lambda one: None), Quantity("why_not", lambda one: one.weight)),
+    ),
+    Part("unbalance_response", lambda one: one.response, RESPONSE),
+    Rows("rolling_bearings", lambda one: [(one, name) for name in one.rolling], ROLLING, "rolling_bearing"),
+    Quantity(
+        "damping", lambda one: "of the bearings; that of the shaft and of its couplings acts in the coupled system"
+    ),
+    Part("torsional_response", lambda one: one.torsion, TORSION),
+    Part("stiffness_map", lambda one: one.stiffness_map, STIFFNESS_MAP),
+    Part("certificate", lambda one: one.rest.certificate, CERTIFICATE),
+)
+"""Of one rotor on grounded bearings."""
+
+ROTORS = (Rows("rotors", lambda solved: solved, ROTOR, "rotor"),)
+"""Of all rotors of a case."""
+
+
+def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
+    """The rotors as the command's JSON, with warnings."""
+    warnings = [
+        warning("rotating damping", _ROTATING.format(one.rotor.name), rotor=one.rotor.name)
+        for one in solved
+        if one.damps_across
+    ]
+    return document_of(ROTORS, solved) | {"warnings": warnings}
+
+
+_MOST = 12  # rows of a table
+_MAP_ROWS = 5  # of the critical-speed map
+_REACH = 2.0  # critical speeds beyond so many times the speed of operation are only counted
+_MOSTLY_AXIAL, _PARTLY_AXIAL = 0.9, 0.05  # parts of the kinetic energy: of a motion called axial, and worth a word
+_PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
+_NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
+_ROUNDING = 1e-9  # a torque that is no more than this part of the largest is none
+_SAME = 1e-9  # two frequencies nearer than this part of them are one that both planes have
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: all rotors beside each other, then each as the terminal shows it."""
+    overview = table_of(columns_of(ROTOR), document["rotors"])
+    pictures = ("rotor", "shaft", "campbell-rotor", "critical", "unbalance")
+    return Section("Rotors", overview, pictures=pictures, inner=sections(document))
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Each rotor at rest and at speed, its critical speeds, and the proof of the list."""
+    return tuple(
+        Section(
+            rotor["name"],
+            tuple(_content(rotor)),
+            note=f"  {rotor['mass_kg']:.5g} kg, {1e3 * rotor['length_m']:.5g} mm long",
+        )
+        for rotor in document["rotors"]
+    )
+
+
+def _content(rotor: Document) -> Iterator[str | Table]:
+    yield from _at_rest(rotor)
+    yield from _whirl(rotor)
+    yield from _critical_speeds(rotor)
+    yield from table_of(columns_of(ROLLING), rotor["rolling_bearings"], "Rolling bearings under their loads")
+    yield from _weight(rotor["static"])
+    if response := rotor["unbalance_response"]:
+        yield from table_of(_PROBES, response["probes"][:_MOST], "Response to unbalance and bow")
+    if response := rotor["torsional_response"]:
+        yield from _torsion(response)
+    if found := rotor["stiffness_map"]:
+        yield from _map(found)
+    if campbell := rotor["campbell"]:
+        yield _stability(campbell)
+    certificate = rotor["certificate"]
+    yield (
+        f"Bending at rest complete below {certificate['limit_hz']:.5g} Hz: {certificate['found']} found, "
+        f"{certificate['expected']} counted"
+    )
+
+
+def _at_rest(rotor: Document) -> tuple[Table, ...]:
+    """Frequencies at rest with their kind, ascending as far as bending and torsion are both listed."""
+    bending = list(_bending(rotor["lateral_hz"], rotor["lateral_axial_share"]))
+    torsion = [(hertz, "torsion" if hertz > 0.0 else "turns freely") for hertz in rotor["torsional_hz"]]
+    axial = [(hertz, "axial") for hertz in rotor["axial_hz"]]
+    known = min(rows[-1][0] for rows in (bending, torsion) if rows) if bending or torsion else 0.0
+    found = sorted([*bending, *torsion, *axial], key=lambda row: row[0])
+    rows = [{"frequency_hz": hertz, "kind": kind} for hertz, kind in found if hertz <= known]
+    columns = (Column("frequency [Hz]", "frequency_hz", ".5g"), Column("kind", "kind"))
+    return table_of(columns, rows[:_MOST], f"At rest{_with_bearings_at(rotor['rest_bearings_at_rpm'])}")
+
+
+def _with_bearings_at(speed: float | None) -> str:
+    """Which of their tables' speeds bearings are taken at; None: they have no tables."""
+    return "" if speed is None else f", with the bearings' coefficients at {speed:.6g} rpm"
+
+
+def _bending(frequencies: Sequence[float], axial_shares: Sequence[float]) -> Iterator[tuple[float, str]]:
+    place = 0
+    while place < len(frequencies):
+        frequency = frequencies[place]
+        double = place + 1 < len(frequencies) and frequencies[place + 1] - frequency <= _SAME * frequencies[place + 1]
+        kind = "bending" if frequency > 0.0 else "moves freely"
+        planes = "both planes" if double else "one plane"
+        yield frequency, f"{kind}, {planes}{_with_axial(axial_shares[place])}"
+        place += 2 if double else 1
+
+
+_WHIRL_COLUMNS = (
+    Column("frequency [Hz]", "frequency_hz", ".5g"),
+    Column("whirl", lambda row: _whirl_name(math.copysign(1.0, row["speed_rpm"]) * row["direction"], row)),
+    Column("log decrement", lambda row: "0" if _state(row) == "undamped" else f"{row['log_decrement']:.3g}"),
+    Column("", lambda row: _state(row)),
+    Column("most strain energy", "strained"),
+)
+
+
+def _whirl(rotor: Document) -> tuple[Table, ...]:
+    """Whirl at operation, which comes first; without operation, at the last speed of the sweep."""
+    if not rotor["whirl"]:
+        return ()
+    whirl = rotor["whirl"][0 if rotor["operation_rpm"] is not None else -1]
+    keys = ("frequency_hz", "direction", "axial_share", "log_decrement", "damping_ratio")
+    values = zip(*(whirl[key] for key in keys), _strained_most(rotor["bearings"], whirl["strain_energy"]), strict=True)
+    rows = [{"speed_rpm": whirl["speed_rpm"]} | dict(zip((*keys, "strained"), row, strict=True)) for row in values]
+    return table_of(_WHIRL_COLUMNS, rows[:_MOST], f"Turning at {whirl['speed_rpm']:.6g} rpm")
+
+
+def _state(row: Document) -> str:
+    damping = row["damping_ratio"]
+    return "GROWS" if damping < -_NEUTRAL else "undamped" if damping <= _NEUTRAL else "decays"
+
+
+def _strained_most(bearings: Sequence[str], shares: dict[str, Any]) -> Iterator[str]:
+    """For each mode the part with the largest share of its strain energy; nothing for one that strains nothing."""
+    names = {
+        "segments": [f"segment {number}" for number in range(1, len((shares["segments"] or [[]])[0]) + 1)],
+        "bearings": list(bearings),
+        "pedestals": [f"pedestal of {name}" for name in bearings],
+    }
+    for mode in range(len(shares["segments"])):
+        parts = [part for kind, rows in shares.items() for part in zip(rows[mode], names[kind], strict=True)]
+        share, name = max(parts)
+        yield f"{100.0 * share:.0f} % {name}" if share > 0.0 else ""
+
+
+_CRITICAL_COLUMNS = (
+    Column("speed [rpm]", lambda row: f"{abs(row['speed_rpm']):.5g}"),
+    Column("whirl", lambda row: _whirl_name(row["way"], row)),
+    Column(
+        "log decrement",
+        lambda row: (
+            ""
+            if "log_decrement" not in row
+            else f"{row['log_decrement']:.3g}"
+            if abs(row["log_decrement"]) > _NEUTRAL
+            else "0"
+        ),
+    ),
+    Column("from operation", lambda row: "" if row["margin"] is None else _beside(row["margin"])),
+)
+
+
+def _critical_speeds(rotor: Document) -> Iterator[str | Table]:
+    """Critical speeds: where the Campbell diagram has them, damped; without a diagram, undamped."""
+    campbell = rotor["campbell"]
+    if campbell is None or campbell["critical_speeds"] is None:
+        yield from _undamped(rotor)
+        if campbell is not None:
+            yield f"No damped critical speeds: {campbell['why_no_critical_speeds']}"
+    else:
+        rows = [one | {"way": _turning(campbell) * one["direction"]} for one in campbell["critical_speeds"]]
+        yield from table_of(_CRITICAL_COLUMNS, rows[:_MOST], f"Critical speeds from {_span(campbell)}")
+        if not rows:
+            undamped = rotor["critical_speeds_rpm"]
+            lowest = f"; undamped, the lowest is {undamped[0]:.5g} rpm" if undamped else ""
+            yield f"No critical speed from {_span(campbell)}{lowest}"
+        yield from _nearest(rows)
+    if campbell is not None and campbell["orders"]:
+        yield from _orders(campbell)
+
+
+def _undamped(rotor: Document) -> Iterator[str | Table]:
+    """Undamped critical speeds, and how far they are from the speed of operation; with one only the first beyond."""
+    speeds, margins = rotor["critical_speeds_rpm"], rotor["critical_margins"]
+    values = zip(
+        speeds,
+        rotor["critical_directions"],
+        rotor["critical_axial_share"],
+        [None] * len(speeds) if margins is None else margins,
+        strict=True,
+    )
+    rows = [dict(zip(("speed_rpm", "way", "axial_share", "margin"), one, strict=True)) for one in values]
+    reach = len(rows) if margins is None else sum(margin <= _REACH - 1.0 for margin in margins) + 1
+    yield from table_of(_CRITICAL_COLUMNS, rows[: min(reach, _MOST)], "Undamped critical speeds")
+    yield from _nearest(rows)
+
+
+def _nearest(rows: Sequence[Document]) -> Iterator[str]:
+    """The critical speed nearest to operation of those that unbalance excites."""
+    # Circular backward whirl takes no work from unbalance.
+    excited = [row for row in rows if row["margin"] is not None and row["way"] >= -1.0 + _PLANAR]
+    if excited:
+        row = min(excited, key=lambda one: (abs(one["margin"]), abs(one["speed_rpm"])))
+        speed, margin = abs(row["speed_rpm"]), row["margin"]
+        yield f"Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation"
+
+
+def _orders(campbell: Document) -> Iterator[str | Table]:
+    """Where whirl has another multiple of the speed of rotation for its frequency."""
+    rows: list[dict[str, Any]] = []
+    for one in campbell["orders"]:
+        order = f"{one['order']:g}×"
+        if one["critical_speeds"] is None:
+            rows.append({"order": order, "speed": one["why_no_critical_speeds"], "whirl": ""})
+        for each in one["critical_speeds"] or ():
+            whirl = _whirl_name(_turning(campbell) * each["direction"], each)
+            rows.append({"order": order, "speed": f"{abs(each['speed_rpm']):.5g}", "whirl": whirl})
+    columns = (Column("order", "order"), Column("speed [rpm]", "speed"), Column("whirl", "whirl"))
+    yield from table_of(columns, rows[: 2 * _MOST], f"Other orders from {_span(campbell)}")
+    if not rows:
+        yield f"None of the other orders meets a whirl frequency from {_span(campbell)}"
+
+
+def _weight(static: Document) -> Iterator[str | Table]:
+    """What the bearings carry of the rotor's weight, and how far it sags."""
+    if static["bearings"] is None:
+        yield f"No static deflection: {static['why_not']}"
+        return
+    columns = (
+        Column("bearing carries", "name"),
+        *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xy")),
+    )
+    yield from table_of(columns, static["bearings"], f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}")
+    sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
+    yield f"It sags most at {place:.5g} mm, by {sag:.3g} µm"
+
+
+def _load(axis: int, bearing: Document) -> str:
+    return f"{bearing['load_n'][axis]:z.5g}"
+
+
+_PROBES = (
+    Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm, {row['angle_deg']:.0f}°"),
+    Column("at operation [µm, peak]", "operation_amplitude_m", ".3g", 1e6),
+    Column(
+        "lag",
+        lambda row: "" if row["operation_phase_lag_deg"] is None else f"{row['operation_phase_lag_deg']:.0f}°",
+    ),
+    Column(
+        "largest [µm, peak]",
+        lambda row: f"{1e6 * row['largest_amplitude_m']:.3g} at {row['largest_at_rpm']:.5g} rpm",
+    ),
+)
+
+
+def _torsion(response: Document) -> Iterator[str | Table]:
+    """The largest angle and torque at each probe, and the largest torque of the whole shaft."""
+    nothing = _ROUNDING * response["largest_torque_n_m"]
+    columns = (
+        Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm"),
+        Column(
+            "largest angle [mrad, peak]",
+            lambda row: f"{1e3 * row['largest_angle_rad']:.3g} at {row['largest_angle_at_hz']:.5g} Hz",
+        ),
+        Column(
+            "largest torque [N m, peak]",
+            lambda row: (
+                f"{row['largest_torque_n_m']:.4g} at {row['largest_torque_at_hz']:.5g} Hz"
+                if row["largest_torque_n_m"] > nothing
+                else "0"
+            ),
+        ),
+    )
+    low, high = response["frequency_hz"][0], response["frequency_hz"][-1]
+    title = f"Response to torques from {low:.5g} to {high:.5g} Hz"
+    yield from table_of(columns, response["probes"][:_MOST], title)
+    yield (
+        f"The shaft carries most at {1e3 * response['largest_torque_at_m']:.5g} mm: "
+        f"{response['largest_torque_n_m']:.4g} N m at {response['largest_torque_at_hz']:.5g} Hz"
+    )
+
+
+def _map(found: Document) -> tuple[Table, ...]:
+    """Critical speeds from the softest to the stiffest bearings; the rest is in the files."""
+    whirl = "forward" if "forward_critical_speeds_rpm" in found else "backward"
+    stiffnesses, speeds = found["stiffness_n_per_m"], found[f"{whirl}_critical_speeds_rpm"]
+    chosen = sorted({round(part * (len(stiffnesses) - 1) / (_MAP_ROWS - 1)) for part in range(_MAP_ROWS)})
+    rows = [
+        {
+            "stiffness": stiffnesses[row],
+            "speeds": "  ".join(f"{speed:.5g}" for speed in speeds[row] if speed is not None and math.isfinite(speed)),
+        }
+        for row in chosen
+    ]
+    columns = (Column("stiffness [N/m]", "stiffness", ".3g"), Column(f"{whirl} critical speeds [rpm]", "speeds"))
+    return table_of(columns, rows, "Over the stiffness of all bearings")
+
+
+def _beside(margin: float) -> str:
+    """How far a critical speed is from operation, which it exceeds by ``margin`` times operation."""
+    if margin > _REACH - 1.0:
+        return f"{1.0 + margin:.3g} times"
+    return f"{100.0 * abs(margin):.3g} % {'above' if margin > 0.0 else 'below'}"
+
+
+def _whirl_name(direction: float, row: Document) -> str:
+    """Sense of a whirl beside that of rotation, or along the axis."""
+    if row["axial_share"] > _MOSTLY_AXIAL:
+        return "along the axis"
+    way = "in a plane" if abs(direction) <= _PLANAR else "forward" if direction > 0.0 else "backward"
+    return way + _with_axial(row["axial_share"])
+
+
+def _with_axial(share: float) -> str:
+    """How much of a lateral motion is along the axis, where it is worth a word."""
+    return f", {100.0 * share:.0f} % along the axis" if share >= _PARTLY_AXIAL else ""
+
+
+def _stability(campbell: Document) -> str:
+    """Up to which speed no mode grows."""
+    span = f"{counted(len(campbell['speed_rpm']), 'speed')} from {_span(campbell)}"
+    onset = campbell["unstable_from_rpm"]
+    return f"Stable at {span}" if onset is None else f"UNSTABLE from {onset:.6g} rpm on, of {span}"
+
+
+def _turning(campbell: Document) -> float:
+    """Sense of rotation."""
+    return -1.0 if min(campbell["speed_rpm"]) < 0.0 else 1.0
+
+
+def _span(campbell: Document) -> str:
+    speeds = [abs(speed) for speed in campbell["speed_rpm"]]
+    return f"{min(speeds):.6g} to {max(speeds):.6g} rpm"

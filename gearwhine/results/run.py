@@ -1,0 +1,656 @@
+"""Run of a case: quantities of the transient, its spectra and the origin of their lines, and how they are shown."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from operator import attrgetter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5netcdf
+import numpy as np
+
+from coupling.histories import HISTORY_QUANTITIES
+from coupling.histories import Quantity as History
+from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.results import comparison
+from gearwhine.results.housing import modes_sentence
+from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
+from housing.netcdf import Variables
+
+if TYPE_CHECKING:
+    from gearwhine.stages.march_record import Signals
+    from gearwhine.stages.run_up import RunSignature
+    from gearwhine.stages.signature import SolvedSignature
+    from gearwhine.stages.transient import SolvedTransient
+
+MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
+_HERTZ_LONG = ("Hz", "frequency")
+
+
+def _name(row: Any) -> Any:
+    """What a line is: the row holds the peak, its name and the coupled modes; nothing where it has none."""
+    return row if row[1] is not None else None
+
+
+def _near_mode(row: Any) -> dict[str, Any] | None:
+    _, named, modes = row
+    if named.mode is None:
+        return None
+    return {
+        "number": named.mode + 1,
+        "kind": modes.kinds[named.mode],
+        "where": modes.where[named.mode],
+        "frequency_hz": modes.frequencies_hz[named.mode],
+    }
+
+
+NAMED = (
+    Quantity("name", lambda row: row[1].name),
+    Quantity("kind", lambda row: row[1].kind),
+    Quantity("order", lambda row: row[1].order),
+    Quantity("near_mode", _near_mode),
+)
+"""Of a peak, its name and the coupled modes."""
+
+CONTRIBUTION = (
+    Quantity("name", lambda part: part.name),
+    Quantity("amplitude_m_per_s2", lambda part: abs(part.value)),
+    Quantity("phase_rad", lambda part: np.angle(part.value)),
+    Quantity("share", lambda part: part.share),
+    Quantity("number", lambda part: ABSENT if part.mode is None else part.mode),
+)
+TRACED = (
+    Part("", lambda row: (row[0], row[1].named, row[2]), NAMED),
+    Quantity("phase_rad", lambda row: np.angle(row[1].value)),
+    Quantity("level_db", lambda row: float(row[1].level_db)),
+    Part(
+        "contributions",
+        lambda row: row[1],
+        (
+            Rows("housing_modes", lambda line: line.told_modes, CONTRIBUTION),
+            Rows("bearings", lambda line: line.told_bearings, CONTRIBUTION),
+            Part("free_vibration", lambda line: line.free, CONTRIBUTION),
+        ),
+    ),
+)
+"""Of a peak, its traced line and the coupled modes."""
+
+
+def _peak(key: str) -> tuple[Quantity, Quantity]:
+    return Quantity("frequency_hz", lambda row: row[0].frequency), Quantity(key, lambda row: row[0].amplitude)
+
+
+def _sidebands(unit: str) -> tuple[Quantity, ...]:
+    """Of a mesh's shaft and one pair of sidebands."""
+    return (
+        Quantity("gear_pair", lambda row: row[0].mesh),
+        Quantity("shafts", lambda row: row[0].shafts),
+        Quantity("carrier_hz", lambda row: row[1].carrier),
+        Quantity("number", lambda row: row[1].number),
+        Quantity("distance_hz", lambda row: row[1].distance),
+        Quantity(f"carrier_amplitude_{unit}", lambda row: row[1].carrier_amplitude),
+        Quantity(f"lower_amplitude_{unit}", lambda row: row[1].lower),
+        Quantity(f"upper_amplitude_{unit}", lambda row: row[1].upper),
+        Quantity("amplitude_modulation", lambda row: row[1].amplitude_modulation),
+        Quantity("phase_modulation_rad", lambda row: row[1].phase_modulation),
+    )
+
+
+def _sensor_peaks(row: Any) -> list[Any]:
+    solved, signature, name = row
+    peaks = solved.sensor_peaks(name)
+    if signature is None:
+        return [(peak, None, None) for peak in peaks]
+    return [(peak, line, signature.modes) for peak, line in zip(peaks, signature.lines[name], strict=True)]
+
+
+SENSOR = (
+    Quantity("name", lambda row: row[2]),
+    Quantity("rms_m_per_s2", lambda row: row[0].sensor_rms(row[2])),
+    Rows("peaks", _sensor_peaks, (*_peak("amplitude_m_per_s2"), Part("", _name, TRACED))),
+    Rows(
+        "sidebands",
+        lambda row: ABSENT if row[1] is None else row[1].clear_sidebands(row[1].sidebands[row[2]]),
+        _sidebands("m_per_s2"),
+    ),
+)
+"""Of the transient, its signature where lines are traced, and the name of a sensor."""
+
+
+def _friction(row: Any) -> Any:
+    """Friction of a mesh over the record: its force and its power."""
+    return row[0].histories.mesh_friction.get(_contact(row))
+
+
+def _contact(row: Any) -> str:
+    """Name of the contact that the mean load presses."""
+    return str(row[0].machine.system.contacts[row[2]].name)
+
+
+def _force_peaks(row: Any) -> list[Any]:
+    solved, signature, _, number = row
+    peaks = solved.force_peaks(_contact(row))
+    if signature is None:
+        return [(peak, None, None) for peak in peaks]
+    names = list(signature.force_lines.values())[number]
+    return [(peak, named, signature.modes) for peak, named in zip(peaks, names, strict=True)]
+
+
+def _force_sidebands(row: Any) -> Any:
+    _, signature, _, number = row
+    if signature is None:
+        return ABSENT
+    return signature.clear_sidebands(list(signature.force_sidebands.values())[number])
+
+
+PAIR = (
+    Part("", lambda row: (row[0].machine.meshes[row[3]], row[0].result, row[2]), MESH),
+    Quantity("flanks", lambda row: "drive" if row[2] == row[3] else "back"),
+    Part(
+        "friction",
+        _friction,
+        (
+            Quantity("mean_power_w", lambda found: found[:, 1].mean()),
+            Quantity("peak_power_w", lambda found: found[:, 1].max()),
+            Quantity("peak_force_n", lambda found: np.abs(found[:, 0]).max()),
+        ),
+    ),
+    Quantity("back_flank_peak_force_n", lambda row: row[0].back_flank_peak(row[3])),
+    Rows("force_peaks", _force_peaks, (*_peak("amplitude_n"), Part("", _name, NAMED))),
+    Rows("sidebands", _force_sidebands, _sidebands("n")),
+)
+"""Of the transient, its signature, the number of the contact that is pressed, and the number of the gear pair."""
+MESH_COLUMNS = (*columns_of(MESH), Column("friction takes [W]", "friction.mean_power_w", ".3g"))
+
+BEARING = (
+    Quantity("name", lambda row: row[0], heading="bearing"),
+    Quantity("mean_force_n", lambda row: row[1].mean[:3], heading="mean force x, y, z [N]", shown=".1f"),
+    Quantity("rms_force_n", lambda row: row[1].rms[:3], heading="a.c. force x, y, z [N rms]", shown=".2f"),
+    Quantity("mean_moment_n_m", lambda row: row[1].mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
+    Quantity("rms_moment_n_m", lambda row: row[1].rms[3:]),
+)
+"""Of a bearing's name and the parts of its load: forces along x, y, z and moments about x and y."""
+
+CONVENTIONS = {
+    "amplitude": "peak: a sine a sin(2 pi f t) has the amplitude a",
+    "rms": "without the mean, up to trusted_below_hz",
+    "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
+    "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
+}
+SIGNATURE = (
+    Rows("bearings", lambda row: row[0].bearing_parts(), BEARING),
+    Rows(
+        "gears",
+        lambda row: row[0].gear_parts(),
+        (
+            Quantity("name", lambda gear: gear[0]),
+            Quantity("mean_displacement_m", lambda gear: gear[1].mean),
+            Quantity("peak_displacement_m", lambda gear: gear[1].peak),
+        ),
+    ),
+    Quantity("conventions", lambda row: CONVENTIONS),
+)
+
+RUN = (
+    Quantity("from_rpm", lambda solved: solved.speed * solved.turning.rates[0] * RPM),
+    Quantity("to_rpm", lambda solved: solved.speed * solved.turning.rates[-1] * RPM),
+    Quantity("seconds", lambda solved: solved.turning.times[-1]),
+    Quantity("revolutions", lambda solved: solved.revolutions),
+)
+"""Speeds of the first driver's rotor over a run."""
+
+RECORD = (
+    Quantity("samples", lambda solved: solved.record.samples),
+    Quantity("interval_s", lambda solved: solved.record.sampling.interval),
+    Quantity("decimation", lambda solved: solved.record.sampling.decimation.factor),
+    Part(
+        "spectra",
+        lambda solved: solved,
+        (
+            Quantity("window", lambda solved: solved.record.sampling.window),
+            Quantity("samples", lambda solved: min(solved.record.sampling.stretch, solved.record.samples)),
+            Quantity("averages", lambda solved: solved.averages),
+        ),
+    ),
+)
+"""Length and fineness of the record, and of the stretches that the spectra were taken over."""
+
+ENERGY = tuple(Quantity(key, attrgetter(key)) for key in ("change", "loads", "lost", "teeth", "friction"))
+
+
+def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[Quantity, ...]:
+    """Peak amplitudes and phases of the spectra of like signals."""
+
+    def of_each(row: Any, part: str) -> dict[str, Any] | None:
+        return {label: getattr(spectrum, part) for label, spectrum in of(row[0]).items()} or None
+
+    def attributes(row: Any) -> dict[str, Any]:
+        first, sampling = next(iter(of(row[0]).values())), row[0].record.sampling
+        told: dict[str, Any] = {"window": first.window}
+        if sampling.is_long:
+            told |= {
+                "averages": first.averages,
+                "averaged_samples": sampling.stretch,
+                "averaging": "root mean square over stretches of whole revolutions, the last of the record",
+            }
+        return told
+
+    return (
+        Quantity(
+            "",
+            lambda row: next((spectrum.frequencies for spectrum in of(row[0]).values()), None),
+            "frequency",
+            ("frequency",),
+            *_HERTZ_LONG,
+        ),
+        Quantity(
+            "",
+            lambda row: of_each(row, "amplitude"),
+            name,
+            (dimension, "frequency"),
+            unit,
+            f"peak amplitude of {what}",
+            attributes=attributes,
+        ),
+        Quantity(
+            "", lambda row: of_each(row, "phase"), f"{name}_phase", (dimension, "frequency"), "rad", f"phase of {what}"
+        ),
+    )
+
+
+def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, what: str) -> Quantity:
+    """Peak amplitudes of the loads on bearings; ``rows`` of x, y, z and the moments about x and y."""
+    return Quantity(
+        "",
+        lambda found: {label: load[rows] for label, load in found[1].bearing_amplitudes(found[0]).items()} or None,
+        f"bearing_{name}_spectrum",
+        ("bearing", *axis, "frequency"),
+        unit,
+        f"peak amplitude of the {what}",
+        attributes=lambda found: {"window": next(iter(found[1].bearing_spectra.values())).window},
+    )
+
+
+_COMPLEX = Quantity("", lambda table: ["real", "imaginary"], "part", ("part",))
+_LINE = ("sensor", "line")
+LINES = (
+    Quantity("", lambda table: table.ranks, "line", ("line",), "1", "rank of the line, highest first"),
+    _COMPLEX,
+    Quantity("", lambda table: table.modes, "mode_path", ("mode_path",)),
+    Quantity("", lambda table: table.bearings, "bearing_path", ("bearing_path",)),
+    Quantity("", lambda table: table.frequency, "line_frequency", _LINE, "Hz", "frequency of the sensor's line"),
+    Quantity("", lambda table: table.names, "line_name", _LINE, "", "what the line is"),
+    Quantity(
+        "",
+        lambda table: table.value,
+        "line_amplitude",
+        (*_LINE, "part"),
+        "m/s2",
+        "complex amplitude of the sensor's line",
+    ),
+    Quantity(
+        "",
+        lambda table: table.by_mode,
+        "line_by_mode",
+        (*_LINE, "mode_path", "part"),
+        "m/s2",
+        "part of a housing mode in the line; they add up to it",
+    ),
+    Quantity(
+        "",
+        lambda table: table.by_bearing,
+        "line_by_bearing",
+        (*_LINE, "bearing_path", "part"),
+        "m/s2",
+        "part of a bearing's force in the line",
+    ),
+)
+"""Of the lines of all sensors with their parts."""
+
+MODAL = (
+    Quantity("", lambda row: row[0], "modal_coordinate", ("modal_coordinate",)),
+    Quantity("", lambda row: row[1].frequencies, "frequency", ("frequency",), *_HERTZ_LONG),
+    Quantity(
+        "",
+        lambda row: row[1].amplitude,
+        "modal_displacement_spectrum",
+        ("modal_coordinate", "frequency"),
+        "m kg0.5",
+        f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
+        attributes=lambda row: {"window": row[1].window},
+    ),
+)
+"""Of the names of modal coordinates and their spectrum."""
+
+HOUSING_LINES = (
+    Quantity("", lambda row: row[0], "housing_line", ("housing_line",), *_HERTZ_LONG),
+    _COMPLEX,
+    Quantity(
+        "",
+        lambda row: np.stack([row[1].real, row[1].imag], axis=-1),
+        "housing_acceleration_spectrum",
+        ("housing_mode", "housing_line", "part"),
+        "m kg0.5 s-2",
+        "complex peak amplitude of a housing mode's acceleration, by unit modal mass",
+        attributes=lambda row: {"window": row[2]},
+    ),
+)
+"""Of frequencies up to where the modes are complete, the lines there, and their window: operating shapes follow."""
+
+TRANSIENT: Fields = (
+    Quantity("speed_rpm", lambda row: row[0].speed * RPM),
+    Part("run", lambda row: None if row[0].turning is None else row[0], RUN),
+    Quantity("method", lambda row: row[0].method),
+    Quantity("steps", lambda row: row[0].result.steps),
+    Quantity("rejected_steps", lambda row: row[0].result.rejected),
+    Quantity("smallest_step_s", lambda row: row[0].result.smallest_step),
+    Quantity("steps_per_second", lambda row: row[0].steps_per_second),
+    Quantity("energy_error", lambda row: row[0].result.energy.error),
+    Part("energy_j", lambda row: row[0].result.energy, ENERGY),
+    Quantity("coordinates", lambda row: row[0].machine.system.size),
+    Quantity("trusted_below_hz", lambda row: row[0].trusted_limit),
+    Part("record", lambda row: row[0], RECORD),
+    Rows("sensors", lambda row: [(*row, name) for name in row[0].sensor_spectra], SENSOR),
+    Rows(
+        "gear_pairs",
+        lambda row: [(*row, pressed, number) for number, pressed in enumerate(row[0].machine.pressed_contacts)],
+        PAIR,
+    ),
+    *_spectra(lambda solved: solved.sensor_spectra, "sensor_spectrum", "sensor", "m/s2", "acceleration"),
+    *_spectra(lambda solved: solved.force_spectra, "mesh_force_spectrum", "contact", "N", "the gear-mesh force"),
+    Part(
+        "",
+        lambda row: None if row[1] is None else row,
+        (
+            *SIGNATURE,
+            Quantity(
+                "",
+                lambda row: next((one.frequencies for one in row[1].bearing_spectra.values()), None),
+                "frequency",
+                ("frequency",),
+                *_HERTZ_LONG,
+            ),
+            _load_spectrum("force", slice(0, 2), ("axis",), "N", "force of the shaft on its bearing"),
+            _load_spectrum("axial_force", 2, (), "N", "force of the shaft on its bearing along z"),
+            _load_spectrum(
+                "moment", slice(3, 5), ("moment_axis",), "N m", "moment of the shaft on its bearing about x and y"
+            ),
+            Part("", lambda row: row[0].modal_spectrum(), MODAL),
+            Part("", lambda row: row[1].line_table(), LINES),
+            Part("", lambda row: row[1].housing_lines(row[0].trusted_limit), HOUSING_LINES),
+        ),
+    ),
+)
+"""Of the transient and, where lines are traced, their signature."""
+
+
+def transient_document(solved: "SolvedTransient", signature: "SolvedSignature | None" = None) -> dict[str, Any]:
+    """The transient as the command's JSON; with a signature also the origin of its lines."""
+    return document_of(TRANSIENT, (solved, signature))
+
+
+ORDER = (
+    Quantity("signal", lambda row: row["signal"], heading="signal"),
+    Quantity("name", lambda row: row["name"], heading="order"),
+    Quantity("order", lambda row: row["order"]),
+    Quantity("highest_amplitude", lambda row: row["highest_amplitude"], heading="highest [peak]", shown=".3g"),
+    Quantity("unit", lambda row: row["unit"], heading="unit"),
+    Quantity("at_rpm", lambda row: row["at_rpm"], heading="at [rpm]", shown=".0f"),
+    Quantity("frequency_hz", lambda row: row["frequency_hz"], heading="that is [Hz]", shown=".0f"),
+)
+
+
+def _run_table(name: str, tables: str, dimensions: tuple[str, ...], what: str) -> Quantity:
+    return Quantity(
+        "",
+        lambda found: np.array([one.amplitude for one in getattr(found, tables).values()], dtype=np.float32),
+        name,
+        ("run_signal", *dimensions),
+        "",
+        f"peak amplitude {what}",
+        attributes=lambda found: {"window": "hann"},
+    )
+
+
+def _first(tables: Any) -> Any:
+    return next(iter(tables.values()))
+
+
+RUN_SIGNATURE = (
+    Quantity("from_rpm", lambda found: found.speeds_rpm[0]),
+    Quantity("to_rpm", lambda found: found.speeds_rpm[-1]),
+    Quantity("stretches", lambda found: len(found.speeds_rpm)),
+    Quantity("orders", lambda found: found.highest()),
+    Quantity("", lambda found: list(found.spectra), "run_signal", ("run_signal",)),
+    Quantity(
+        "", lambda found: found.speeds_rpm, "run_speed", ("run_speed",), "rpm", "speed in the middle of each stretch"
+    ),
+    Quantity("", lambda found: _first(found.spectra).frequencies, "run_frequency", ("run_frequency",), *_HERTZ_LONG),
+    Quantity(
+        "",
+        lambda found: 60.0 * _first(found.orders).speeds,
+        "order_speed",
+        ("order_speed",),
+        "rpm",
+        "speed of the leading shaft over each window",
+    ),
+    Quantity(
+        "", lambda found: _first(found.orders).orders, "order", ("order",), "1", "cycles each turn of the leading shaft"
+    ),
+    Quantity(
+        "", lambda found: list(found.units.values()), "run_unit", ("run_signal",), "", "unit of the signal's amplitudes"
+    ),
+    _run_table("run_spectrum", "spectra", ("run_speed", "run_frequency"), "of stretches along the run"),
+    _run_table("run_orders", "orders", ("order_speed", "order"), "by order along the run"),
+    Quantity("", lambda found: list(found.named), "named_order", ("named_order",)),
+    Quantity(
+        "",
+        lambda found: list(found.named.values()),
+        "run_order_number",
+        ("named_order",),
+        "1",
+        "cycles each turn of the leading shaft",
+    ),
+    Quantity(
+        "",
+        lambda found: found.followed().astype(np.float32),
+        "run_order_amplitude",
+        ("run_signal", "named_order", "order_speed"),
+        "",
+        "peak amplitude of a shaft's or a mesh's order along the run",
+        attributes=lambda found: {"window": "hann"},
+    ),
+)
+"""Of spectra along a run and orders over its speed, of all signals."""
+
+
+def run_signature_document(found: "RunSignature") -> dict[str, Any]:
+    """The orders of a run as the command's JSON: where each of them is highest."""
+    return document_of(RUN_SIGNATURE, found)
+
+
+_MODAL = History(
+    "modal_displacement", ("modal_coordinate", "time"), lambda coordinates: coordinates, "m kg0.5", MODAL_COORDINATE
+)
+
+
+@dataclass(frozen=True)
+class HistoryStream:
+    """Histories of a transient, which are written piece by piece.
+
+    In single precision, seven digits, since there are many; times in double.
+    """
+
+    solved: "SolvedTransient"
+
+    def labels(self) -> Variables:
+        """Coordinates: the names of the signals."""
+        found: Variables = {}
+        for history, values in _recorded(self.solved.signals):
+            found |= history.coordinates(list(values))
+        return found
+
+    def append_to(self, path: Path) -> None:
+        """Append the histories to a file that holds their coordinates, one piece at a time."""
+        record = self.solved.record
+        with h5netcdf.File(path, "a") as file:
+            # As xarray does for whatever else is in the file.
+            beside = {"coordinates": "speed"} if "speed" in file.variables else {}
+            file.dimensions["time"] = record.samples
+            times = file.create_variable("time", ("time",), "f8", fillvalue=np.nan)
+            times.attrs.update(_TIME)
+            for history, _ in _recorded(self.solved.signals):
+                variable = file.create_variable(history.name, history.dimensions, "f4", fillvalue=np.float32(np.nan))
+                variable.attrs.update(self._told(history) | beside)
+            done = 0
+            for piece in record.pieces():
+                span = slice(done, done + len(piece.times))
+                times[span] = piece.times
+                for history, values in _recorded(piece):
+                    file.variables[history.name][:, span] = np.array(list(values.values()), dtype=np.float32)
+                done = span.stop
+
+    def add_to(self, variables: Variables) -> None:
+        """Add the histories in memory, as :meth:`append_to` writes them."""
+        times, found = [], {}  # type: list[Any], dict[str, list[Any]]
+        for piece in self.solved.record.pieces():
+            times.append(piece.times)
+            for history, values in _recorded(piece):
+                found.setdefault(history.name, []).append(np.array(list(values.values()), dtype=np.float32))
+        variables["time"] = ("time", np.concatenate(times), dict(_TIME))
+        for history, _ in _recorded(self.solved.signals):
+            variables[history.name] = (
+                history.dimensions,
+                np.concatenate(found[history.name], axis=1),
+                self._told(history),
+            )
+
+    def _told(self, history: History) -> dict[str, Any]:
+        """Labels of a history; of one that was filtered also by how much."""
+        told: dict[str, Any] = {"units": history.unit, "long_name": history.what}
+        sampling = self.solved.record.sampling
+        if sampling.is_long:
+            told |= {"decimated_by": sampling.decimation.factor, "complete_below_hz": self.solved.trusted_limit}
+        return told
+
+
+_TIME = {"units": "s", "long_name": "time from static equilibrium"}
+
+
+def _recorded(signals: "Signals") -> list[tuple[History, Any]]:
+    """Every history that was recorded, with the values of each of its signals."""
+    found = [(history, history.of(signals.histories)) for history in HISTORY_QUANTITIES]
+    found.append((_MODAL, signals.modal.coordinates))
+    return [(history, values) for history, values in found if values]
+
+
+_STEPS = {"newmark": "steps", "exact": "exact elements"}
+_PICTURES = (
+    "spectrum",
+    "contributions",
+    "mesh-force",
+    "orbits",
+    "modal-coordinates",
+    "friction",
+    "run-up",
+    "waterfall",
+    "sweep",
+)
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: the motion as the terminal shows it, with meshes, lines and bearings as tables."""
+    sentences = [
+        f"{document['steps']} steps at {document['speed_rpm']:.0f} rpm, {document['coordinates']} modal coordinates; "
+        f"the energy balance closes to {document['energy_error']:.1e}."
+    ]
+    if document.get("trusted_below_hz"):
+        sentences.append(f"The model's modes are complete up to {document['trusted_below_hz']:.0f} Hz.")
+    sentences += _basis_error(document)
+    tables = (
+        *table_of(MESH_COLUMNS, document.get("gear_pairs", ()), "Gear meshes"),
+        *line_table(document.get("sensors", ()), "peaks"),
+        *_signature_table(document),
+        *table_of(columns_of(BEARING), document.get("bearings", ()), "Bearings"),
+        *table_of(columns_of(ORDER), document.get("run_signature", {}).get("orders", ()), "Orders along the run"),
+    )
+    return Section("Motion", (*sentences, *tables), pictures=_PICTURES)
+
+
+def _basis_error(document: Document) -> list[str]:
+    """The error that the modal basis may leave in responses, at worst in each band."""
+    parts = []
+    for band in document.get("basis_error", ()):
+        worst = max((sensor["largest"] for sensor in band["sensors"]), default=0.0)
+        parts.append(f"{100.0 * worst:.2g} % up to {band['to_hz']:.0f} Hz")
+    return [f"Error left by the modal basis, at the worst sensor and frequency: {', '.join(parts)}."] if parts else []
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """The housing beside what was measured, forces of the meshes, lines of the sensors and their origin, the proof."""
+    housing = (modes_sentence(document["housing"]),) if "housing" in document else ()
+    compared = comparison.sections(document["compare"]) if "compare" in document else ()
+    return (Section("", housing), *compared, Section("", tuple(_content(document))))
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    for pair in document.get("gear_pairs", ()):
+        yield mesh_sentence(pair)
+        if pair.get("friction"):
+            yield f"  friction between its teeth takes {pair['friction']['mean_power_w']:.3g} W"
+    yield from table_of(SENSOR_COLUMNS, document.get("sensors", ()))
+    if traced := _signature_table(document):
+        yield from traced
+        yield "Levels of rms values re 1 µm/s²; shares in phase with the line, all of which add up to it."
+    if "steps" in document:
+        yield (
+            f"Transient: {document['steps']} {_STEPS[document['method']]}, "
+            f"{document['steps_per_second']:.0f} a second; energy balance closes "
+            f"to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
+        )
+    elif "system" in document:
+        yield f"Coupled system: {counted(len(document['system']['modes']), 'mode')}"
+
+
+_SIGNATURE_COLUMNS = (
+    Column("sensor", "sensor"),
+    Column("Hz", "frequency_hz", ".0f"),
+    Column("dB", "level_db", ".0f"),
+    Column("what it is", lambda row: row["name"] if row["kind"] != "mode" else f"free {row['name']}"),
+    Column("near", lambda row: _near(row["near_mode"])),
+    Column(
+        "by housing modes",
+        lambda row: ", ".join(
+            f"{part.get('number', 'local')}: {_share(part)}" for part in row["contributions"]["housing_modes"][:3]
+        ),
+    ),
+    Column(
+        "by bearings",
+        lambda row: ", ".join(f"{part['name']}: {_share(part)}" for part in _with_free(row["contributions"])[:3]),
+    ),
+)
+
+
+def _signature_table(document: Document) -> tuple[Table, ...]:
+    """The leading lines, and the housing modes and bearings that they come from."""
+    rows = [
+        peak | {"sensor": sensor["name"] if number == 0 else ""}
+        for sensor in document.get("sensors", ())
+        for number, peak in enumerate(sensor["peaks"][:3])
+        if "contributions" in peak
+    ]
+    return table_of(_SIGNATURE_COLUMNS, rows)
+
+
+def _near(mode: Document | None) -> str:
+    return "" if mode is None else f"{mode['frequency_hz']:.0f} Hz {mode['kind']}"
+
+
+def _with_free(parts: Document) -> list[Document]:
+    """Bearings, and free vibration where it counts."""
+    return sorted([*parts["bearings"], parts["free_vibration"]], key=lambda part: -part["amplitude_m_per_s2"])
+
+
+def _share(part: Document) -> str:
+    return f"{100.0 * part['share']:.0f} %"

@@ -1,0 +1,98 @@
+"""Survey plan of the housing: its quantities, and how the terminal shows it."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, columns_of, counted, table_of
+from gearwhine.results.housing import ORIGIN
+
+if TYPE_CHECKING:
+    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.stages.survey_plan import PlannedSurvey
+
+SENSOR = (
+    Quantity("point", lambda row: row[0], heading="point"),
+    Quantity("position_m", lambda row: row[1]),
+    Quantity("direction", lambda row: row[2], heading="direction", shown=lambda row: _axis(row["direction"])),
+    Quantity("independence", lambda row: row[3], heading="independence", shown=".3f"),
+)
+"""Of a sensor: label, position, direction and share in the independence of the modes."""
+
+HAMMER = (
+    Quantity("position_m", lambda row: row[0]),
+    Quantity("direction", lambda row: row[1]),
+    Quantity("least_residue", lambda row: row[2]),
+)
+"""Of a place for the hammer."""
+
+
+def _sensors(planned: "PlannedSurvey") -> list[Any]:
+    geometry = planned.geometry
+    columns = (geometry.labels, geometry.positions, geometry.directions, planned.plan.independence)
+    return list(zip(*columns, strict=True))
+
+
+def _hammer(planned: "PlannedSurvey") -> list[Any]:
+    places = planned.plan.driving_points
+    columns = (planned.candidates.positions[places], planned.candidates.directions[places], planned.plan.residues)
+    return list(zip(*columns, strict=True))
+
+
+PLAN = (
+    Quantity("modes", lambda planned: planned.modes),
+    Quantity("modes_hz", lambda planned: planned.frequencies_hz),
+    Quantity("candidates", lambda planned: len(planned.candidates.labels)),
+    Rows("sensors", _sensors, SENSOR),
+    Rows("hammer", _hammer, HAMMER),
+    Part(
+        "",
+        lambda planned: planned.plan,
+        (
+            Quantity("auto_mac_largest", lambda plan: plan.worst_likeness),
+            Quantity("condition", lambda plan: plan.condition),
+        ),
+    ),
+)
+"""Of a survey and what it is worth."""
+
+
+def plan_document(planned: "PlannedSurvey", solved: "SolvedHousing") -> dict[str, Any]:
+    """The plan as the command's JSON."""
+    return document_of(PLAN, planned) | document_of(ORIGIN, solved)
+
+
+def _coordinate(axis: int, sensor: Document) -> str:
+    return f"{1e3 * sensor['position_m'][axis]:.1f}"
+
+
+_POINT, *_ALONG = columns_of(SENSOR)
+_SENSORS = (_POINT, *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, axis in enumerate("xyz")), *_ALONG)
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Where to measure and where to hit, and how well modes are told apart."""
+    return (Section("", (*table_of(_SENSORS, document["sensors"]), *_sentences(document))),)
+
+
+def _sentences(document: Document) -> Iterator[str]:
+    yield (
+        f"{counted(len(document['sensors']), 'sensor')} of {document['candidates']} places for "
+        f"{counted(len(document['modes']), 'mode')} up to {document['modes_hz'][-1]:.0f} Hz: modes look at most "
+        f"{document['auto_mac_largest']:.3f} alike (auto-MAC), condition {document['condition']:.3g}."
+    )
+    for number, place in enumerate(document["hammer"]):
+        where = ", ".join(f"{1e3 * value:.1f}" for value in place["position_m"])
+        yield (
+            f"{'and' if number else 'Hammer:'} at ({where}) mm along {_axis(place['direction'])}: "
+            f"the least excited mode has {100.0 * place['least_residue']:.2g} % of its largest driving-point residue"
+        )
+
+
+def _axis(direction: Sequence[float]) -> str:
+    """An axis by its name, any other direction by its numbers."""
+    for axis, value in zip("xyz", direction, strict=True):
+        if abs(value) > 1.0 - 1e-9:
+            return axis if value > 0.0 else f"-{axis}"
+    return " ".join(f"{value:.3f}" for value in direction)

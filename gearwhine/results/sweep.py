@@ -1,0 +1,73 @@
+"""Sweep: the points of its grid as a table."""
+
+from collections.abc import Iterator
+from functools import partial
+
+from gearwhine.output.sections import Column, Document, Section, Table, counted, percent, table_of
+
+_MOST_SENSORS, _MOST_MESHES = 5, 2  # with a column each
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """The points of a sweep and what came of them."""
+    return (Section("", tuple(_content(document))),)
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report."""
+    return Section("Sweep", tuple(_content(document)), pictures=("sweep",))
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    done = [point for point in document["points"] if point["status"] == "done"]
+    if done:
+        yield from table_of(_columns(document, done[0]), done)
+    for point in document["points"]:
+        if point["status"] == "failed":
+            where = ", ".join(f"{key}={text}" for key, text in point["settings"].items())
+            yield f"Failed at {where}: {point['failure']}"
+    resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
+    failed = f"; {document['failed']} failed" if document["failed"] else ""
+    yield f"{document['done']} of {counted(len(document['points']), 'point')} done{resumed}{failed}"
+
+
+def _columns(document: Document, first: Document) -> tuple[Column, ...]:
+    """The swept keys, the levels of some sensors and the forces of some meshes, and the energy balance."""
+    columns = [
+        Column(
+            axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""),
+            partial(_value, axis["name"]),
+        )
+        for axis in document["axes"]
+    ]
+    columns += [
+        Column(f"{sensor['name']}\nrms [m/s²]", partial(_level, sensor["name"]))
+        for sensor in first["sensors"][:_MOST_SENSORS]
+    ]
+    for place, pair in enumerate(first["gear_pairs"][:_MOST_MESHES]):
+        columns += [
+            Column(
+                f"{pair['driver']} → {pair['driven']}\nlargest [N]",
+                partial(_force, place),
+            ),
+            Column("apart", partial(_apart, place)),
+        ]
+    return (*columns, Column("energy\nerror", lambda point: f"{point['energy_error']:.0e}"))
+
+
+def _value(name: str, point: Document) -> str:
+    value = point["values"][name]
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def _force(place: int, point: Document) -> str:
+    return f"{point['gear_pairs'][place]['peak_force_n']:.0f}"
+
+
+def _apart(place: int, point: Document) -> str:
+    return percent(point["gear_pairs"][place]["contact_loss_fraction"])
+
+
+def _level(name: str, point: Document) -> str:
+    levels = {sensor["name"]: sensor["rms_m_per_s2"] for sensor in point["sensors"]}
+    return f"{levels[name]:.3g}" if name in levels else ""

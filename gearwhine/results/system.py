@@ -1,0 +1,534 @@
+"""Coupled system: quantities of its modes, stability, responses and Campbell diagram, and how they are shown."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
+
+if TYPE_CHECKING:
+    from gearwhine.stages.system import SolvedSystem
+
+_GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}
+
+
+def _of_components(key: str, name: str, unit: str, what: str, of: Any, document: Any = None) -> Quantity:
+    """A quantity of every component in a mode; ``of`` takes the values of a mode."""
+
+    def taken(row: Any) -> dict[str, float]:
+        solved, mode = row
+        names = [component.name for component in solved.machine.system.components]
+        return dict(zip(names, of(solved.modes)[mode].tolist(), strict=True))
+
+    return Quantity(key, taken, f"system_{name}", ("machine_component",), unit, what, document=document)
+
+
+def _of_parts(key: str, name: str, what: str, of: Any) -> Quantity:
+    """A quantity of every component, connector and contact in a mode; the document has them by these groups."""
+
+    def taken(row: Any) -> dict[str, float]:
+        solved, mode = row
+        names = [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts]
+        return dict(zip(names, of(solved.modes.shares)[mode].tolist(), strict=True))
+
+    def grouped(values: dict[str, float]) -> dict[str, dict[str, float]]:
+        found: dict[str, dict[str, float]] = {group: {} for group in _GROUPS.values()}
+        for label, value in values.items():
+            kind, _, part = label.partition(": ")
+            found[_GROUPS[kind]][part] = value
+        return found
+
+    return Quantity(key, taken, f"system_{name}", ("machine_part",), "1", what, document=grouped)
+
+
+def _known(values: dict[str, float]) -> dict[str, float]:
+    return {name: value for name, value in values.items() if not np.isnan(value)}
+
+
+MODE = (
+    Quantity(
+        "frequency_hz",
+        lambda row: row[0].modes.frequencies_hz[row[1]],
+        "system_frequency",
+        (),
+        "Hz",
+        "coupled natural frequency",
+        heading="frequency [Hz]",
+        shown="z.2f",
+    ),
+    Quantity(
+        "damping_ratio",
+        lambda row: row[0].modes.damping_ratios[row[1]],
+        "system_damping_ratio",
+        (),
+        "1",
+        "coupled damping ratio",
+        heading="damping ratio",
+        shown="z.4f",
+    ),
+    Quantity("damped_frequency_hz", lambda row: abs(row[0].modes.eigenvalues[row[1]].imag) / HERTZ),
+    Quantity(
+        "kind",
+        lambda row: row[0].modes.kinds[row[1]],
+        "system_kind",
+        (),
+        "",
+        "what moves most",
+        heading="kind",
+        shown=lambda row: _named(row),
+    ),
+    Quantity("where", lambda row: row[0].modes.where[row[1]], "system_where", (), "", "where it moves most"),
+    Quantity("energy", lambda row: row[0].modes.energy[row[1]]),
+    _of_components(
+        "kinetic_energy", "kinetic_share", "1", "share of the kinetic energy", lambda modes: modes.shares.kinetic
+    ),
+    _of_parts("strain_energy", "strain_share", "share of the strain energy", lambda shares: shares.strain),
+    _of_parts("damping", "damping_share", "part of the damping ratio", lambda shares: shares.damping),
+    _of_components(
+        "whirl",
+        "whirl",
+        "1",
+        "bending: 1 counter-clockwise, -1 clockwise circles",
+        lambda modes: modes.whirl,
+        _known,
+    ),
+)
+"""Of the solved system and the number of one of its modes."""
+
+
+def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
+    """The stiffness that each pressed flank is taken for, beside its mean without load."""
+    contact, unloaded = solved.contact, solved.unloaded.stiffness
+    found = []
+    for number, tooth in enumerate(solved.machine.system.contacts):
+        if not tooth.drives:
+            continue
+        force = None if contact.force is None else float(contact.force[number])
+        if force is None:
+            taken = "tangent at the mesh phase"
+        elif contact.stiffness[number] == 0.0:
+            taken = "parted by the mean load"
+        else:
+            taken = "mean under load" if force else "mean without load"
+        found.append(
+            {
+                "name": tooth.name,
+                "taken": taken,
+                "stiffness_n_per_m": contact.stiffness[number],
+                "unloaded_mean_n_per_m": unloaded[number],
+                "force_n": force,
+            }
+        )
+    return found
+
+
+CERTIFICATE = (
+    Quantity("expected", lambda certificate: certificate.expected),
+    Quantity("found", lambda certificate: certificate.found),
+    Quantity("zeros", lambda certificate: certificate.zeros),
+    Quantity("max_residual", lambda certificate: certificate.max_residual),
+    Quantity("sum_rule", lambda certificate: certificate.sum_rule),
+    Quantity("complete", lambda certificate: certificate.found == certificate.expected),
+)
+
+STABILITY = (
+    Quantity("stable", lambda solved: solved.stability.stable),
+    Rows(
+        "growing",
+        lambda solved: solved.stability.growing,
+        (
+            Quantity("frequency_hz", lambda mode: abs(mode.eigenvalue) / HERTZ),
+            Quantity("damping_ratio", lambda mode: mode.damping_ratio),
+            Quantity("doubling_time_s", lambda mode: mode.doubling_time),
+            Quantity("kind", lambda mode: mode.kind),
+            Quantity("where", lambda mode: mode.where),
+            Quantity(
+                "fed_by",
+                lambda mode: [{"kind": part.kind, "name": part.name, "share": share} for part, share in mode.feeders],
+            ),
+        ),
+    ),
+    Part(
+        "least_damped",
+        lambda solved: None if solved.stability.least_damped is None else (solved, solved.stability.least_damped),
+        tuple(replace(one, name="") for one in MODE if one.key in ("frequency_hz", "damping_ratio", "kind", "where")),
+    ),
+)
+
+
+def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
+    """Fields of a frequency response and the abscissa of its peaks: curves in the file, the peaks in the document.
+
+    Complex curves stand as amplitude and phase.
+    """
+
+    def curves(of: Any, signal: str, kind: str, planes: tuple[str, ...], unit: str, what: str) -> Iterator[Quantity]:
+        dimensions = (f"{name}_{signal}", abscissa, *planes)
+        for suffix, part, units, told in (
+            ("", np.abs, f"{unit} {per}".strip(), f"{what}, peak"),
+            ("_phase", np.angle, "rad", f"phase of the {what}"),
+        ):
+
+            def values(row: Any, part: Any = part) -> dict[str, Any] | None:
+                return {label: part(curve) for label, curve in of(row[0]).items()} or None
+
+            yield Quantity("", values, f"{name}_{signal}_{kind}{suffix}", dimensions, units, told)
+
+    def loads(columns: Any) -> Any:
+        return lambda one: {label: load[:, columns] for label, load in one.bearing_load.items()}
+
+    def peaks(row: Any, curve: Any) -> list[dict[str, float]]:
+        one, along = row
+        return [{key: along[place], "amplitude": abs(curve[place])} for place in one.peaks(curve)]
+
+    def along_axes(first: int, axes: str) -> Any:
+        return lambda row: {
+            label: {axis: peaks(row, load[:, first + place]) for place, axis in enumerate(axes)}
+            for label, load in row[0].bearing_load.items()
+        }
+
+    force = "force of the shaft on its bearing"
+    return (
+        Quantity("excitation", lambda row: row[0].excitation),
+        Quantity("per", lambda row: row[0].unit),
+        Quantity("mesh_force_n", lambda row: {label: peaks(row, one) for label, one in row[0].mesh_force.items()}),
+        Quantity("bearing_force_n", along_axes(0, "xyz")),
+        Quantity("bearing_moment_n_m", along_axes(3, "xy")),
+        Quantity(
+            "sensor_acceleration_m_per_s2",
+            lambda row: {label: peaks(row, one) for label, one in row[0].sensor_acceleration.items()},
+        ),
+        *curves(
+            lambda one: one.sensor_acceleration, "sensor", "acceleration", (), "m s-2", "acceleration along the sensor"
+        ),
+        *curves(loads(slice(0, 2)), "bearing", "force", ("plane",), "N", force),
+        *curves(loads(2), "bearing", "axial_force", (), "N", f"{force} along z"),
+        *curves(
+            loads(slice(3, 5)),
+            "bearing",
+            "moment",
+            ("plane",),
+            "N m",
+            "moment of the shaft on its bearing about x and y",
+        ),
+        *curves(lambda one: one.mesh_force, "mesh", "force", (), "N", "gear-mesh force along the line of action"),
+        Quantity("", lambda row: ["x", "y"] if row[0].bearing_load else None, "plane", ("plane",), common=True),
+    )
+
+
+TRANSMISSIBILITY = (
+    Quantity("", lambda row: row[0].excitation, "mesh_error"),
+    Quantity("", lambda row: row[1], "response_frequency", ("response_frequency",), "Hz", "frequency", common=True),
+    *_response("transmissibility", "response_frequency", "frequency_hz", "m-1"),
+)
+"""Of the response to the error of one mesh, and its frequencies [Hz]."""
+
+UNBALANCE = (
+    Quantity("", lambda row: row[0].excitation, "unbalance_of"),
+    *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
+)
+"""Of the response to the unbalances of one rotor, and the speeds of the first driver without their sense [rpm]."""
+
+CROSSING = (
+    Quantity(
+        "speed_rpm",
+        lambda row: row[0].speed * RPM,
+        "system_crossing_speed",
+        (),
+        "rpm",
+        "speed of the first driver at the crossing",
+    ),
+    Quantity("line", lambda row: row[0].line.name, "system_crossing_line", (), "", "order"),
+    Quantity(
+        "order", lambda row: row[0].line.order, "system_crossing_order", (), "1", "over the speed of the first driver"
+    ),
+    Quantity(
+        "frequency_hz",
+        lambda row: row[0].eigenvalue.imag / HERTZ,
+        "system_crossing_frequency",
+        (),
+        "Hz",
+        "damped frequency at the crossing",
+    ),
+    Quantity(
+        "damping_ratio",
+        lambda row: row[0].damping_ratio,
+        "system_crossing_damping_ratio",
+        (),
+        "1",
+        "damping ratio at the crossing",
+    ),
+    Quantity("branch", lambda row: row[0].branch),
+    Quantity("kind", lambda row: row[0].kind),
+    Quantity("where", lambda row: row[0].where),
+    Quantity("teeth", lambda row: row[0].teeth),
+    Quantity("margin", lambda row: row[0].speed / row[1] - 1.0),
+)
+"""Of a crossing of the Campbell diagram and the speed of operation."""
+
+
+def _diagram(name: str, of: Any, unit: str, what: str) -> Quantity:
+    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, what)
+
+
+CAMPBELL = (
+    Quantity(
+        "speeds_rpm",
+        lambda row: row[0].speeds * RPM,
+        "system_campbell_speed",
+        ("system_speed",),
+        "rpm",
+        "speed of the first driver",
+    ),
+    _diagram("frequency", lambda row: row[0].frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"),
+    _diagram("damping_ratio", lambda row: row[0].damping_ratios, "1", "damping ratio of the coupled modes over speed"),
+    _diagram("whirl", lambda row: row[0].whirl, "1", "sense of the rotor that bends most, 1 counter-clockwise"),
+    _diagram("teeth", lambda row: row[0].teeth, "1", "share of the gear meshes in the strain energy"),
+    _diagram("kind", lambda row: row[0].kinds.astype(str), "", "kind"),
+    _diagram("where", lambda row: row[0].where.astype(str), "", "where"),
+    Rows(
+        "branches",
+        lambda row: [(row[0], branch) for branch in range(row[0].eigenvalues.shape[1])],
+        (
+            Quantity("frequency_hz", lambda row: row[0].frequencies_hz[:, row[1]]),
+            Quantity("damping_ratio", lambda row: row[0].damping_ratios[:, row[1]]),
+            Quantity("kind", lambda row: row[0].kinds[:, row[1]]),
+            Quantity("where", lambda row: row[0].where[:, row[1]]),
+        ),
+    ),
+    Quantity("lines", lambda row: [{"name": one.name, "kind": one.kind, "order": one.order} for one in row[0].lines]),
+    Rows("crossings", lambda row: [(one, row[1]) for one in row[0].crossings], CROSSING, "system_crossing"),
+    Quantity("unsettled", lambda row: row[0].unsettled),
+)
+"""Of the Campbell diagram and the speed of operation."""
+
+
+def _unbalance(solved: "SolvedSystem") -> Any:
+    if solved.unbalance_speeds is None:
+        return ABSENT
+    along = np.abs(solved.unbalance_speeds * RPM)
+    return [(one, along) for one in solved.unbalance]
+
+
+SYSTEM = (
+    Quantity("speed_rpm", lambda solved: solved.speed * RPM),
+    Quantity("mesh_phase", lambda solved: solved.mesh_phase),
+    Quantity("mesh_stiffness", _mesh_stiffness),
+    Quantity(
+        "",
+        lambda solved: [component.name for component in solved.machine.system.components],
+        "machine_component",
+        ("machine_component",),
+        "",
+        "component of the machine",
+    ),
+    Quantity(
+        "",
+        lambda solved: [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts],
+        "machine_part",
+        ("machine_part",),
+        "",
+        "component, connector or contact",
+    ),
+    Rows("modes", lambda solved: [(solved, mode) for mode in range(len(solved.modes.kinds))], MODE, "system_mode"),
+    Quantity("coordinates", lambda solved: solved.machine.system.size),
+    Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
+    Part("stability", lambda solved: solved, STABILITY),
+    Rows(
+        "transmissibility",
+        lambda solved: [(one, one.frequencies / HERTZ) for one in solved.responses],
+        TRANSMISSIBILITY,
+        "mesh_error",
+    ),
+    Quantity("superposition_error", lambda solved: solved.superposition_error),
+    Quantity(
+        "trusted_below_hz",
+        lambda solved: None if solved.housing is None else solved.housing.modes.certificate.limit / HERTZ,
+    ),
+    Part("static_error", lambda solved: static_error(solved.housing), STATIC_ERROR),
+    Part(
+        "campbell",
+        lambda solved: ABSENT if solved.campbell is None else (solved.campbell, solved.speed),
+        CAMPBELL,
+    ),
+    Quantity(
+        "",
+        lambda solved: solved.unbalance_speeds * RPM if solved.unbalance else None,
+        "unbalance_speed",
+        ("unbalance_speed",),
+        "rpm",
+        "speed of the first driver",
+    ),
+    Rows("unbalance_response", _unbalance, UNBALANCE, "unbalance_of"),
+)
+"""Of the coupled system, linear about a contact."""
+
+
+def system_document(solved: "SolvedSystem") -> dict[str, Any]:
+    """All that was found, but for the curves, which are in the results file."""
+    return document_of(SYSTEM, solved)
+
+
+_NAMES = {"components": "", "bearings": "", "gear_meshes": "teeth of "}
+_CROSSINGS = 30  # shown at most, those nearest to operation
+_WHIRL = 0.5  # from which a sense of whirl is named
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report."""
+    content = tuple(_content(document))
+    return Section("Coupled system", content, pictures=("campbell", "transmissibility", "system"))
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Coupled modes, up to twice the frequency below which the housing's modes are all there, and what follows."""
+    return (Section("", tuple(_content(document))),)
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    modes, trusted = document["modes"], document.get("trusted_below_hz")
+    shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
+    phase = document.get("mesh_phase")
+    about = "" if phase is None else f", the first pair's teeth at {phase:g} of their period"
+    yield f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm{about}"
+    for mesh in document.get("mesh_stiffness", ()):
+        yield _mesh_sentence(mesh)
+    yield from table_of(mode_columns(shown), shown)
+    yield "Shares of the kinetic energy; teeth: share of the strain energy."
+    if any(mode["kind"] == "residual" for mode in shown):
+        yield "Residual: local compliance at the seats, no mode of the housing; its frequency means nothing."
+    if certificate := document.get("certificate"):
+        yield (
+            f"{certificate['found']} of {certificate['expected']} eigenvalues found, {certificate['zeros']} of them "
+            f"zero; residuals up to {certificate['max_residual']:.0e}, sum rule kept to {certificate['sum_rule']:.0e}."
+        )
+    if "stability" in document:
+        yield from _stability(document["stability"])
+    if error := document.get("static_error"):
+        yield static_error_sentence(error)
+    if trusted and len(shown) < len(modes):
+        yield f"{counted(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz."
+    for response in document.get("transmissibility", ()):
+        yield from _peaks(response)
+    if campbell := document.get("campbell"):
+        yield from _crossings(campbell)
+
+
+def _mesh_sentence(mesh: Document) -> str:
+    """Which mesh stiffness the modes are about, and the mean without load beside it."""
+    taken, unloaded = 1e-6 * mesh["stiffness_n_per_m"], 1e-6 * mesh["unloaded_mean_n_per_m"]
+    under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
+    beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
+    return f"Mesh stiffness of {mesh['name']}: {taken:.4g} N/µm, {mesh['taken']}{under}{beside}."
+
+
+def mode_columns(shown: list[Document]) -> tuple[Column, ...]:
+    """Columns of coupled modes: frequency, damping, kind, the shares of what moves, and what is strained most."""
+    # Few machines have motions along the axis or pedestals: no columns of zeros for the others.
+    rare = [kind for kind in ("axial", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in shown)]
+    kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
+    return (
+        *columns_of(MODE),
+        *(Column("teeth" if kind == "mesh" else kind, partial(_share, kind)) for kind in kinds),
+        Column("strained most", _strained),
+    )
+
+
+def _share(kind: str, mode: Document) -> str:
+    # A rigid mode is the free turning of the train: its shares say nothing of vibration.
+    return "" if mode["kind"] == "rigid" else f"{100 * mode['energy'][kind]:z.0f} %"
+
+
+def _named(mode: Document) -> str:
+    """A mode's kind, its place, and the sense of its whirl about z."""
+    kind, where = mode["kind"], mode.get("where")
+    if not where or where == kind or kind in ("rigid", "mesh", "residual"):
+        return str(kind)
+    whirl = mode.get("whirl", {}).get(where, 0.0) if kind == "rotor" else 0.0
+    sense = "" if abs(whirl) < _WHIRL else " ↺" if whirl > 0.0 else " ↻"
+    return f"{kind}: {where}{sense}"
+
+
+def _strained(mode: Document) -> str:
+    """The part with the most strain energy."""
+    if mode["kind"] == "rigid" or "strain_energy" not in mode:
+        return ""
+    parts = [(share, _NAMES[group] + name) for group, of in mode["strain_energy"].items() for name, share in of.items()]
+    share, name = max(parts)
+    return f"{name} {100 * share:.0f} %"
+
+
+def _stability(stability: Document) -> Iterator[str]:
+    if stability["stable"]:
+        least = stability["least_damped"]
+        said = "Stable: no mode grows."
+        if least is not None:
+            said += f" Least damped: {least['damping_ratio']:.4f} at {least['frequency_hz']:.1f} Hz ({_named(least)})."
+        yield said
+        return
+    yield f"UNSTABLE: {counted(len(stability['growing']), 'mode')} grow from any disturbance."
+    for one in stability["growing"]:
+        fed = ", ".join(f"{feeder['name']} ({feeder['share']:.2g})" for feeder in one["fed_by"][:3])
+        yield (
+            f"  {one['frequency_hz']:.2f} Hz ({_named(one)}), damping ratio {one['damping_ratio']:.2g}, "
+            f"doubling in {one['doubling_time_s']:.3g} s; fed by {fed or 'nothing single'}"
+        )
+
+
+def _peaks(response: Document) -> Iterator[str | Table]:
+    """Where the dynamic mesh force and the sensors answer most to a micrometre of error."""
+    rows: list[dict[str, Any]] = []
+    for key, what in (
+        ("mesh_force_n", "mesh force [N/µm]"),
+        ("sensor_acceleration_m_per_s2", "acceleration [m/s²/µm]"),
+    ):
+        rows += [{"what": what, "name": name, "peaks": peaks} for name, peaks in response[key].items()]
+    columns = (
+        Column("peak amplitude of", "what"),
+        Column("at", "name"),
+        Column(
+            "highest: Hz (by 1 µm)",
+            lambda row: "  ".join(
+                f"{peak['frequency_hz']:.0f} ({1e-6 * peak['amplitude']:.3g})" for peak in row["peaks"][:4]
+            ),
+        ),
+    )
+    yield f"Response to the {response['excitation']}, 1 µm at any frequency:"
+    yield from table_of(columns, rows)
+
+
+_CROSSING_COLUMNS = (
+    Column("speed [rpm]", lambda row: f"{abs(row['speed_rpm']):.1f}"),
+    Column("from operation", lambda row: f"{100 * row['margin']:+.1f} %"),
+    Column("order", "line"),
+    Column("frequency [Hz]", "frequency_hz", ".2f"),
+    Column("damping ratio", "damping_ratio", ".4f"),
+    Column("mode", _named),
+    Column("teeth", lambda row: f"{100 * row['teeth']:.1f} %"),
+)
+
+
+def _crossings(campbell: Document) -> Iterator[str | Table]:
+    """Resonant speeds: mesh orders on all modes of the machine, shaft orders on those that bend shafts."""
+    kinds = {line["name"]: line["kind"] for line in campbell["lines"]}
+    met = [
+        one
+        for one in campbell["crossings"]
+        if one["kind"] == "rotor" or (one["kind"] != "residual" and kinds[one["line"]] == "mesh")
+    ]
+    nearest = sorted(met, key=lambda one: abs(one["margin"]))[:_CROSSINGS]
+    speeds = [abs(speed) for speed in campbell["speeds_rpm"]]
+    span = f"{min(speeds):.0f} to {max(speeds):.0f} rpm"
+    if not met:
+        yield f"No order of a shaft or mesh meets a mode that it excites from {span}."
+    else:
+        yield f"Resonant speeds from {span} (of the first driver), modes about the mean contact:"
+        yield from table_of(_CROSSING_COLUMNS, sorted(nearest, key=lambda one: abs(one["speed_rpm"])))
+    if rest := len(campbell["crossings"]) - len(nearest):
+        yield f"{counted(rest, 'more crossing')} in the JSON, further off or of orders that hardly excite the mode."
+    yield from campbell["unsettled"]

@@ -1,0 +1,393 @@
+"""Model updating: quantities of the fitted numbers, the pairs and the tests of the fit, and how they are shown."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from gearwhine.case.problems import key_of
+from gearwhine.doubtful import warning
+from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes
+from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+
+if TYPE_CHECKING:
+    from gearwhine.case import Case
+    from gearwhine.stages.updating import SolvedUpdate
+
+
+def _known(value: float) -> float | None:
+    """None in place of NaN, which an unpaired mode has."""
+    return None if math.isnan(value) else float(value)
+
+
+PARAMETER = (
+    Quantity("name", lambda one: one.parameter.name, "parameter", (), "", "name of the parameter", heading="parameter"),
+    Quantity("keys", lambda one: [key_of(location) for location in one.number.places]),
+    Quantity("factor", lambda one: one.number.given.factor),
+    Quantity("unit", lambda one: one.number.given.unit),
+    Quantity("", lambda one: one.number.given.unit or "1", "unit", long_name="unit of the parameter"),
+    Quantity("unit_in_si", lambda one: one.unit_in_si),
+    Quantity(
+        "before",
+        lambda one: one.number.start,
+        "value_before",
+        long_name="value before the fit, in the unit of the parameter",
+        heading="before (SI)",
+        shown=".5g",
+    ),
+    Quantity(
+        "after",
+        lambda one: one.value,
+        "value_after",
+        long_name="value after the fit, in the unit of the parameter",
+        heading="after (SI)",
+        shown=".5g",
+    ),
+    Quantity(
+        "standard_deviation",
+        lambda one: one.deviation,
+        "value_deviation",
+        long_name="standard deviation of the value, in the unit of the parameter",
+        heading="± (SI)",
+        shown=".2g",
+    ),
+    Quantity("prior", lambda one: {"nominal": one.parameter.nominal, "spread": one.parameter.spread}),
+    Quantity("range", lambda one: [one.parameter.low, one.parameter.high]),
+    Quantity("at_end_of_range", lambda one: one.is_at_end),
+    Quantity("left_of_prior_spread", lambda one: one.left),
+)
+"""Of a fitted number."""
+
+PAIR = (
+    Quantity("measured_hz", lambda pair: pair.measured / HERTZ, "measured_frequency", (), "Hz", "measured frequency"),
+    Quantity(
+        "before_hz",
+        lambda pair: pair.before / HERTZ,
+        "frequency_before",
+        (),
+        "Hz",
+        "frequency of the model before the fit",
+        document=_known,
+    ),
+    Quantity(
+        "model_hz",
+        lambda pair: pair.after / HERTZ,
+        "frequency_after",
+        (),
+        "Hz",
+        "frequency of the model after the fit",
+        document=_known,
+    ),
+    Quantity(
+        "before_error_percent",
+        lambda pair: pair.before_error_percent,
+        "error_before",
+        (),
+        "percent",
+        "error of the frequency before the fit",
+        document=_known,
+    ),
+    Quantity(
+        "error_percent",
+        lambda pair: pair.error_percent,
+        "error_after",
+        (),
+        "percent",
+        "error of the frequency after the fit",
+        document=_known,
+    ),
+    Quantity("mode", lambda pair: pair.mode),
+    Quantity("mac", lambda pair: pair.mac),
+    Quantity("before_mac", lambda pair: pair.before_mac),
+    Quantity("strength", lambda pair: pair.strength),
+    Quantity("left_uncertain_percent", lambda pair: None if pair.uncertainty is None else 100.0 * pair.uncertainty),
+)
+"""Of a measured mode and its partner before and after."""
+
+CHOICE = (  # of the dominant modes, which shapes leave open
+    Quantity("gap", lambda misfit: misfit.gap if misfit.mac is None else None),
+    Quantity("measures_agree", lambda misfit: misfit.measures_agree if misfit.mac is None else None),
+)
+MISFIT = (
+    Quantity("misfit", lambda misfit: misfit.value),
+    Quantity("rms_error_percent", lambda misfit: misfit.rms_percent),
+    Quantity("max_error_percent", lambda misfit: misfit.max_percent),
+    *CHOICE,
+    Quantity("model_modes", lambda misfit: misfit.count),
+)
+"""Of a design seen from the measured modes."""
+
+STEP = (
+    Quantity("promised", lambda step: step.promised),
+    Quantity("found", lambda step: step.found),
+    Quantity("accepted", lambda step: step.accepted),
+    Quantity("trust", lambda step: step.trust),
+    Quantity("rms_error_percent", lambda step: step.rms_percent),
+)
+"""Of a design solved on the way."""
+
+IDENTIFIABILITY = (
+    Quantity("parameters", lambda solved: len(solved.fitted.numbers)),
+    Quantity("learned_combinations", lambda solved: solved.posterior.n_learned),
+    Rows(
+        "combinations",
+        lambda solved: solved.combinations,
+        (Quantity("information", lambda row: row[0]), Quantity("parts", lambda row: row[1])),
+    ),
+    Rows(
+        "confounded",
+        lambda solved: [
+            ([solved.found[one].parameter.name, solved.found[other].parameter.name], correlation)
+            for one, other, correlation in solved.posterior.confounded
+        ],
+        (Quantity("parameters", lambda row: row[0]), Quantity("correlation", lambda row: row[1])),
+    ),
+)
+"""Combinations of parameters that the data determine, and pairs that they cannot tell apart."""
+
+HELD_BACK = (
+    Quantity("measured_hz", lambda row: row.measured / HERTZ, heading="held back [Hz]", shown=".1f"),
+    Quantity("predicted_hz", lambda row: row.predicted / HERTZ, document=_known, heading="predicted [Hz]", shown=".1f"),
+    Quantity("error_percent", lambda row: row.error_percent, document=_known, heading="error [%]", shown="+.2f"),
+    Quantity(
+        "standard_deviation_percent",
+        lambda row: 100.0 * row.deviation,
+        document=_known,
+        heading="expected ± [%]",
+        shown=".2f",
+    ),
+    Quantity(
+        "before_error_percent",
+        lambda row: row.start_error_percent,
+        document=_known,
+        heading="error before [%]",
+        shown="+.2f",
+    ),
+    Quantity("before_standard_deviation_percent", lambda row: 100.0 * row.prior_deviation, document=_known),
+    Quantity(
+        "rms_error_percent_of_the_others",
+        lambda row: row.rms_percent,
+        document=_known,
+        heading="rms of the others [%]",
+        shown=".2f",
+    ),
+)
+"""Of a mode that was left out of the fit, and predicted by it."""
+
+NULL_FIT = (
+    Quantity("frequencies_hz", lambda fit: fit.frequencies / HERTZ),
+    Quantity("rms_error_percent", lambda fit: fit.rms_percent),
+    Quantity("max_error_percent", lambda fit: fit.max_percent),
+    Quantity("gap", lambda fit: fit.gap),
+    Quantity("measures_agree", lambda fit: fit.measures_agree),
+    Quantity("model_modes", lambda fit: fit.count),
+    Quantity("all_met", lambda fit: fit.is_met),
+)
+"""Of a set of frequencies fitted likewise."""
+
+NULL = (
+    Quantity("sets", lambda test: len(test.fits)),
+    Quantity("as_good_in_rms", lambda test: test.as_good_in_rms),
+    Quantity("all_met", lambda test: test.all_met),
+    Quantity("within_5_percent", lambda test: test.within(5.0)),
+    Quantity("within_2_percent", lambda test: test.within(2.0)),
+    Quantity("within_1_percent", lambda test: test.within(1.0)),
+    Quantity("within_2_percent_and_clear", lambda test: test.within(2.0, clear=True)),
+    Quantity("median_rms_error_percent", lambda test: test.median_rms_percent),
+    Part("measured_likewise", lambda test: test.measured, NULL_FIT),
+    Rows("fits", lambda test: test.fits, NULL_FIT),
+)
+"""Of random sets of frequencies, and the parts of them that are fitted well."""
+
+UPDATE = (
+    Rows("parameters", lambda solved: solved.found, PARAMETER, "parameter"),
+    Rows("pairs", lambda solved: solved.pairs, PAIR, "pair"),
+    Quantity("rms_error_percent", lambda solved: solved.misfit_after.rms_percent),
+    Quantity("max_error_percent", lambda solved: solved.misfit_after.max_percent),
+    Quantity(
+        "pairing",
+        lambda solved: "dominance in order of frequency" if solved.target.shapes is None else "MAC, best assignment",
+    ),
+    Part("", lambda solved: solved.misfit_after, CHOICE),
+    Quantity("wrong_pairs", lambda solved: sum(pair.mode is None for pair in solved.pairs)),
+    Part("before", lambda solved: solved.misfit_before, MISFIT),
+    Part(
+        "search",
+        lambda solved: solved,
+        (
+            Quantity("mesh_dofs", lambda solved: 3 * len(solved.start.mesh.points)),
+            Rows("steps", lambda solved: solved.steps, STEP),
+        ),
+    ),
+    Part(
+        "mesh",
+        lambda solved: solved.after.mesh.points,
+        (Quantity("nodes", len), Quantity("dofs", lambda points: 3 * len(points))),
+    ),
+    Part("identifiability", lambda solved: solved, IDENTIFIABILITY),
+    Quantity("seconds", lambda solved: {**solved.seconds, "total": sum(solved.seconds.values())}),
+    Part(
+        "model_modes",
+        lambda solved: ABSENT if solved.target.count is None else solved,
+        (
+            Quantity("below_hz", lambda solved: solved.target.count.limit / HERTZ),
+            Quantity("count", lambda solved: solved.misfit_after.count),
+        ),
+    ),
+    Rows("held_back", lambda solved: solved.held_back or ABSENT, HELD_BACK),
+    Part("null", lambda solved: solved.null or ABSENT, NULL),
+)
+"""Of an updated housing."""
+
+
+def update_document(case: "Case", solved: "SolvedUpdate") -> dict[str, Any]:
+    """What was fitted, how well, and what that is worth, as the command's JSON."""
+    document = {"title": case.title} | document_of(UPDATE, solved)
+    if solved.left_out:
+        message = f"{solved.left_out} degrees of freedom were not measured in every mode and took no part"
+        document["warnings"] = [warning("shapes", message)]
+    return document
+
+
+def update_arrays(case: "Case", solved: "SolvedUpdate") -> LabelledArrays:
+    """Fitted parameters and the pairs of modes before and after as labelled arrays."""
+    variables = arrays_of(UPDATE, solved)
+    return LabelledArrays(variables, {"unit": variables.pop("unit")}, file_attributes(case))
+
+
+_FEW = 0.05  # part of random sets fitted as well, above which the errors alone show little
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: the fitted numbers, and what the fit is worth."""
+    before, learned = document["before"], document["identifiability"]
+    sentences = [
+        f"Before: {before['rms_error_percent']:.2f} % root mean square, {before['max_error_percent']:.2f} % at most.",
+        f"The data tell {learned['learned_combinations']} combinations of the {learned['parameters']} numbers better "
+        "than the prior.",
+    ]
+    if null := document.get("null"):
+        sentences += _null(null)
+    else:
+        sentences.append("Not known is how often random frequencies are fitted as well (--null).")
+    tables = table_of(columns_of(PARAMETER), document["parameters"])
+    held_back = document.get("held_back", ())
+    tables += table_of(columns_of(HELD_BACK), held_back, "Each mode predicted by a fit to the others")
+    return Section("Updated numbers", (*sentences, *tables), pictures=("update",))
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Parameters, modes, what the data cannot tell apart, and the tests of the fit."""
+    return (Section("", tuple(_content(document))),)
+
+
+def _in_unit(heading: str, key: str) -> Column:
+    """Column of a parameter's value in its own unit."""
+    return Column(heading, lambda row: f"{row[key] / row['unit_in_si']:.4g} {row['unit']}".strip())
+
+
+def _value(heading: str, key: str, form: str, before: str = "", unit: str = "") -> Column:
+    """Column of a value that an unpaired mode has not."""
+
+    def text(row: Document) -> str:
+        return before + ("none" if row[key] is None else f"{row[key]:{form}}{unit}")
+
+    return Column(heading, text)
+
+
+_PARAMETERS = (
+    Column("parameter", "name"),
+    _in_unit("before", "before"),
+    _in_unit("after", "after"),
+    _in_unit("give or take", "standard_deviation"),
+    Column("of the prior's", lambda row: f"{100 * row['left_of_prior_spread']:.0f} %"),
+    Column("", lambda row: "at the end of its range" if row["at_end_of_range"] else ""),
+)
+_PAIRS = (
+    _value("mode", "mode", "d"),
+    Column("measured [Hz]", "measured_hz", ".0f"),
+    _value("before [Hz]", "before_hz", ".1f"),
+    _value("error", "before_error_percent", "+.2f", unit=" %"),
+    _value("after [Hz]", "model_hz", ".1f"),
+    _value("error", "error_percent", "+.2f", unit=" %"),
+)
+_PREDICTED = (
+    Column("held back [Hz]", "measured_hz", ".0f"),
+    _value("predicted [Hz]", "predicted_hz", ".1f"),
+    _value("error", "error_percent", "+.2f", unit=" %"),
+    _value("expected", "standard_deviation_percent", ".2f", before="± ", unit=" %"),
+    _value("error before", "before_error_percent", "+.2f", unit=" %"),
+    _value("rms of others", "rms_error_percent_of_the_others", ".2f", unit=" %"),
+)
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    yield from table_of(_PARAMETERS, document["parameters"])
+    yield from table_of(_PAIRS, document["pairs"])
+    yield from _fit(document)
+    yield from _identifiability(document["identifiability"])
+    yield from table_of(_PREDICTED, document.get("held_back", ()))
+    if "null" in document:
+        yield from _null(document["null"])
+        if document["null"]["as_good_in_rms"] > _FEW:
+            yield "So the errors alone say little of this housing: it is a plausible one, calibrated."
+    else:
+        random = "How often random frequencies are fitted as well: --null 20. " if document["gap"] is not None else ""
+        yield random + "Modes held back: --held-back."
+    for each in document.get("warnings", ()):
+        yield f"Mind: {each['message']}."
+
+
+def _fit(document: Document) -> Iterator[str]:
+    counts = document.get("model_modes")
+    count = "" if counts is None else f"; {counted(counts['count'], 'model mode')} below {counts['below_hz']:.0f} Hz"
+    yield (
+        f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, rms "
+        f"{document['rms_error_percent']:.2f} % (before: {document['before']['rms_error_percent']:.2f} %){count}; "
+        f"{_choice(document)}."
+    )
+    solved, mesh = document["search"], document["mesh"]
+    yield (
+        f"{counted(len(solved['steps']), 'design')} solved on the way, the first on a mesh of {solved['mesh_dofs']} "
+        f"degrees of freedom, verified on one of {mesh['dofs']}; {document['seconds']['total']:.0f} s."
+    )
+
+
+def _choice(document: Document) -> str:
+    """How clearly the modes paired are the ones that were measured."""
+    if document["gap"] is None:
+        values = [pair["mac"] for pair in document["pairs"]]
+        alone = f", {document['wrong_pairs']} without a partner" if document["wrong_pairs"] else ""
+        return f"MAC from {min(values):.2f} to {max(values):.2f}{alone}"
+    agree = "agree" if document["measures_agree"] else "do not all agree"
+    if not math.isfinite(document["gap"]):
+        return "no mode of the band is left out of the pairs"
+    return f"gap {document['gap']:.2f}, the three measures of dominance {agree}"
+
+
+def _identifiability(told: Document) -> Iterator[str]:
+    learned = counted(told["learned_combinations"], "combination")
+    yield (
+        f"Of {told['parameters']} parameters the data tell {learned} better than the prior did; the rest stays what "
+        "was assumed."
+    )
+    for row in told["confounded"][:6]:
+        one, other = row["parameters"]
+        yield f"  not told apart: {one} and {other} (correlation {row['correlation']:+.2f})"
+
+
+def _null(null: Document) -> Iterator[str]:
+    """How often random frequencies are fitted as well as the measured ones."""
+    five, two, one, met, rms = (
+        f"{100 * null[key]:.0f} %"
+        for key in ("within_5_percent", "within_2_percent", "within_1_percent", "all_met", "as_good_in_rms")
+    )
+    own = null["measured_likewise"]
+    yield (
+        f"Of {null['sets']} random sets of as many frequencies the same search on the coarser mesh fits {five} within "
+        f"5 %, {two} within 2 % and {one} within 1 % each, and meets for {met} all that is asked for."
+    )
+    yield (
+        f"The measured ones come there to {own['rms_error_percent']:.2f} % root mean square, "
+        f"{own['max_error_percent']:.2f} % at most; {rms} of the random sets do as well."
+    )
