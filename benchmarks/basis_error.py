@@ -15,7 +15,7 @@ import coupling
 from gearwhine.case import load_case
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import basis_error, build_machine, housing_in_machine
+from gearwhine.stages.machine import basis_error, build_machine, reduce_housing
 
 HERTZ = 2.0 * np.pi
 LIMITS = (2400.0, 3200.0)
@@ -28,7 +28,7 @@ def machine_of(
     """The rig's machine on a mesh with a limit [Hz], and where asked its told error."""
     changes = [f'housing.box.mesh_size="{mesh_size} mm"', f"housing.frequency_limit={limit}"]
     case = load_case("nasa-gear-noise-rig", changes).case
-    housing = housing_in_machine(case, solve_housing(case))
+    housing = reduce_housing(case, solve_housing(case))
     pairs = solve_gears(case)
     machine = build_machine(case, housing, pairs)
     return machine, basis_error(case, machine, housing, pairs) if told else None

@@ -39,7 +39,7 @@ from coupling import (
     TransientOutputs,
     TransientSettings,
     Unbalance,
-    couple,
+    assemble_machine,
     rotor_component,
     simulate,
     static_equilibrium,
@@ -82,7 +82,7 @@ def two_shafts(modes: int, *, corners: bool, friction: float = 0.0) -> CoupledMa
         rotors.append(rotor_component(name, modal, start=0.0, damping_ratio=0.01))
         bearings += [MountedBearing(bearing, name, None) for bearing in held]
         mounted.append(MountedGear(gear.name, name, LENGTH / 2, (number * pair.working_centre_distance, 0.0)))
-    return couple(
+    return assemble_machine(
         rotors,
         None,
         speeds={"input": SPEED, "output": -SPEED},

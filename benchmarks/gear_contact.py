@@ -27,9 +27,9 @@ from coupling.gears import (
     ToothContact,
     face_slices,
     harris_map,
+    loaded_transmission_error,
     mesh_stiffness,
     optimal_tip_relief,
-    static_transmission_error,
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force
@@ -90,7 +90,7 @@ def main() -> None:
             def curves(pair: GearPairGeometry = pair, model: StiffnessModel = model, force: float = force) -> None:
                 contact = contact_of(pair, model)
                 mesh_stiffness(contact, PHASES)
-                static_transmission_error(contact, force, PHASES)
+                loaded_transmission_error(contact, force, PHASES)
 
             seconds = least(curves, options.repeats)
             print(

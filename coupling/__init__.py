@@ -1,7 +1,7 @@
 """Coupled dynamics: a geared machine of housing modes, rotor modes, bearings and gears, and its motion.
 
 - :class:`Machine` -- shafts, gears, gear pairs, bearings and a housing; it derives speeds, torques and mesh geometry,
-  and refuses parts that cannot form a machine. :func:`couple` assembles a :class:`CoupledMachine` of components.
+  and refuses parts that cannot form a machine. :func:`assemble_machine` assembles a :class:`CoupledMachine` of components.
 - :func:`static_equilibrium` -- rest position under the mean load, at which the mean mesh stiffness is taken.
 - :func:`coupled_modes`, :func:`stability`, :func:`system_campbell`, :func:`receptance` -- linear dynamics about it.
 - :func:`simulate` -- transient by Newmark's method or exponential collocation.
@@ -30,15 +30,15 @@ from coupling.contact_state import (
 from coupling.decimation import Decimation, decimation
 from coupling.description import Machine
 from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
-from coupling.exact_march import march_method
+from coupling.exact_march import integration_method
 from coupling.excitation import ExcitationLine, excitation_lines
 from coupling.free_speed import free_speed
 from coupling.gear_train import Output
-from coupling.histories import Histories, histories, nothing_recorded, transient_outputs
+from coupling.histories import Histories, empty_record, histories, transient_outputs
 from coupling.loads import AnyTorque, BowReactions, Drive, Torque, TorqueHistory, TorqueRipple, TorqueSlope, Unbalance
-from coupling.machine import CoupledMachine, couple
+from coupling.machine import CoupledMachine, assemble_machine
 from coupling.march_run import Checkpoint, sample_times
-from coupling.marching import Block, march_blocks, march_key
+from coupling.marching import Block, integrate_blocks, integration_key
 from coupling.modal_motion import ModalRecord, ModalRows, modal_record, modal_rows, with_modal_rows
 from coupling.modes import CoupledModes, ModesCertificate, coupled_modes
 from coupling.motion import Motion
@@ -58,7 +58,7 @@ from coupling.periodic import (
     superposed_response,
 )
 from coupling.receptance import receptance, resonance_grid
-from coupling.settings import Recorded, TransientOutputs, TransientSettings
+from coupling.settings import MotionRecord, TransientOutputs, TransientSettings
 from coupling.shaft_dashpots import ShaftDashpots
 from coupling.shares import ModeShares, Part
 from coupling.spectrum import (
@@ -89,7 +89,7 @@ from coupling.transmissibility import (
     sensor_force_response,
     unbalance_response,
 )
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 __all__ = [
     "LONGEST_COMMON_PERIOD",
@@ -133,6 +133,7 @@ __all__ = [
     "ModesCertificate",
     "ModesError",
     "Motion",
+    "MotionRecord",
     "MountedBearing",
     "MountedGear",
     "NonlinearConnector",
@@ -141,7 +142,6 @@ __all__ = [
     "Peak",
     "PeriodicError",
     "PeriodicResponse",
-    "Recorded",
     "ResponseCurve",
     "RollingLaw",
     "RotorComponent",
@@ -151,6 +151,7 @@ __all__ = [
     "SignalParts",
     "Sliding",
     "Spectrum",
+    "SpeedProfile",
     "SpeedTable",
     "Stability",
     "SuperposedResponse",
@@ -167,32 +168,31 @@ __all__ = [
     "TransientOutputs",
     "TransientResult",
     "TransientSettings",
-    "Turning",
     "Unbalance",
     "Window",
     "amplitude_spectrum",
+    "assemble_machine",
     "averaged_spectrum",
     "axial_forces",
     "common_cycles",
     "contact_at",
-    "couple",
     "coupled_modes",
     "decimation",
+    "empty_record",
     "excitation_groups",
     "excitation_lines",
     "free_speed",
     "histories",
     "housing_component",
+    "integrate_blocks",
+    "integration_key",
+    "integration_method",
     "linear_matrices",
     "lines_at",
-    "march_blocks",
-    "march_key",
-    "march_method",
     "mean_contact",
     "mesh_error_response",
     "modal_record",
     "modal_rows",
-    "nothing_recorded",
     "periodic_response",
     "receptance",
     "require_thrust_carried",

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from coupling.errors import TransientError
 from coupling.system import CoupledSystem
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -20,7 +20,7 @@ _STEPS_PER_BLOCK = 1 << 20
 _MOST_BLOCKS = 1 << 24
 
 
-def coarsest_step(system: CoupledSystem, turning: Turning, largest: float) -> float:
+def coarsest_step(system: CoupledSystem, turning: SpeedProfile, largest: float) -> float:
     """Coarsest step [s]: it resolves the highest natural frequency, and the largest step at the highest speed."""
     highest = system.highest_frequency
     resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
@@ -47,7 +47,7 @@ def block_ends(duration: float, interval: float, step: float, samples: int = SAM
 
 
 def boundaries(
-    system: CoupledSystem, turning: Turning, start: float, end: float, step: float, others: tuple[float, ...]
+    system: CoupledSystem, turning: SpeedProfile, start: float, end: float, step: float, others: tuple[float, ...]
 ) -> FloatArray:
     """Start, events and end of a block, with long stretches between them cut evenly [s]."""
     inner = [np.array([time for time in others if start < time < end])]
@@ -72,7 +72,7 @@ def boundaries(
     return np.concatenate([*cuts, times[-1:]])
 
 
-def _known_times(system: CoupledSystem, turning: Turning) -> Iterator[FloatArray]:
+def _known_times(system: CoupledSystem, turning: SpeedProfile) -> Iterator[FloatArray]:
     """Times at which loads and speeds change their slope [s]."""
     if len(turning.times) > 1:
         yield turning.times

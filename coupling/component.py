@@ -185,8 +185,8 @@ def housing_component(
     if damping_ratios.shape != (m,):
         raise CouplingError(f"{len(damping_ratios)} damping ratios for {m} housing modes; expected as many")
     omega, ratios = modes.frequencies, damping_ratios
-    if modes.attachments is not None:
-        omega = np.concatenate([omega, modes.attachments.frequencies])
+    if modes.residual_modes is not None:
+        omega = np.concatenate([omega, modes.residual_modes.frequencies])
         ratios = np.concatenate([ratios, np.full(len(omega) - m, damping_ratios.max(initial=0.0))])
     n = len(omega)
     for place, motion in [*seats.items(), *sensors.items()]:

@@ -174,7 +174,7 @@ class ContactConnector:
     clearance: float = 0.0
     drives: bool = True
     sliding: Sliding | None = None
-    greatest_compression: float = np.inf
+    compression_limit: float = np.inf
 
     @property
     def friction_law(self) -> tuple[FloatArray, bool]:

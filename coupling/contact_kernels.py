@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from coupling.bearing_kernels import evaluate_bearings
 from coupling.gears.friction_kernels import friction_shares
-from coupling.gears.kernels import ranked_nearness, tooth_force
+from coupling.gears.kernels import ranked_penetration, tooth_force
 from coupling.kernel_arrays import Bearings, Contacts, Scratch
 from coupling.small_systems import solve_in_place
 from rotors.compiled import inner
@@ -52,7 +52,9 @@ def evaluate_contact(
 @inner()
 def penetration(contacts: Contacts, k: int, turned: float, delta: float, rank: int) -> float:
     """Penetration of the ``rank``-th most compressed tooth pair of a contact [m]."""
-    return ranked_nearness(contacts.phase[k] + contacts.rate[k] * turned, delta, contacts.law, contacts.law_at[k], rank)
+    return ranked_penetration(
+        contacts.phase[k] + contacts.rate[k] * turned, delta, contacts.law, contacts.law_at[k], rank
+    )
 
 
 @inner()

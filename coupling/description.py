@@ -30,7 +30,7 @@ from coupling.gears import GearPairGeometry
 from coupling.gears.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.histories import histories, transient_outputs
 from coupling.loads import BowReactions, Torque, Unbalance, constant_torques
-from coupling.machine import CoupledMachine, couple
+from coupling.machine import CoupledMachine, assemble_machine
 from coupling.motion import Motion
 from coupling.mounted import GearMesh, MountedBearing, MountedGear
 from coupling.parts import (
@@ -242,7 +242,7 @@ class Machine:
         Raises
         ------
         CouplingError
-            As :func:`coupling.couple`.
+            As :func:`coupling.assemble_machine`.
         rotors.RotorError
             Where a bearing's table over speed does not reach as far as the speeds.
         """
@@ -253,7 +253,7 @@ class Machine:
             for shaft in self.shafts
             if shaft.bow is not None
         ]
-        return couple(
+        return assemble_machine(
             components,
             self.housing_component,
             speeds=self.speeds,

@@ -37,7 +37,7 @@ from coupling.periodic.orbit import element_sizes
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.step import kernel_arrays
 from coupling.system import CoupledSystem
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -50,7 +50,9 @@ _MUCH_BETTER = 1e-2  # part of the tolerance below which elements may grow
 _CUTS = 400  # room for switches in a chunk, besides four for each element
 
 
-def march_method(system: CoupledSystem, settings: TransientSettings, turning: Turning) -> Literal["newmark", "exact"]:
+def integration_method(
+    system: CoupledSystem, settings: TransientSettings, turning: SpeedProfile
+) -> Literal["newmark", "exact"]:
     """Method of time integration: the given one, or by ``auto`` the exact one wherever it applies.
 
     Raises
@@ -61,13 +63,13 @@ def march_method(system: CoupledSystem, settings: TransientSettings, turning: Tu
     return "newmark" if exact_part(condensed(system).system, settings, turning) is None else "exact"
 
 
-def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Turning) -> LinearPart | None:
+def exact_part(system: CoupledSystem, settings: TransientSettings, turning: SpeedProfile) -> LinearPart | None:
     """Linear part of the exact method; None for Newmark's method.
 
     Raises
     ------
     TransientError
-        As :func:`march_method`.
+        As :func:`integration_method`.
     """
     if settings.method == "newmark":
         return None
@@ -103,7 +105,7 @@ class CollocationStepper:
     too_fine = "elements below {step:.1e} s; raise the tolerance"
 
     def __init__(
-        self, part: LinearPart, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
+        self, part: LinearPart, settings: TransientSettings, outputs: TransientOutputs, turning: SpeedProfile
     ) -> None:
         self.system, self._part, self._settings = part.system, part, settings
         self.arrays = kernel_arrays(part.system, outputs, settings.beta, settings.gamma)

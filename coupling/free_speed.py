@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import TransientError
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,7 +30,7 @@ def free_speed(
     start: float,
     duration: float,
     nominal: float,
-) -> Turning:
+) -> SpeedProfile:
     """Speed of the rigid train over time, piecewise linear with pieces of equal duration.
 
     Parameters
@@ -88,4 +88,4 @@ def free_speed(
         )
     if not found.success:
         raise TransientError(f"the free speed cannot be followed beyond t = {found.t[-1]:.6g} s: {found.message}")
-    return Turning(times, np.maximum(found.y[0], 0.0) / nominal)
+    return SpeedProfile(times, np.maximum(found.y[0], 0.0) / nominal)

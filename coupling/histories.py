@@ -12,9 +12,9 @@ from coupling.bearing_arrays import bearing_arrays
 from coupling.connector import LinearConnector, NonlinearConnector
 from coupling.machine import CoupledMachine
 from coupling.mounted import MountedGear
-from coupling.settings import Recorded, TransientOutputs
+from coupling.settings import MotionRecord, TransientOutputs
 from coupling.sliding import friction_of
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -41,22 +41,22 @@ class Histories:
         Of every contact with friction: its force across the line of action [N], and its power loss from the nominal
         rotation [W]; see :func:`coupling.sliding.friction_of`.
     tie_axes : dict of str to tuple of int
-        Axes of the columns of each ``tie_force``: x, y, z and the rotations about x and y, 0 to 4.
+        Axes of the columns of each ``bearing_reaction``: x, y, z and the rotations about x and y, 0 to 4.
     """
 
     times: FloatArray
     sensor_acceleration: dict[str, FloatArray]
     gear_motion: dict[str, FloatArray]
-    tie_force: dict[str, FloatArray]
+    bearing_reaction: dict[str, FloatArray]
     mesh_force: dict[str, FloatArray]
     mesh_compression: dict[str, FloatArray]
     mesh_friction: dict[str, FloatArray]
-    tie_axes: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    bearing_axes: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     @property
     def bearing_force(self) -> dict[str, FloatArray]:
         """Force of each shaft on its bearing along x and y [N], shape (s, 2) each."""
-        return {name: force[:, :2] for name, force in self.tie_force.items()}
+        return {name: force[:, :2] for name, force in self.bearing_reaction.items()}
 
     @property
     def bearing_load(self) -> dict[str, FloatArray]:
@@ -65,9 +65,9 @@ class Histories:
         Components that a bearing does not hold are zero.
         """
         found = {}
-        for name, force in self.tie_force.items():
+        for name, force in self.bearing_reaction.items():
             found[name] = np.zeros((len(force), 5))
-            found[name][:, list(self.tie_axes.get(name, range(force.shape[1])))] = force
+            found[name][:, list(self.bearing_axes.get(name, range(force.shape[1])))] = force
         return found
 
     @property
@@ -219,21 +219,21 @@ def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
     )
 
 
-def nothing_recorded(machine: CoupledMachine, outputs: TransientOutputs) -> Recorded:
+def empty_record(machine: CoupledMachine, outputs: TransientOutputs) -> MotionRecord:
     """Empty record of a transient with these outputs: names and widths of the signals before the first sample."""
     contacts = len(machine.system.contacts)
     widths = *(len(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)), contacts, contacts
-    return Recorded(np.zeros(0), *(np.zeros((0, width)) for width in widths))
+    return MotionRecord(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
-def histories(machine: CoupledMachine, result: Recorded, turning: Turning | None = None) -> Histories:
+def histories(machine: CoupledMachine, result: MotionRecord, turning: SpeedProfile | None = None) -> Histories:
     """Time histories by name of a transient or a periodic response with :func:`transient_outputs`.
 
     ``turning`` is the speed over time, by default the nominal one.
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
-    turned, rates, _ = (turning or Turning.steady()).at(result.times)
+    turned, rates, _ = (turning or SpeedProfile.steady()).at(result.times)
     nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0
@@ -251,7 +251,7 @@ def histories(machine: CoupledMachine, result: Recorded, turning: Turning | None
         times=result.times,
         sensor_acceleration={name: result.acceleration[:, i] for i, name in enumerate(names)},
         gear_motion={gear.name: result.displacement[:, 3 * i : 3 * i + 3] for i, gear in enumerate(gears)},
-        tie_force=forces,
+        bearing_reaction=forces,
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
         mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
         mesh_friction={
@@ -259,7 +259,7 @@ def histories(machine: CoupledMachine, result: Recorded, turning: Turning | None
             for i, contact in enumerate(machine.system.contacts)
             if contact.sliding is not None
         },
-        tie_axes={connector.name: connector.axes for connector in _bearings(machine)},
+        bearing_axes={connector.name: connector.axes for connector in _bearings(machine)},
     )
 
 

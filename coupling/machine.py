@@ -18,10 +18,10 @@ from coupling.gears import ToothContact, sliding_friction
 from coupling.loads import AnyTorque, BowReactions, Drive, Loads, MachineCoordinates, Unbalance, constant_torques
 from coupling.mean_mesh import mean_meshes
 from coupling.mounted import GearMesh, MountedBearing
-from coupling.pressed_flanks import with_pressed_flanks
+from coupling.pressed_flanks import with_loaded_flanks
 from coupling.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from coupling.shuttling import shuttling_loads
-from coupling.sliding import held_at_speed, sliding_flanks
+from coupling.sliding import sliding_flanks, with_balanced_friction
 from coupling.system import CoupledSystem, embed
 from coupling.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
 from rotors import Bearing
@@ -78,7 +78,7 @@ class CoupledMachine:
         return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
 
     @property
-    def pressed_contacts(self) -> tuple[int, ...]:
+    def loaded_contacts(self) -> tuple[int, ...]:
         """Number of the contact of each mesh that carries the mean load: its drive flanks, or back flanks if braked."""
         contacts = self.system.contacts
         return tuple(
@@ -115,7 +115,7 @@ class CoupledMachine:
         present = self.speeds[self.leading_rotor]
         if present == 0.0:
             raise CouplingError(f"rotor {self.leading_rotor!r} stands still; expected a machine that turns")
-        return couple(
+        return assemble_machine(
             self.rotors,
             self.housing,
             speeds={name: value * (speed / present) for name, value in self.speeds.items()},
@@ -131,7 +131,7 @@ class CoupledMachine:
         )
 
 
-def couple(
+def assemble_machine(
     rotors: Sequence[RotorComponent],
     housing: HousingComponent | None,
     *,
@@ -230,9 +230,9 @@ def couple(
         ),
         nonlinear=tuple(own for _, own in held if own is not None),
     )
-    system = with_pressed_flanks(system, _back_contacts(meshes))
+    system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
-    system = held_at_speed(_with_shuttling(system, coordinates, flanks))
+    system = with_balanced_friction(_with_shuttling(system, coordinates, flanks))
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -315,7 +315,7 @@ def _contact(
         clearance,
         drives=not back,
         sliding=_sliding(coordinates, mesh, law, sense),
-        greatest_compression=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
+        compression_limit=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
     )
 
 

@@ -23,7 +23,7 @@ from coupling.statics import coasting_velocity, static_equilibrium
 from coupling.step import KernelArrays
 from coupling.stored_energy import stored_energy
 from coupling.system import CoupledSystem
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -171,7 +171,9 @@ class Stepper(Protocol):
 class Integration:
     """Driver of a time integration: what stays the same through it, and the loop over chunks of steps."""
 
-    def __init__(self, stepper: Stepper, settings: TransientSettings, turning: Turning, samples_per_block: int) -> None:
+    def __init__(
+        self, stepper: Stepper, settings: TransientSettings, turning: SpeedProfile, samples_per_block: int
+    ) -> None:
         system = stepper.system
         self.system, self.settings, self.turning, self.stepper = system, settings, turning, stepper
         self.arrays = stepper.arrays
@@ -267,12 +269,12 @@ class Integration:
         DeflectionError
         """
         for contact, peak in zip(self.system.contacts, peaks.tolist(), strict=True):
-            pressed = max(float(contact.direction @ q) - contact.clearance, peak / contact.contact.mean_stiffness)
-            if pressed > contact.greatest_compression:
+            pressed = max(float(contact.direction @ q) - contact.clearance, peak / contact.contact.mean_mesh_stiffness)
+            if pressed > contact.compression_limit:
                 raise DeflectionError(
                     f"the teeth of {contact.name} are pressed together by {1e3 * pressed:.3g} mm between "
                     f"t = {begin:.6g} s and {now:.6g} s, where teeth can follow "
-                    f"{1e3 * contact.greatest_compression:.3g} mm at most (a quarter of the module); expected loads "
+                    f"{1e3 * contact.compression_limit:.3g} mm at most (a quarter of the module); expected loads "
                     "that the teeth carry and a machine that is stable: look for negative damping ratios among the "
                     "coupled modes (gearwhine system)"
                 )
@@ -318,7 +320,7 @@ def timed_amplitude(system: CoupledSystem) -> FloatArray | float:
     return sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
 
 
-def _resting(system: CoupledSystem, turning: Turning, pushing: FloatArray, duration: float) -> FloatArray:
+def _resting(system: CoupledSystem, turning: SpeedProfile, pushing: FloatArray, duration: float) -> FloatArray:
     """Coordinates under the loads' amplitudes at rest, shape (n,); F t²/2 where nothing resists."""
     fastest = max(1.0, float(turning.rates.max())) ** 2
     loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + pushing

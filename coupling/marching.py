@@ -17,16 +17,16 @@ from coupling.exact_march import CollocationStepper, exact_part
 from coupling.fingerprint import fingerprint
 from coupling.march_run import Checkpoint, Integration, sample_times
 from coupling.newmark_stepper import NewmarkStepper
-from coupling.settings import RECORDED, Recorded, TransientOutputs, TransientSettings
+from coupling.settings import RECORDED, MotionRecord, TransientOutputs, TransientSettings
 from coupling.step import empty_samples
 from coupling.system import CoupledSystem
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Block(Recorded):
+class Block(MotionRecord):
     """A block of the record, and the checkpoint after it.
 
     Attributes
@@ -43,12 +43,12 @@ class Block(Recorded):
     count: int
 
 
-def march_blocks(
+def integrate_blocks(
     system: CoupledSystem,
     settings: TransientSettings,
     outputs: TransientOutputs,
     *,
-    turning: Turning | None = None,
+    turning: SpeedProfile | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     after: Checkpoint | None = None,
     samples_per_block: int = SAMPLES_PER_BLOCK,
@@ -59,7 +59,7 @@ def march_blocks(
     Parameters
     ----------
     after : Checkpoint, optional
-        Checkpoint to continue from, of the same run; see :func:`march_key`.
+        Checkpoint to continue from, of the same run; see :func:`integration_key`.
     samples_per_block : int
         Approximate length of a block. Time is cut where blocks end, so the last digits of a result depend on it.
 
@@ -84,12 +84,12 @@ def march_blocks(
         )
 
 
-def march_key(
+def integration_key(
     system: CoupledSystem,
     settings: TransientSettings,
     outputs: TransientOutputs,
     *,
-    turning: Turning | None = None,
+    turning: SpeedProfile | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     samples_per_block: int = SAMPLES_PER_BLOCK,
 ) -> str:
@@ -106,7 +106,7 @@ def _prepared(
     system: CoupledSystem,
     settings: TransientSettings,
     outputs: TransientOutputs,
-    turning: Turning | None,
+    turning: SpeedProfile | None,
     initial: tuple[FloatArray, FloatArray] | None,
     samples_per_block: int,
 ) -> tuple[Integration, tuple[FloatArray, FloatArray] | None]:
@@ -118,7 +118,7 @@ def _prepared(
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
         outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
         initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    turning = turning or Turning.steady()
+    turning = turning or SpeedProfile.steady()
     part = exact_part(system, settings, turning)
     stepper = (
         NewmarkStepper(system, settings, outputs, turning)

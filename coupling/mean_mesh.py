@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearError, ToothContact, hunting_mesh, mesh_period_phases, static_transmission_error
+from coupling.gears import GearError, ToothContact, hunting_period_mesh, loaded_transmission_error, mesh_period_phases
 from coupling.gears.static import period_mean
 from coupling.statics import load_balances
 from coupling.system import CoupledSystem
@@ -65,11 +65,11 @@ def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
         Where no teeth meet at some phase.
     """
     if contact.hunting_period > 1:
-        mesh = hunting_mesh(contact, force)
+        mesh = hunting_period_mesh(contact, force)
     else:
-        mesh = static_transmission_error(contact, force, mesh_period_phases(contact, _POINTS))
+        mesh = loaded_transmission_error(contact, force, mesh_period_phases(contact, _POINTS))
     softness = period_mean(mesh.phases, 1.0 / mesh.tangent_stiffness)
-    return MeanMesh(force, mesh.mean_stiffness, mesh.mean_transmission_error, 1.0 / softness)
+    return MeanMesh(force, mesh.mean_mesh_stiffness, mesh.mean_transmission_error, 1.0 / softness)
 
 
 def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
@@ -82,11 +82,11 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     driving = [number for number, contact in enumerate(system.contacts) if contact.drives]
     if not driving or not np.any(system.load) or not load_balances(system):
         return nothing
-    rigid, stiffest = system.unresisted_motions
+    rigid, stiffest = system.rigid_body_motions
     held = system.stiffness + stiffest * rigid @ rigid.T
     directions = system.contact_directions[:, driving]
     laws = [system.contacts[number].contact for number in driving]
-    stiffness = np.array([law.mean_stiffness for law in laws])
+    stiffness = np.array([law.mean_mesh_stiffness for law in laws])
     offset = np.array([system.contacts[number].clearance for number in driving])
     before = np.full(len(driving), np.nan)
     pressed = np.ones(len(driving), dtype=bool)

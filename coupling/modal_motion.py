@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError
 from coupling.machine import CoupledMachine
-from coupling.settings import Recorded, TransientOutputs
+from coupling.settings import MotionRecord, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -111,7 +111,7 @@ def with_modal_rows(
     )
 
 
-def modal_record(machine: CoupledMachine, result: Recorded, count: int = 0, *, housing: bool = True) -> ModalRecord:
+def modal_record(machine: CoupledMachine, result: MotionRecord, count: int = 0, *, housing: bool = True) -> ModalRecord:
     """Modal motion by name from the record of a transient with :func:`with_modal_rows`."""
     names = list(_coordinate_rows(machine, count))
     moved = result.displacement[:, result.displacement.shape[1] - len(names) :]

@@ -15,7 +15,7 @@ and H = Dᵀ W only the few forces f of teeth and nonlinear bearings remain unkn
 
 δ* and δ'* being those without them, are found by Newton's method on a system as small as their number. Friction acts
 along directions of its own, columns of D whose deflections no law needs. The projections Uᵀq and Dᵀq follow the same
-recurrence as q. s is the turned time of :class:`coupling.Turning`, α = s'' the angular acceleration. With β = 1/4, γ =
+recurrence as q. s is the turned time of :class:`coupling.SpeedProfile`, α = s'' the angular acceleration. With β = 1/4, γ =
 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear system.
 """
 

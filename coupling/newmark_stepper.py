@@ -20,7 +20,7 @@ from coupling.march_run import Attempt, Checkpoint, timed_amplitude
 from coupling.settings import TransientOutputs, TransientSettings
 from coupling.step import StepCache, cut, kernel_arrays, scratch_room
 from coupling.system import CoupledSystem
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class NewmarkStepper:
     too_fine = "steps below {step:.1e} s; raise the tolerance or keep fewer high modes"
 
     def __init__(
-        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: Turning
+        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: SpeedProfile
     ) -> None:
         self.system, self._turning = system, turning
         self.arrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)

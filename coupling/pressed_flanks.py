@@ -24,7 +24,7 @@ def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
     forces = np.zeros(len(system.contacts))
     if not system.contacts or not np.any(system.load) or not load_balances(system):
         return forces
-    rigid, stiffest = system.unresisted_motions
+    rigid, stiffest = system.rigid_body_motions
     q = np.linalg.solve(system.mean_stiffness + stiffest * rigid @ rigid.T, system.load)
     stiffness = system.drive_stiffness
     forces = stiffness * (system.contact_directions.T @ q)
@@ -32,7 +32,7 @@ def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
     return np.where(np.abs(forces) > rounding, forces, 0.0)
 
 
-def with_pressed_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> CoupledSystem:
+def with_loaded_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> CoupledSystem:
     """The system with back flanks as its drive flanks where the mean torque pulls the drive flanks apart.
 
     ``backs`` has, for each of the first contacts, the number of its back flanks, or None where these never meet.

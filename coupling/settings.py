@@ -61,7 +61,7 @@ class TransientSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class Recorded:
+class MotionRecord:
     """Record of a transient or a periodic response at even spacing; s samples, c contacts.
 
     Attributes
@@ -84,7 +84,7 @@ class Recorded:
     force: FloatArray
 
 
-RECORDED = tuple(field.name for field in fields(Recorded))
+RECORDED = tuple(field.name for field in fields(MotionRecord))
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ the mean force, which stands for F in M: the dynamic part of the force would add
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearError, GearPairGeometry, ToothContact, static_transmission_error
+from coupling.gears import GearError, GearPairGeometry, ToothContact, loaded_transmission_error
 from coupling.system import HarmonicLoad
 
 FloatArray = npt.NDArray[np.float64]
@@ -48,7 +48,7 @@ def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, p
     GearError
         Where no teeth meet at some phase, or for a force below 0.
     """
-    mesh = static_transmission_error(contact, force, phases)
+    mesh = loaded_transmission_error(contact, force, phases)
     arms = np.zeros((mesh.phases.size, 2))
     if contact.faces is None or mesh.line_loads is None:
         return arms

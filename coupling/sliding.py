@@ -105,11 +105,11 @@ def friction_of(
     return np.column_stack([pushed * shares[:, 0], power])
 
 
-def held_at_speed(system: CoupledSystem) -> CoupledSystem:
+def with_balanced_friction(system: CoupledSystem) -> CoupledSystem:
     """The system with friction orthogonal to the rigid-body motions, whose speed is prescribed."""
     if all(contact.sliding is None for contact in system.contacts):
         return system
-    free = system.unresisted_motions[0]
+    free = system.rigid_body_motions[0]
 
     def held(contact: ContactConnector) -> ContactConnector:
         if contact.sliding is None:

@@ -33,7 +33,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     TransientError
         Where teeth or bearings find no equilibrium.
     """
-    rigid, stiffest = system.unresisted_motions
+    rigid, stiffest = system.rigid_body_motions
     if not load_balances(system):
         raise CouplingError(
             "the loads do not balance: they would accelerate a motion that nothing resists, such as the train's "
@@ -48,7 +48,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         if contact.drives:
             first_touch = float(contact.contact.pairs(contact.phase_after(time)).deviation.min())
             gap = first_touch + contact.clearance + contact.runout(time)
-            closing += contact.contact.mean_stiffness * gap * contact.direction
+            closing += contact.contact.mean_mesh_stiffness * gap * contact.direction
     for bearing in system.nonlinear:
         # Bearings begin at their mean load: within their clearance the tangent would be singular.
         about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
@@ -78,8 +78,8 @@ def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
     """Raise `CouplingError` where the mean torque opens flanks without back flanks."""
     q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
     for contact in system.contacts:
-        force = contact.contact.mean_stiffness * float(contact.direction @ q)
-        if contact.drives and force < -_PUSHED * contact.contact.mean_stiffness * float(
+        force = contact.contact.mean_mesh_stiffness * float(contact.direction @ q)
+        if contact.drives and force < -_PUSHED * contact.contact.mean_mesh_stiffness * float(
             np.abs(contact.direction) @ np.abs(q)
         ):
             raise CouplingError(
@@ -91,7 +91,7 @@ def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
 
 def load_balances(system: CoupledSystem) -> bool:
     """Whether the constant load does no work in any rigid-body motion."""
-    rigid, _ = system.unresisted_motions
+    rigid, _ = system.rigid_body_motions
     driven = rigid.T @ system.load
     # Relative to the load's entries, and beside the rounding of the motions themselves.
     scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
@@ -166,7 +166,7 @@ def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
         frequency = load.frequency if load.follows == "time" else load.frequency * rate
         if frequency == 0.0:
             continue
-        rigid = system.unresisted_motions[0]
+        rigid = system.rigid_body_motions[0]
         pushed = rigid.T @ load.amplitude
         if np.abs(pushed).max(initial=0.0) > _PUSHED * np.linalg.norm(load.amplitude):
             velocity += rigid @ (pushed / (1j * frequency)).real

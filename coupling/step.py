@@ -22,7 +22,7 @@ from coupling.kernel_arrays import (
 from coupling.low_rank import common_span
 from coupling.settings import TransientOutputs
 from coupling.system import CoupledSystem
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -98,7 +98,7 @@ class StepCache:
     _ROOM = 8
     _MOST_BYTES = 32 << 20
 
-    def __init__(self, arrays: KernelArrays, turning: Turning) -> None:
+    def __init__(self, arrays: KernelArrays, turning: SpeedProfile) -> None:
         self._arrays, self._steady, self._rate = arrays, turning.is_steady, float(turning.rates[0])
         self._kinds: dict[float, int] = {}
         self.matrices = _room_for_steps(arrays, self._ROOM)
@@ -134,7 +134,7 @@ class StepCache:
         build_steps(self._arrays.dynamics, self._arrays.contacts, sizes, speeds, accelerations, into, self.matrices)
 
 
-def cut(cache: StepCache, turning: Turning, bounds: FloatArray, step: float) -> Segments:
+def cut(cache: StepCache, turning: SpeedProfile, bounds: FloatArray, step: float) -> Segments:
     """Stretches between bounds, each cut into at least two equal steps no longer than ``step`` [s]."""
     start, end = bounds[:-1], bounds[1:]
     counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)

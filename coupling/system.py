@@ -183,7 +183,7 @@ class CoupledSystem:
     @cached_property
     def drive_stiffness(self) -> FloatArray:
         """Mean mesh stiffness of every drive flank, 0 of the others [N/m], shape (c,)."""
-        return np.array([one.contact.mean_stiffness * one.drives for one in self.contacts], dtype=np.float64)
+        return np.array([one.contact.mean_mesh_stiffness * one.drives for one in self.contacts], dtype=np.float64)
 
     @cached_property
     def drive_damping(self) -> FloatArray:
@@ -207,7 +207,7 @@ class CoupledSystem:
         return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max(initial=0.0)))
 
     @cached_property
-    def unresisted_motions(self) -> tuple[FloatArray, float]:
+    def rigid_body_motions(self) -> tuple[FloatArray, float]:
         """Rigid-body motions: orthonormal motions that no spring resists, in columns; and the largest stiffness [1/s²].
 
         Teeth and nonlinear bearings count with their linear stiffness.

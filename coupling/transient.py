@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from coupling.errors import TransientError
 from coupling.march_run import Checkpoint
-from coupling.marching import march_blocks
-from coupling.settings import RECORDED, Recorded, TransientOutputs, TransientSettings
+from coupling.marching import integrate_blocks
+from coupling.settings import RECORDED, MotionRecord, TransientOutputs, TransientSettings
 from coupling.system import CoupledSystem
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -89,7 +89,7 @@ class TransientFigures:
 
 
 @dataclass(frozen=True, eq=False)
-class TransientResult(TransientFigures, Recorded):
+class TransientResult(TransientFigures, MotionRecord):
     """Record of a transient at even spacing, with the figures of the run."""
 
 
@@ -98,7 +98,7 @@ def simulate(
     settings: TransientSettings,
     outputs: TransientOutputs,
     *,
-    turning: Turning | None = None,
+    turning: SpeedProfile | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> TransientResult:
@@ -125,7 +125,7 @@ def simulate(
     --------
     march_blocks : The same in blocks, for runs that are long or must be able to continue.
     """
-    marched = march_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
+    marched = integrate_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
     blocks = list(marched)
     figures = transient_figures(settings, blocks[-1].after)
     record: dict[str, Any] = {name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED}

@@ -22,7 +22,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Turning:
+class SpeedProfile:
     """Speed over time, relative to the nominal one; linear between k times, and constant before and after them.
 
     Attributes
@@ -49,9 +49,9 @@ class Turning:
             raise CouplingError("a speed over time changes its sign; expected one sense of rotation")
 
     @staticmethod
-    def steady() -> "Turning":
+    def steady() -> "SpeedProfile":
         """Constant nominal speeds."""
-        return Turning(np.zeros(1), np.ones(1))
+        return SpeedProfile(np.zeros(1), np.ones(1))
 
     @property
     def is_steady(self) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.stages.response_comparison import ResponseLikeness
+from gearwhine.stages.response_comparison import ResponseCorrelation
 from housing import Comparison, ShapeCorrelation
 from housing.measured import MeasuredGeometry
 
@@ -78,7 +78,7 @@ def draw_comparison_figures(
             yield "comac", _draw_coordinates(title, comparison.shapes, geometry)
 
 
-def write_likeness(folder: Path, likeness: ResponseLikeness) -> str:
+def write_response_correlation(folder: Path, likeness: ResponseCorrelation) -> str:
     """Write ``frac.csv``, a row for each degree of freedom and a column for each force; the file's name."""
     heads = ["response", *dof_names(likeness.references)]
     rows = [

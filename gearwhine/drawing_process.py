@@ -25,7 +25,7 @@ _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
 _CAPTIONS = ("name", "title", "note", "quantity", "largest")
 
 
-def draw_apart(
+def draw_in_process(
     housing: DrawnHousing,
     shapes: Sequence[DrawnShape],
     folder: Path,

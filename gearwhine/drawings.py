@@ -104,13 +104,13 @@ def draw_modes(
         from housing.gltf import write_mode_models
 
         return [path.name for path in write_mode_models(housing.mesh, housing.modes, numbers, place)]
-    from gearwhine.drawing_process import draw_apart
+    from gearwhine.drawing_process import draw_in_process
     from housing.drawn_shapes import drawn_housing, drawn_modes
 
     surface = drawn_housing(housing.mesh)
     shapes = drawn_modes(surface, housing.modes, numbers, notes)
     sheet = "modes.png" if len(numbers) > 1 and mode_format == "png" else None
-    return draw_apart(surface, shapes, place, mode_format, view, progress, sheet=sheet)
+    return draw_in_process(surface, shapes, place, mode_format, view, progress, sheet=sheet)
 
 
 def draw_lines(
@@ -127,16 +127,16 @@ def draw_lines(
     Raises
     ------
     CaseError
-        As :func:`gearwhine.stages.operating_shapes.read_lines`.
+        As :func:`gearwhine.stages.operating_shapes.read_spectrum_lines`.
     """
-    from gearwhine.drawing_process import draw_apart
-    from gearwhine.stages.operating_shapes import drawn_line, lines_document, read_lines
+    from gearwhine.drawing_process import draw_in_process
+    from gearwhine.stages.operating_shapes import lines_document, operating_shape_of_line, read_spectrum_lines
     from housing.drawn_shapes import drawn_housing
 
-    lines = read_lines(folder, frequencies, housing)
+    lines = read_spectrum_lines(folder, frequencies, housing)
     surface = drawn_housing(housing.mesh)
-    shapes = [drawn_line(line, housing, surface) for line in lines]
-    draw_apart(surface, shapes, place, mode_format, view, progress)
+    shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
+    draw_in_process(surface, shapes, place, mode_format, view, progress)
     return lines_document(lines, housing, surface)
 
 

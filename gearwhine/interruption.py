@@ -67,7 +67,7 @@ def uninterrupted() -> Iterator[None]:
             signal.raise_signal(held[0])
 
 
-def each_aside(items: Iterable[T]) -> Iterator[T]:
+def each_from_thread(items: Iterable[T]) -> Iterator[T]:
     """Give what an iterable gives, worked out on a thread of its own where no interruption strikes.
 
     The thread that takes the items waits for them where an interruption is safe. An iterable that is left before its
@@ -95,9 +95,9 @@ def each_aside(items: Iterable[T]) -> Iterator[T]:
         yield found[0]
 
 
-def aside(work: Callable[[], T]) -> T:
-    """Result of a call on a thread of its own; see :func:`each_aside`."""
-    (found,) = each_aside(work() for _ in range(1))
+def in_thread(work: Callable[[], T]) -> T:
+    """Result of a call on a thread of its own; see :func:`each_from_thread`."""
+    (found,) = each_from_thread(work() for _ in range(1))
     return found
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 @contextmanager
-def alone_in(folder: Path) -> Iterator[None]:
+def exclusive_lock(folder: Path) -> Iterator[None]:
     """Make a folder where it is missing and hold its lock; waits for another run that holds it.
 
     The lock is on the folder itself: it leaves no file behind, and the system lets go of it when a process dies. Where
@@ -30,7 +30,7 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def held(folder: Path) -> Iterator[None]:
+def held_lock(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder that is this run's own, so that others see that it is in use."""
     handle = os.open(folder, os.O_RDONLY)
     try:
@@ -40,7 +40,7 @@ def held(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def in_use(folder: Path) -> bool:
+def is_locked(folder: Path) -> bool:
     """Whether a living process holds a folder's lock, or the lock cannot be read."""
     try:
         handle = os.open(folder, os.O_RDONLY)

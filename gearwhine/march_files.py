@@ -20,7 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.locks import alone_in, held, in_use
+from gearwhine.locks import exclusive_lock, held_lock, is_locked
 
 _KEPT = ".resume-"
 _KEY_DIGITS = 16  # of the folder's name: no two marches of one folder share them by chance
@@ -87,7 +87,7 @@ class BlockFiles:
 
 
 @contextmanager
-def kept_march(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
+def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
     """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
 
     Where a living run is at the same march in the same folder, this one keeps blocks of its own.
@@ -103,9 +103,9 @@ def kept_march(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Block
     """
     made = not folder.exists()
     with ExitStack() as stack:
-        with alone_in(folder):
+        with exclusive_lock(folder):
             place = _place(folder, f"{_KEPT}{key[:_KEY_DIGITS]}", fresh=fresh)
-            stack.enter_context(held(place))
+            stack.enter_context(held_lock(place))
         blocks = BlockFiles(place)
         try:
             yield blocks
@@ -122,9 +122,9 @@ def _place(folder: Path, name: str, *, fresh: bool) -> Path:
     """A folder for the blocks, after those of dead runs of anything else are cleared away."""
     wanted = folder / name
     for other in folder.glob(f"{_KEPT}*"):
-        if other.is_dir() and not other.is_symlink() and (fresh or other != wanted) and not in_use(other):
+        if other.is_dir() and not other.is_symlink() and (fresh or other != wanted) and not is_locked(other):
             shutil.rmtree(other, ignore_errors=True)
-    if wanted.exists() and in_use(wanted):
+    if wanted.exists() and is_locked(wanted):
         return Path(tempfile.mkdtemp(prefix=f"{name}-", dir=folder))
     wanted.mkdir(exist_ok=True)
     return wanted

@@ -132,10 +132,10 @@ class Study:
         It has the constant torques of `[operation]`; torques over time, motion of the base and gravity stay in the
         case, and :meth:`simulate` applies them.
         """
-        from gearwhine.stages.machine import describe_machine, housing_in_machine
+        from gearwhine.stages.machine import describe_machine, reduce_housing
 
         solved = self.housing
-        part = None if solved is None else housing_in_machine(self.case, solved, self.progress).component
+        part = None if solved is None else reduce_housing(self.case, solved, self.progress).component
         return describe_machine(self.case, part)
 
     def check(self) -> dict[str, Any]:

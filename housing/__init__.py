@@ -5,10 +5,10 @@
 - :class:`Material`; :class:`Support`, :class:`Mount` and :class:`Joint` (with a :class:`Bushing`), :class:`LumpedMass`,
   each on a :class:`Patch` -- fixtures; :func:`bolted_joint`, :func:`cover_joints` -- preloaded bolts.
 - :class:`Seat`, :class:`Sensor` -- the ports at which the rest of the machine meets it.
-- :func:`assemble`, :func:`attach` -- stiffness and mass of the solid, and of the solid with its fixtures.
+- :func:`assemble`, :func:`attach_fixtures` -- stiffness and mass of the solid, and of the solid with its fixtures.
 - :func:`solve_modes` -- its natural modes (:class:`ModeSet`) with a :class:`Certificate`, by block Lanczos or scipy's
   ``eigsh``; :func:`modal_damping` -- their damping by dashpots.
-- :func:`attach_ports` -- residual attachment modes, which make the static compliance at ports exact.
+- :func:`add_residual_modes` -- residual attachment modes, which make the static compliance at ports exact.
 - :func:`receptance`, :func:`effective_mass` -- frequency response between ports, and effective modal masses.
 - :func:`health_report` -- mass, rigid motions, grounding, orthogonality, static error: each with its bound.
 - :func:`write_modes`, :func:`read_modes` -- a solved housing on file.
@@ -20,7 +20,7 @@ shapes, which are not imported here because they bring VTK.
 """
 
 from housing.assembly import assemble
-from housing.attachments import Attachment, attach
+from housing.attachments import Fixture, attach_fixtures
 from housing.bolts import BoltedJoint, bolted_joint
 from housing.bushings import GLOBAL_AXES, Axial, Bushing, Joint, Mount, axes_along
 from housing.certificate import Certificate
@@ -35,7 +35,7 @@ from housing.correlation import (
 from housing.damping import damping_ratios, modal_damping
 from housing.dominance import Dominance, dominance
 from housing.effective_mass import EffectiveMass, effective_mass
-from housing.enclosure import enclosed
+from housing.enclosure import enclosed_volume
 from housing.errors import (
     FactorizationError,
     HealthError,
@@ -60,11 +60,11 @@ from housing.model import RESPONSE_ORDERS, Housing, HousingModes, bearing_port, 
 from housing.modes import ModeSet, solve_modes
 from housing.node_blocks import Additions, NodeBlocks
 from housing.patches import Patch, patch_center, patch_matrix, point_matrix
-from housing.port_attachments import attach_ports
+from housing.port_attachments import add_residual_modes
 from housing.ports import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.receptance import Selection, receptance, residues, select_modes
-from housing.reduction import Attachments, StaticProof
-from housing.response_span import leading_attachments
+from housing.reduction import ResidualModes, StaticProof
+from housing.response_span import leading_residual_modes
 from housing.rigid import RigidBody, rigid_body, rigid_motions
 from housing.supports import Support, fixed_freedoms
 from housing.survey import SURVEY_COUNTS, Survey, survey_grid
@@ -75,8 +75,6 @@ __all__ = [
     "RESPONSE_ORDERS",
     "SURVEY_COUNTS",
     "Additions",
-    "Attachment",
-    "Attachments",
     "Axial",
     "BoltedJoint",
     "Bushing",
@@ -87,6 +85,7 @@ __all__ = [
     "Factorization",
     "FactorizationError",
     "Factorizer",
+    "Fixture",
     "Grounding",
     "HealthError",
     "HealthLine",
@@ -111,6 +110,7 @@ __all__ = [
     "PairingRule",
     "Patch",
     "ReductionError",
+    "ResidualModes",
     "RigidBody",
     "Seat",
     "Selection",
@@ -121,9 +121,9 @@ __all__ = [
     "Support",
     "SupportHold",
     "Survey",
+    "add_residual_modes",
     "assemble",
-    "attach",
-    "attach_ports",
+    "attach_fixtures",
     "axes_along",
     "bearing_port",
     "bolted_joint",
@@ -134,10 +134,10 @@ __all__ = [
     "damping_ratios",
     "dominance",
     "effective_mass",
-    "enclosed",
+    "enclosed_volume",
     "fixed_freedoms",
     "health_report",
-    "leading_attachments",
+    "leading_residual_modes",
     "mass_properties",
     "mesh_digest",
     "modal_damping",

@@ -5,21 +5,21 @@ from collections.abc import Mapping
 import numpy as np
 
 from housing.labelled import LabelledArray
-from housing.reduction import Attachments, StaticProof
+from housing.reduction import ResidualModes, StaticProof
 
 _ONE = ("attachment",)
 _PORTS = ("loaded_motion", "moved_motion")
 
 
-def attachment_arrays(attachments: Attachments | None) -> dict[str, LabelledArray]:
+def residual_mode_arrays(residual_modes: ResidualModes | None) -> dict[str, LabelledArray]:
     """The arrays of residual modes and their proof; empty where there are none.
 
     An empty set, at ports whose response the modes hold already, keeps its proof; its arrays are left out, because a
     dimension of length 0 has another meaning in NetCDF.
     """
-    if attachments is None:
+    if residual_modes is None:
         return {}
-    proof = attachments.proof
+    proof = residual_modes.proof
     arrays = {
         "static_compliance": LabelledArray(_PORTS, proof.compliance, "m N-1", "elastic compliance at the ports"),
         "static_missing": LabelledArray(_PORTS, proof.missing, "m N-1", "the part of it that the modes lack"),
@@ -27,20 +27,20 @@ def attachment_arrays(attachments: Attachments | None) -> dict[str, LabelledArra
         "static_overlap": LabelledArray((), np.array(proof.overlap), "1", "largest overlap of an attachment in mass"),
         "static_sweeps": LabelledArray((), np.array(proof.sweeps), "1", "solves that the attachments took"),
     }
-    if len(attachments.frequencies):
+    if len(residual_modes.frequencies):
         shape = ("attachment", "node", "component")
         arrays |= {
             "attachment_circular_frequency": LabelledArray(
-                _ONE, attachments.frequencies, "rad s-1", "root of stiffness over mass; no natural frequency"
+                _ONE, residual_modes.frequencies, "rad s-1", "root of stiffness over mass; no natural frequency"
             ),
             "attachment_shape": LabelledArray(
-                shape, attachments.shapes, "kg-0.5", "residual attachment modes of unit modal mass"
+                shape, residual_modes.shapes, "kg-0.5", "residual attachment modes of unit modal mass"
             ),
         }
     return arrays
 
 
-def attachments_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> Attachments | None:
+def residual_modes_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> ResidualModes | None:
     """The residual modes that these arrays were made of, equal bit for bit.
 
     Raises
@@ -58,5 +58,5 @@ def attachments_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> Attachm
         sweeps=arrays["static_sweeps"].values.item(),
     )
     if "attachment_shape" not in arrays:
-        return Attachments(np.empty(0), np.empty((0, n_nodes, 3)), proof)
-    return Attachments(arrays["attachment_circular_frequency"].values, arrays["attachment_shape"].values, proof)
+        return ResidualModes(np.empty(0), np.empty((0, n_nodes, 3)), proof)
+    return ResidualModes(arrays["attachment_circular_frequency"].values, arrays["attachment_shape"].values, proof)

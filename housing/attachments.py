@@ -22,7 +22,7 @@ MOST_PATCH_NODES = 2000
 """Largest number of nodes of one fixture. Each pair of them joins the matrices: 2000 nodes are 36 million entries."""
 
 
-class Attachment(Protocol):
+class Fixture(Protocol):
     """A fixture: a support, mount, joint or lumped mass, with its additions to the matrices of a mesh."""
 
     @property
@@ -39,7 +39,7 @@ class Attachment(Protocol):
         """
 
 
-def attach(matrices: Matrices, mesh: Mesh, attachments: Iterable[Attachment]) -> Matrices:
+def attach_fixtures(matrices: Matrices, mesh: Mesh, fixtures: Iterable[Fixture]) -> Matrices:
     """The matrices of a housing with supports, mounts, joints and masses on it.
 
     Raises
@@ -47,11 +47,11 @@ def attach(matrices: Matrices, mesh: Mesh, attachments: Iterable[Attachment]) ->
     HousingError, meshes.GeometryError
         Where one of them does not fit the mesh.
     """
-    additions = sum((attachment.additions(mesh) for attachment in attachments), Additions())
+    additions = sum((attachment.additions(mesh) for attachment in fixtures), Additions())
     return matrices.plus(additions)
 
 
-def port_additions(
+def port_fixture_matrices(
     port: sparse.csr_array,
     *,
     name: str,

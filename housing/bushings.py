@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.attachments import port_additions
+from housing.attachments import port_fixture_matrices
 from housing.errors import HousingError
 from housing.node_blocks import Additions
 from housing.patches import Patch, Point, patch_matrix
@@ -91,7 +91,7 @@ class Bushing:
     def additions(self, port: sparse.csr_array, name: str) -> Additions:
         """Matrices that it adds where it resists the six motions of a port of shape (6, 3 n_nodes)."""
         stiffness, damping = self.matrix(self.stiffness), self.matrix(self.damping)
-        return port_additions(port, name=name, stiffness=stiffness, damping=damping)
+        return port_fixture_matrices(port, name=name, stiffness=stiffness, damping=damping)
 
 
 def axes_along(axis: Point, across: Point | None = None) -> Axes:
@@ -132,7 +132,7 @@ class Mount:
     center: Point | None = None
 
     def additions(self, mesh: Mesh) -> Additions:
-        """Pᵀ K₆ P and Pᵀ C₆ P; see :class:`housing.attachments.Attachment`."""
+        """Pᵀ K₆ P and Pᵀ C₆ P; see :class:`housing.attachments.Fixture`."""
         center = None if self.center is None else np.array(self.center)
         port = patch_matrix(mesh, self.patch.facets(mesh), center, name=f"mount {self.name!r}")
         return self.bushing.additions(port, f"mount {self.name!r}")
@@ -170,7 +170,7 @@ class Joint:
             raise HousingError(f"joint {self.name!r} ties a patch to itself; give two patches")
 
     def additions(self, mesh: Mesh) -> Additions:
-        """(P₂ - P₁)ᵀ K₆ (P₂ - P₁) and the same with C₆; see :class:`housing.attachments.Attachment`."""
+        """(P₂ - P₁)ᵀ K₆ (P₂ - P₁) and the same with C₆; see :class:`housing.attachments.Fixture`."""
         name = f"joint {self.name!r}"
         if self.center is None:
             center = 0.5 * (self.first.center(mesh) + self.second.center(mesh))

@@ -22,8 +22,8 @@ def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
         n modes and residual modes [1/s], symmetric, positive semidefinite.
     """
     shapes = modes.shapes.reshape(len(modes.shapes), -1)
-    if modes.attachments is not None:
-        shapes = np.vstack([shapes, modes.attachments.shapes.reshape(-1, shapes.shape[1])])
+    if modes.residual_modes is not None:
+        shapes = np.vstack([shapes, modes.residual_modes.shapes.reshape(-1, shapes.shape[1])])
     full = shapes @ (matrices.damping @ shapes.T)
     return np.asarray(0.5 * (full + full.T))
 

@@ -43,7 +43,7 @@ def arpack_modes(
     Parameters
     ----------
     solve, mass, shift, count, above
-        As :func:`housing.lanczos.shift_invert`.
+        As :func:`housing.lanczos.block_lanczos`.
     seed : int
         Of the start vector; each also doubles the basis.
     tolerance : float

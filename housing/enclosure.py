@@ -11,7 +11,7 @@ FloatArray = npt.NDArray[np.float64]
 _DEGREE = 6  # of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
 
 
-def enclosed(mesh: Mesh) -> tuple[float, FloatArray]:
+def enclosed_volume(mesh: Mesh) -> tuple[float, FloatArray]:
     """Volume and centroid enclosed by the boundary: V = ∮ p·n dA / 3 and V c = ∮ p (p·n) dA / 4.
 
     The result is independent of the elements' own quadrature and so checks it. With n dA the cross product of the

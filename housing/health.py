@@ -211,7 +211,7 @@ def _grounding_lines(held: Grounding, modes: ModeSet) -> list[HealthLine]:
 
 def _mode_lines(supported: Matrices, modes: ModeSet) -> list[HealthLine]:
     certificate = modes.certificate
-    attached = modes.attachments
+    attached = modes.residual_modes
     shapes = modes.shapes.reshape(len(modes.shapes), -1)
     omega = modes.frequencies
     if attached is not None:
@@ -239,9 +239,9 @@ def _mode_lines(supported: Matrices, modes: ModeSet) -> list[HealthLine]:
 
 
 def _port_lines(modes: ModeSet) -> list[HealthLine]:
-    if modes.attachments is None:
+    if modes.residual_modes is None:
         return []
-    proof = modes.attachments.proof
+    proof = modes.residual_modes.proof
     without = float(proof.missing_parts.max(initial=0.0))
     return [
         HealthLine("static error, modes alone", without, None, "compliance at the ports that the modes lack"),

@@ -38,7 +38,7 @@ _ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from th
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
-def shift_invert(
+def block_lanczos(
     solve: Callable[[FloatArray], FloatArray],
     mass: Operator,
     shift: float,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing.attachments import port_additions
+from housing.attachments import port_fixture_matrices
 from housing.errors import HousingError
 from housing.node_blocks import Additions
 from housing.patches import Patch, Point, patch_matrix, point_matrix
@@ -83,10 +83,10 @@ class LumpedMass:
         return surface_point(mesh, mesh.boundary, np.array(self.position))
 
     def additions(self, mesh: Mesh) -> Additions:
-        """Pᵀ M₆ P, or m on the translations of a point; see :class:`housing.attachments.Attachment`."""
+        """Pᵀ M₆ P, or m on the translations of a point; see :class:`housing.attachments.Fixture`."""
         name = f"mass {self.name!r}"
         if self.patch is None:
-            return port_additions(point_matrix(mesh, self.place(mesh)), name=name, mass=self.mass * np.eye(3))
+            return port_fixture_matrices(point_matrix(mesh, self.place(mesh)), name=name, mass=self.mass * np.eye(3))
         body = RigidBody(self.mass, np.array(self.offset), np.array(self.inertia))
         port = patch_matrix(mesh, self.patch.facets(mesh), name=name)
-        return port_additions(port, name=name, mass=body.matrix(about=np.zeros(3)))
+        return port_fixture_matrices(port, name=name, mass=body.matrix(about=np.zeros(3)))

@@ -16,7 +16,7 @@ from housing.errors import HousingError, ModeFileError
 from housing.labelled import LabelledArray, digest
 from housing.mode_record import ModeRecord, record_arrays, record_attributes, record_of
 from housing.netcdf import read_netcdf, write_netcdf
-from housing.seals import seal, seal_holds
+from housing.seals import checksum_holds, write_checksum
 
 FORMAT = "gearwhine mode set"
 SCHEMA = "1"
@@ -50,7 +50,7 @@ def write_modes(path: str | Path, record: ModeRecord) -> None:
         try:
             # Without a fill value no number is taken for a missing one.
             write_netcdf(staged, variables, attributes, fill=False)
-            seal(staged)
+            write_checksum(staged)
         except ValueError as error:
             raise HousingError(f"the arrays of a mode set do not fit each other: {error}") from error
 
@@ -82,7 +82,7 @@ def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
         raise ModeFileError(f"mode file {path}: no such file")
     try:
         # Copies by other programs have no seal; the digest is theirs too.
-        if seal_holds(path) is False:
+        if checksum_holds(path) is False:
             raise ModeFileError(f"mode file {path} is damaged: its bytes do not have the digest at its end")
         # Opened by HDF5 alone first: on a truncated file it fails silently, and the layers above it print errors.
         with h5py.File(path, "r") as file:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from housing.attachment_arrays import attachment_arrays, attachments_of
+from housing.attachment_arrays import residual_mode_arrays, residual_modes_of
 from housing.certificate import Certificate
 from housing.errors import HousingError
 from housing.labelled import LabelledArray, canonical_json, content_key
@@ -166,7 +166,7 @@ def _mode_arrays(modes: ModeSet) -> dict[str, LabelledArray]:
     for name, value in asdict(modes.certificate).items():
         units, long_name = _CERTIFIED[name]
         arrays[f"certificate_{name}"] = LabelledArray((), np.array(value), units, long_name)
-    return arrays | attachment_arrays(modes.attachments)
+    return arrays | residual_mode_arrays(modes.residual_modes)
 
 
 def _modes(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -> ModeSet:
@@ -180,7 +180,7 @@ def _modes(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -
         backend=attributes["solver_backend"],
         shift=arrays["solver_shift"].values.item(),
         threads=arrays["solver_threads"].values.item(),
-        attachments=attachments_of(arrays, arrays["shape"].values.shape[1]),
+        residual_modes=residual_modes_of(arrays, arrays["shape"].values.shape[1]),
     )
 
 

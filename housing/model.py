@@ -13,12 +13,12 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.assembly import assemble
-from housing.attachments import Attachment, attach
+from housing.attachments import Fixture, attach_fixtures
 from housing.bolts import bolted_joint
 from housing.bushings import Bushing, Joint, Mount
 from housing.damping import damping_ratios, modal_damping
 from housing.eigensolver import DEFAULT_SOLVER, Solver
-from housing.enclosure import enclosed
+from housing.enclosure import enclosed_volume
 from housing.errors import HousingError
 from housing.health import HealthReport, health_report
 from housing.lumped_mass import LumpedMass
@@ -68,7 +68,7 @@ class Housing:
     mesh: Mesh
     material: Material
     materials: Mapping[str, Material] = field(default_factory=dict)
-    fixtures: Sequence[Attachment] = ()
+    fixtures: Sequence[Fixture] = ()
     seats: Sequence[Seat] = ()
     sensors: Sequence[Sensor] = ()
     damping_ratio: float = 0.0
@@ -100,7 +100,7 @@ class Housing:
         *,
         unit: float | None = None,
         seats: Sequence[Seat] = (),
-        fixtures: Sequence[Attachment] = (),
+        fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
         damping_ratio: float = 0.0,
         order: int = 2,
@@ -140,7 +140,7 @@ class Housing:
         *,
         unit: float = 1.0,
         seats: Sequence[Seat] = (),
-        fixtures: Sequence[Attachment] = (),
+        fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
         damping_ratio: float = 0.0,
     ) -> "Housing":
@@ -172,7 +172,7 @@ class Housing:
         mesh_size: float,
         material: Material,
         *,
-        fixtures: Sequence[Attachment] = (),
+        fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
         damping_ratio: float = 0.0,
         order: int = 2,
@@ -208,7 +208,7 @@ class Housing:
         HousingError, meshes.GeometryError
             Where a fixture finds no place on the mesh.
         """
-        return attach(self.free_matrices() if free is None else free, self.mesh, self.fixtures)
+        return attach_fixtures(self.free_matrices() if free is None else free, self.mesh, self.fixtures)
 
     def seat_ports(self) -> dict[str, sparse.csr_array]:
         """Rigid motion of each seat at its centre from the nodes' displacements, shape (6, 3 n_nodes)."""
@@ -315,7 +315,7 @@ class Housing:
         mass, center = solid.mass, solid.center
         if not self.materials:
             # With one material the boundary's volume gives the mass, independent of the elements inside.
-            volume, center = enclosed(self.mesh)
+            volume, center = enclosed_volume(self.mesh)
             mass = self.material.density * volume
         fastened = sum(one.mass for one in self.fixtures if isinstance(one, LumpedMass))
         return health_report(

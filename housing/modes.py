@@ -15,8 +15,8 @@ from housing.errors import HousingError
 from housing.factorization import Backend, Factorizer
 from housing.free_system import FreeSystem
 from housing.matrices import Matrices
-from housing.reduction import Attachments, residual_attachments
-from housing.search import MOST_MODES, CertifiedSearch, not_a_stiffness
+from housing.reduction import ResidualModes, residual_attachment_modes
+from housing.search import MOST_MODES, CertifiedSearch, indefinite_stiffness_error
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -55,7 +55,7 @@ class ModeSet:
     backend: str
     shift: float
     threads: int
-    attachments: Attachments | None = None
+    residual_modes: ResidualModes | None = None
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -69,7 +69,7 @@ class ModeSet:
     def project_all(self, port: sparse.csr_array) -> FloatArray:
         """Motions at a port of the modes, then of the residual modes, shape (n_modes + n_residual, n_motions)."""
         modes = self.project(port)
-        return modes if self.attachments is None else np.vstack([modes, self.attachments.project(port)])
+        return modes if self.residual_modes is None else np.vstack([modes, self.residual_modes.project(port)])
 
 
 def solve_modes(
@@ -90,7 +90,7 @@ def solve_modes(
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with the supports and whatever else is attached to them, see :func:`housing.attach`.
+        Of n_nodes nodes, with the supports and whatever else is attached to them, see :func:`housing.attach_fixtures`.
     frequency_limit : float
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
@@ -102,7 +102,7 @@ def solve_modes(
         Motions whose static compliance the mode set is to hold exactly, by residual modes.
     port_orders : int
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
-        :func:`housing.reduction.residual_attachments`.
+        :func:`housing.reduction.residual_attachment_modes`.
     solver : {"lanczos", "eigsh"}
         Own block Lanczos, or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
     backend, threads
@@ -144,12 +144,12 @@ def solve_modes(
     values, vectors = found.values, _oriented(found.vectors)
     values[np.abs(values) < 1e-6 * search.floor] = 0.0
     if values[0] < -search.floor:
-        raise not_a_stiffness(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
-    attachments = None
+        raise indefinite_stiffness_error(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
+    residual_modes = None
     if ports is not None:
         start = time.perf_counter()
         progress("attaching the static response at the ports")
-        attachments, vectors = residual_attachments(
+        residual_modes, vectors = residual_attachment_modes(
             system.stiffness,
             system.mass,
             found.factor.solve,
@@ -171,7 +171,7 @@ def solve_modes(
         backend=found.factor.backend,
         shift=found.shift,
         threads=threads,
-        attachments=attachments,
+        residual_modes=residual_modes,
     )
 
 

@@ -11,12 +11,12 @@ from housing.factorization import Backend, Factorization, Factorizer
 from housing.free_system import FreeSystem
 from housing.matrices import Matrices
 from housing.modes import ModeSet
-from housing.reduction import residual_attachments
+from housing.reduction import residual_attachment_modes
 
 IntArray = npt.NDArray[np.int64]
 
 
-def attach_ports(
+def add_residual_modes(
     matrices: Matrices,
     modes: ModeSet,
     ports: Sequence[sparse.csr_array] | sparse.csr_array,
@@ -47,14 +47,14 @@ def attach_ports(
     Raises
     ------
     HousingError, ReductionError
-        See :func:`housing.reduction.residual_attachments`.
+        See :func:`housing.reduction.residual_attachment_modes`.
     """
     system = FreeSystem(matrices, threads=threads)
     floor = system.floor(modes.certificate.limit)
     if factor is None or shift is None:
         shift = -floor
         factor = Factorizer(backend=backend, threads=threads).factor(system.shifted(shift))
-    attachments, vectors = residual_attachments(
+    residual_modes, vectors = residual_attachment_modes(
         system.stiffness,
         system.mass,
         factor.solve,
@@ -66,7 +66,7 @@ def attach_ports(
         free=system.free,
         n_nodes=system.n_nodes,
     )
-    return replace(modes, shapes=system.expand(vectors), attachments=attachments)
+    return replace(modes, shapes=system.expand(vectors), residual_modes=residual_modes)
 
 
 def stacked(ports: Sequence[sparse.csr_array] | sparse.csr_array) -> sparse.csr_array:

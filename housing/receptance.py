@@ -190,7 +190,7 @@ def _attached(
     port_b: sparse.csr_array,
     frequencies: FloatArray,
 ) -> ComplexArray:
-    attached = modes.attachments
+    attached = modes.residual_modes
     if attached is None:
         return np.zeros((len(frequencies), port_b.shape[0], port_a.shape[0]), dtype=np.complex128)
     gains = _gain(attached.frequencies, float(damping_ratios.max(initial=0.0)), frequencies)

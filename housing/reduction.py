@@ -115,7 +115,7 @@ class StaticProof:
 
 
 @dataclass(frozen=True)
-class Attachments:
+class ResidualModes:
     """Residual attachment modes: k of them, at most one for each port motion and order of response.
 
     Attributes
@@ -137,7 +137,7 @@ class Attachments:
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), port.shape[1]).T).T)
 
 
-def residual_attachments(
+def residual_attachment_modes(
     stiffness: Operator,
     mass: Operator,
     solve: Solve,
@@ -150,7 +150,7 @@ def residual_attachments(
     free: IntArray,
     n_nodes: int,
     orders: int = 1,
-) -> tuple[Attachments, FloatArray]:
+) -> tuple[ResidualModes, FloatArray]:
     """Compute residual attachment modes, and prove that they make the static compliance at the ports exact.
 
     Parameters
@@ -238,7 +238,7 @@ def residual_attachments(
         )
     full = np.zeros((len(squared), 3 * n_nodes))
     full[:, free] = shapes.T
-    return Attachments(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof), vectors
+    return ResidualModes(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof), vectors
 
 
 def _static_response(

@@ -11,16 +11,16 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from housing.errors import HousingError
-from housing.reduction import Attachments
+from housing.reduction import ResidualModes
 
 FloatArray = npt.NDArray[np.float64]
 
 _SAME = 1e-6  # part of a response's strain energy, in its root, below which it adds nothing to others
 
 
-def leading_attachments(
-    attachments: Attachments, ports: sparse.csr_array, shift: float, orders: int
-) -> tuple[Attachments, FloatArray]:
+def leading_residual_modes(
+    residual_modes: ResidualModes, ports: sparse.csr_array, shift: float, orders: int
+) -> tuple[ResidualModes, FloatArray]:
     """The residual modes of fewer orders that a set of more orders holds.
 
     Parameters
@@ -48,20 +48,20 @@ def leading_attachments(
     """
     if orders < 1:
         raise HousingError(f"{orders} orders of response; expected 1 or more")
-    squared = attachments.frequencies**2
+    squared = residual_modes.frequencies**2
     if not squared.size:
-        return attachments, np.zeros((0, 0))
-    response = attachments.project(ports)
+        return residual_modes, np.zeros((0, 0))
+    response = residual_modes.project(ports)
     parts = [response / squared[:, None]]
     for _ in range(orders - 1):
         response = response / (squared - shift)[:, None]
         parts.append(response)
     # In coordinates of unit strain energy, each response of unit length.
-    strained = np.hstack(parts) * attachments.frequencies[:, None]
+    strained = np.hstack(parts) * residual_modes.frequencies[:, None]
     length = np.linalg.norm(strained, axis=0)
     directions, sizes, _ = np.linalg.svd(strained[:, length > 0.0] / length[length > 0.0], full_matrices=False)
-    span = directions[:, sizes > _SAME * sizes.max(initial=0.0)] / attachments.frequencies[:, None]
+    span = directions[:, sizes > _SAME * sizes.max(initial=0.0)] / residual_modes.frequencies[:, None]
     found, turned = linalg.eigh(span.T @ (squared[:, None] * span), span.T @ span)
     mixture = span @ turned
-    shapes = (mixture.T @ attachments.shapes.reshape(len(squared), -1)).reshape(-1, *attachments.shapes.shape[1:])
-    return Attachments(np.sqrt(found), shapes, attachments.proof), mixture
+    shapes = (mixture.T @ residual_modes.shapes.reshape(len(squared), -1)).reshape(-1, *residual_modes.shapes.shape[1:])
+    return ResidualModes(np.sqrt(found), shapes, residual_modes.proof), mixture

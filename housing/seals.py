@@ -11,14 +11,14 @@ _MARK = b"\nsha256 "
 _SEAL = len(_MARK) + 64
 
 
-def seal(path: Path) -> None:
+def write_checksum(path: Path) -> None:
     """Append the checksum to a complete file."""
     line = _MARK + _digest(path, path.stat().st_size)
     with path.open("ab") as file:
         file.write(line)
 
 
-def seal_holds(path: Path) -> bool | None:
+def checksum_holds(path: Path) -> bool | None:
     """Whether a file's bytes have the checksum at its end; None where it has no checksum.
 
     Raises

@@ -21,7 +21,7 @@ from housing.eigensolver import DEFAULT_SOLVER, Solver, arpack_modes
 from housing.errors import FactorizationError, HousingError, IncompleteModesError
 from housing.factorization import Factorization, Factorizer
 from housing.free_system import FreeSystem
-from housing.lanczos import TOLERANCE, shift_invert
+from housing.lanczos import TOLERANCE, block_lanczos
 from housing.tall import BlockAlgebra
 
 FloatArray = npt.NDArray[np.float64]
@@ -114,7 +114,7 @@ class CertifiedSearch:
             progress("factoring")
             factor = self._factor(shift)
             if factor.negative:
-                raise not_a_stiffness(f"K - {shift:g} M has {factor.negative} negative pivots")
+                raise indefinite_stiffness_error(f"K - {shift:g} M has {factor.negative} negative pivots")
             progress(f"searching {count} modes")
             # Some more than asked for, to see the gap behind the last.
             wanted = min(count + 2 * 4**attempt, self._system.size - 1)
@@ -153,7 +153,7 @@ class CertifiedSearch:
                 return arpack_modes(
                     factor.solve, self._mass, shift, count, above=above, seed=attempt, tolerance=tolerance
                 )
-            return shift_invert(
+            return block_lanczos(
                 factor.solve,
                 self._mass,
                 shift,
@@ -196,7 +196,7 @@ def _incomplete(certificate: Certificate) -> IncompleteModesError:
     )
 
 
-def not_a_stiffness(what: str) -> FactorizationError:
+def indefinite_stiffness_error(what: str) -> FactorizationError:
     """Error for a stiffness with negative energies."""
     return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
 

@@ -10,20 +10,21 @@
   :func:`with_bore` -- regions of the surface of any mesh by place; bores by centre and diameter.
 - :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
 - :func:`mesh_quality` -- edge lengths and shape numbers of the elements.
-- :func:`diagnose` -- defects of a mesh by name (:class:`Ailment`); :func:`resolution_ailments` -- elements that are
+- :func:`diagnose` -- defects of a mesh by name (:class:`MeshDefect`); :func:`resolution_defects` -- elements that are
   too large for the structural waves.
 
 In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh*.
 gmsh itself is imported only when a mesh is made.
 """
 
-from meshes.ailments import Ailment
+from meshes.ailments import MeshDefect
 from meshes.bores import CylindricalBore, find_bores
 from meshes.box import (
     Bolt,
     Bore,
     Boss,
     BoxGeometry,
+    BoxMisfit,
     BoxMisfitError,
     BoxMorph,
     Cover,
@@ -31,7 +32,6 @@ from meshes.box import (
     Feet,
     Fillets,
     Flange,
-    Misfit,
     MorphError,
     Rib,
     WallThickness,
@@ -57,17 +57,17 @@ from meshes.lengths import UNITS
 from meshes.mesh import Mesh
 from meshes.quality import MeshQuality, mesh_quality
 from meshes.regions import box_facets, circle_facets, cylinder_facets, plane_facets, with_bore
-from meshes.resolution import WaveCarrier, resolution_ailments, wall_thickness
+from meshes.resolution import WaveCarrier, resolution_defects, wall_thickness
 from meshes.tetrahedra import check_mesh_size, expected_elements
 
 __all__ = [
     "KINDS",
     "UNITS",
-    "Ailment",
     "Bolt",
     "Bore",
     "Boss",
     "BoxGeometry",
+    "BoxMisfit",
     "BoxMisfitError",
     "BoxMorph",
     "CadMesh",
@@ -82,10 +82,10 @@ __all__ = [
     "Flange",
     "GeometryError",
     "Mesh",
+    "MeshDefect",
     "MeshQuality",
     "MeshSizeError",
     "MesherUnavailableError",
-    "Misfit",
     "MorphError",
     "Rib",
     "WallThickness",
@@ -108,7 +108,7 @@ __all__ = [
     "pick_facets",
     "plane_facets",
     "read_mesh",
-    "resolution_ailments",
+    "resolution_defects",
     "wall_thickness",
     "with_bore",
     "write_mesh",

@@ -9,7 +9,7 @@ Severity = Literal["error", "warning"]
 
 
 @dataclass(frozen=True)
-class Ailment:
+class MeshDefect:
     """A defect of a mesh, or a doubt about it.
 
     Attributes
@@ -34,11 +34,11 @@ class Ailment:
     place: FloatArray
 
 
-def ailment(
+def mesh_defect(
     name: str, severity: Severity, what: str, advice: str, count: int, place: FloatArray, *, which: str = "the first at"
-) -> Ailment:
+) -> MeshDefect:
     """Make a defect whose message names the fault, one place, and the remedy."""
-    return Ailment(name, severity, f"{what}, {which} {place_text(place)}; {advice}", int(count), place)
+    return MeshDefect(name, severity, f"{what}, {which} {place_text(place)}; {advice}", int(count), place)
 
 
 def place_text(place: FloatArray) -> str:

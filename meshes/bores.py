@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from meshes.circles import SIDEWAYS, SLACK, across, fit_circle, plane_axes, proposed_circles
+from meshes.circles import SIDEWAYS, SLACK, across, candidate_circles, fit_circle, plane_axes
 from meshes.elements import Facets, FloatArray, IntArray, facet_centers, facet_corners, facet_normals, pick_facets
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
@@ -68,7 +68,7 @@ def find_bores(
     direction = unit_vector(axis)
     found: list[CylindricalBore] = []
     taken = np.zeros(sum(len(block) for block in mesh.boundary), dtype=bool)
-    for center, radius in proposed_circles(mesh, direction):
+    for center, radius in candidate_circles(mesh, direction):
         on = fits_circle(mesh, center, radius, direction, 2 * SLACK * radius) & ~taken
         if not on.any():
             continue
@@ -160,7 +160,7 @@ def joined_by_span(
     )
 
 
-def describe(bore: CylindricalBore) -> str:
+def describe_bore(bore: CylindricalBore) -> str:
     """Describe a bore in words: diameter, middle and length in mm."""
     place = ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in bore.center)
     return f"{1e3 * bore.diameter:.5g} mm at ({place}) mm, {1e3 * bore.length:.4g} mm long"

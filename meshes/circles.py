@@ -13,7 +13,7 @@ _MOST_CIRCLES = 500
 _FEWEST_FACETS = 3  # that must propose a circle before it is tried
 
 
-def proposed_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, float]]:
+def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, float]]:
     """Circles through facets and their neighbours, those that most facets propose first.
 
     Parameters

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from meshes.ailments import Ailment, Severity, ailment
-from meshes.connections import connection_ailments
+from meshes.ailments import MeshDefect, Severity, mesh_defect
+from meshes.connections import connection_defects
 from meshes.elements import FloatArray, IntArray
 from meshes.lengths import UNITS, length_text, plausible
 from meshes.mapping import determinants, jacobians
@@ -21,7 +21,7 @@ _LIKELY = 0.5  # of several possible units, the one that makes the housing neare
 _NO_VOLUME = 1e-9  # of the cube of an element's longest edge
 
 
-def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[Ailment, ...]:
+def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[MeshDefect, ...]:
     """Find the defects of a mesh, errors first.
 
     Parameters
@@ -34,11 +34,11 @@ def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[Ailment, ...]:
     -----
     Inverted and flat elements are not among them, because :class:`Mesh` refuses them.
     """
-    ailments = [*_elements(mesh), *connection_ailments(mesh), *_nodes(mesh), *_unit(mesh, unit)]
-    return tuple(sorted(ailments, key=lambda one: one.severity != "error"))
+    defects = [*_elements(mesh), *connection_defects(mesh), *_nodes(mesh), *_unit(mesh, unit)]
+    return tuple(sorted(defects, key=lambda one: one.severity != "error"))
 
 
-def _elements(mesh: Mesh) -> Iterator[Ailment]:
+def _elements(mesh: Mesh) -> Iterator[MeshDefect]:
     """Elements that are degenerate, folded, or of a bad shape."""
     repeats, edges, least, least_at_nodes = [], [], [], []
     for block in mesh.blocks:
@@ -62,13 +62,15 @@ def _elements(mesh: Mesh) -> Iterator[Ailment]:
     for which, name, severity, what, advice in cases:
         if which.any():
             number = int(which.sum())
-            yield ailment(name, severity, f"{number} elements {what}", advice, number, mesh.centers[np.argmax(which)])
+            yield mesh_defect(
+                name, severity, f"{number} elements {what}", advice, number, mesh.centers[np.argmax(which)]
+            )
     if bad.any():
         worst, number = int(np.argmin(np.where(bad, shape, np.inf))), int(bad.sum())
         what = f"{number} elements have a shape number below {LEAST_SHAPE} (1 is ideal, 0 is flat)"
         advice = "mesh anew with a smaller or more even size there"
         which_one = f"the worst with {shape[worst]:.2g} at"
-        yield ailment("shape", "warning", what, advice, number, mesh.centers[worst], which=which_one)
+        yield mesh_defect("shape", "warning", what, advice, number, mesh.centers[worst], which=which_one)
 
 
 def _least_determinant(mesh: Mesh, nodes: IntArray, kind: str, places: FloatArray) -> FloatArray:
@@ -77,14 +79,14 @@ def _least_determinant(mesh: Mesh, nodes: IntArray, kind: str, places: FloatArra
     return np.asarray(determinants(jacobians(mesh.points, nodes, gradients)).min(axis=1))
 
 
-def _nodes(mesh: Mesh) -> Iterator[Ailment]:
+def _nodes(mesh: Mesh) -> Iterator[MeshDefect]:
     unused = np.setdiff1d(np.arange(len(mesh.points)), mesh.used_nodes)
     if len(unused):
         what = f"{len(unused)} nodes belong to no element"
-        yield ailment("unused nodes", "error", what, "leave them out", len(unused), mesh.points[unused[0]])
+        yield mesh_defect("unused nodes", "error", what, "leave them out", len(unused), mesh.points[unused[0]])
 
 
-def _unit(mesh: Mesh, unit: float | None) -> Iterator[Ailment]:
+def _unit(mesh: Mesh, unit: float | None) -> Iterator[MeshDefect]:
     """Implausible sizes of a housing, with the unit that would make them plausible."""
     length = float(np.ptp(mesh.bounds, axis=0).max())
     if unit is None or plausible(length):
@@ -98,4 +100,4 @@ def _unit(mesh: Mesh, unit: float | None) -> Iterator[Ailment]:
     message = f"the part is {length_text(length)} long; is the unit {name!r}?"
     if believed:
         message += f" With {believed[0]!r} it would be {length_text(other[believed[0]])}"
-    yield Ailment("unit", "warning", message, 1, mesh.bounds.mean(axis=0))
+    yield MeshDefect("unit", "warning", message, 1, mesh.bounds.mean(axis=0))

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from meshes.bores import CylindricalBore, describe, find_bores, fits_circle, joined_by_span, unit_vector
+from meshes.bores import CylindricalBore, describe_bore, find_bores, fits_circle, joined_by_span, unit_vector
 from meshes.elements import Facets, FloatArray, facet_centers, facet_corners, facet_normals, pick_facets
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
@@ -204,7 +204,7 @@ def _no_bore(mesh: Mesh, center: FloatArray, diameter: float, axis: FloatArray) 
 
     near = sorted(bores, key=distance)[:_LISTED]
     more = f" and {len(bores) - len(near)} more" if len(bores) > len(near) else ""
-    return f"{message}; bores found: {'; '.join(describe(bore) for bore in near)}{more}"
+    return f"{message}; bores found: {'; '.join(describe_bore(bore) for bore in near)}{more}"
 
 
 def _all_corners(mesh: Mesh, nodes: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:

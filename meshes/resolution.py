@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.ailments import Ailment, ailment
+from meshes.ailments import MeshDefect, mesh_defect
 from meshes.lengths import length_text
 from meshes.mesh import Mesh
 from meshes.quality import edge_lengths
@@ -61,13 +61,13 @@ def wall_thickness(mesh: Mesh) -> float:
     return 2.0 * float(mesh.corner_volumes.sum()) / area
 
 
-def resolution_ailments(mesh: Mesh, wave: WaveCarrier) -> tuple[Ailment, ...]:
+def resolution_defects(mesh: Mesh, wave: WaveCarrier) -> tuple[MeshDefect, ...]:
     """Find elements that are too large or of too low an order, with the size that suffices."""
     thickness = wall_thickness(mesh)
     length = wave.shortest_wave(thickness)
     longest = np.concatenate([edge_lengths(mesh.points, block).max(axis=1) for block in mesh.blocks])
     orders = np.concatenate([np.full(len(block), block.of.order) for block in mesh.blocks])
-    ailments = []
+    defects = []
     for order, part in _PARTS.items():
         coarse = (orders == order) & (longest > length / part)
         if coarse.any():
@@ -81,12 +81,12 @@ def resolution_ailments(mesh: Mesh, wave: WaveCarrier) -> tuple[Ailment, ...]:
                 f"modes near that frequency come out too high; use elements of at most {length_text(length / part)}"
             )
             which = f"the worst of {length_text(longest[worst])} at"
-            ailments.append(ailment("size", "warning", what, advice, number, mesh.centers[worst], which=which))
-    ailments += _locking(mesh, thickness)
-    return tuple(ailments)
+            defects.append(mesh_defect("size", "warning", what, advice, number, mesh.centers[worst], which=which))
+    defects += _locking(mesh, thickness)
+    return tuple(defects)
 
 
-def _locking(mesh: Mesh, thickness: float) -> list[Ailment]:
+def _locking(mesh: Mesh, thickness: float) -> list[MeshDefect]:
     """Locking of four-node tetrahedra, whose strain is constant, in bending."""
     first, simple, edges = 0, [], []
     for block in mesh.blocks:
@@ -105,7 +105,7 @@ def _locking(mesh: Mesh, thickness: float) -> list[Ailment]:
         f"{length_text(thickness)} thick these are about {_percent(excess)} too stiff in bending, and its "
         f"frequencies {_percent(high)} too high; use ten-node ones"
     )
-    return [Ailment("locking", "warning", message, len(members), mesh.centers[members[0]])]
+    return [MeshDefect("locking", "warning", message, len(members), mesh.centers[members[0]])]
 
 
 def locking_excess(edge: float, thickness: float) -> float:

@@ -26,7 +26,7 @@ speeds rad/s. The frame is right-handed with z along the shaft; slopes and the g
 `rotors.whirl`.
 """
 
-from .attachment import attach_loads, attach_motions
+from .attachment import add_attachment_modes, add_rod_attachment_modes
 from .axial import AxialModes, solve_axial_modes
 from .axis_spring import AxisSpring
 from .bearing import Bearing, Pedestal, RadialSupport
@@ -49,7 +49,7 @@ from .section import Section
 from .segment import Segment
 from .shaft import Disc, Rotor
 from .shaft_coupling import Coupling
-from .spatial_field import SpatialMotion
+from .spatial_field import ShaftMotion
 from .statics import StaticDeflection, StaticForce, static_deflection
 from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
 from .torsional_response import Torque, TorsionalDashpot, TorsionalResponse, torsional_response
@@ -88,7 +88,7 @@ __all__ = [
     "Section",
     "Segment",
     "ShaftMaterial",
-    "SpatialMotion",
+    "ShaftMotion",
     "StaticDeflection",
     "StaticForce",
     "StrainShares",
@@ -100,8 +100,8 @@ __all__ = [
     "Unbalance",
     "WhirlModes",
     "WhirlSolver",
-    "attach_loads",
-    "attach_motions",
+    "add_attachment_modes",
+    "add_rod_attachment_modes",
     "bow_shape",
     "buckling_factor",
     "campbell",

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from .fields import Fields
+from .fields import ShaftFields
 from .lateral import LateralModes, lateral_modes
 from .rods import Modes, RodModes, rod_modes
-from .search import FoundModes, require_positions
+from .search import SolvedModes, require_positions
 from .shapes import responses, ritz_vectors
 
 FloatArray = npt.NDArray[np.float64]
@@ -21,7 +21,7 @@ NOTHING_LEFT = 1e-7
 FREE_SHIFT = 0.03
 
 
-def attach_loads(
+def add_attachment_modes(
     modes: LateralModes, *, forces_at: Sequence[float] = (), moments_at: Sequence[float] = ()
 ) -> LateralModes:
     """Modes followed by residual attachment modes, which make the static response to point loads exact.
@@ -52,10 +52,10 @@ def attach_loads(
     return lateral_modes(found.frequencies, found.fields, found.mixture, modes.supports, modes.certificate)
 
 
-def attach_motions(modes: Modes, at: Sequence[float]) -> Modes:
+def add_rod_attachment_modes(modes: Modes, at: Sequence[float]) -> Modes:
     """Torsional or axial modes followed by residual attachment modes, exact in static response to point loads.
 
-    As `attach_loads`, for torques or forces along the axis. On a free shaft they carry the elastic part of the
+    As `add_attachment_modes`, for torques or forces along the axis. On a free shaft they carry the elastic part of the
     response, without the rigid motion.
 
     Parameters
@@ -75,7 +75,7 @@ def attach_motions(modes: Modes, at: Sequence[float]) -> Modes:
     return modes if found is None else rod_modes(type(modes), found)
 
 
-def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]]) -> FoundModes | None:
+def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]]) -> SolvedModes | None:
     """Modes followed by the attachment modes of some loads; None where these add nothing.
 
     Each load is a place (m) and the component of displacement along which it acts.
@@ -90,7 +90,7 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
     is_free = chain.rigid_shapes.shape[0] > 0
     reference = elastic[0] if elastic.size else 1.0
     squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
-    static = Fields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
+    static = ShaftFields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
     fields = modes.fields.on(chain).joined(static)
     mixture = _residuals(fields, modes.mixture, zeros, len(loads))
     if mixture.shape[0] == 0:
@@ -98,10 +98,10 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
     squared, vectors = ritz_vectors(*fields.energies(mixture))
     old = np.hstack([modes.mixture, np.zeros((modes.count, len(loads)))])
     frequencies = np.concatenate([modes.frequencies, np.sqrt(np.maximum(squared, 0.0))])
-    return FoundModes(frequencies, fields, np.vstack([old, vectors.T @ mixture]), modes.certificate)
+    return SolvedModes(frequencies, fields, np.vstack([old, vectors.T @ mixture]), modes.certificate)
 
 
-def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
+def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
     """Combinations of fields that span the last ``count`` of them less the modes, (r, fields).
 
     The first ``zeros`` modes are rigid. They are removed first: the response of a nearly free shaft is almost all
@@ -123,7 +123,7 @@ def _residuals(fields: Fields, modes: FloatArray, zeros: int, count: int) -> Flo
     return np.asarray((vectors[:, independent] / np.sqrt(values[independent])).T @ rows)
 
 
-def _without(fields: Fields, rows: FloatArray, modes: FloatArray) -> FloatArray:
+def _without(fields: ShaftFields, rows: FloatArray, modes: FloatArray) -> FloatArray:
     """Combinations without their components along orthonormal modes; twice, to remove rounding."""
     for _ in range(2 if modes.size else 0):
         rows = rows - fields.mass_products(rows, modes) @ modes

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from .axis_spring import AxisSpring
 from .rods import RodModes, rod_modes
-from .rotor_lines import rod_line
+from .rotor_lines import rod_shaft
 from .search import find_modes
 from .shaft import Rotor
 
@@ -55,4 +55,4 @@ def solve_axial_modes(
     IncompleteModesError
         The modes fail their own proof.
     """
-    return rod_modes(AxialModes, find_modes(rod_line(rotor, springs, "axial"), frequency_limit, count))
+    return rod_modes(AxialModes, find_modes(rod_shaft(rotor, springs, "axial"), frequency_limit, count))

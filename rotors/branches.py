@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from .branch_following import extended_branches, paired_modes
 from .exact_roots import ExactRoots
-from .spatial_chain import SpatialChain
-from .spatial_field import SpatialMotion
+from .spatial_chain import WhirlEquations
+from .spatial_field import ShaftMotion
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -42,7 +42,7 @@ class Branch:
         return float(np.abs(self.eigenvalues[np.isfinite(self.eigenvalues)][0]))
 
 
-def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[Branch]:
+def followed(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[Branch]:
     """Branches through the roots (one set a speed) of one chain.
 
     A root's jump is its distance from the linear continuation of the branch; shapes are compared by the modal assurance
@@ -72,15 +72,15 @@ def followed(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArra
     return branches
 
 
-def characters(chain: SpatialChain, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
+def characters(chain: WhirlEquations, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
     """Whirl direction and axial share of roots at speeds, as in `rotors.WhirlModes`, (w, 2)."""
     if len(chain.blocks) == 1:
         return np.tile([float(chain.blocks[0]), 0.0 if chain.blocks[0] else 1.0], (roots.eigenvalues.size, 1))
-    motion = SpatialMotion.of(chain, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
+    motion = ShaftMotion.of(chain, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
     return np.stack([motion.direction, motion.axial_share], axis=-1)
 
 
-def _characters_of_all(chain: SpatialChain, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:
+def _characters_of_all(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:
     sizes = [one.eigenvalues.size for one in roots]
     together = ExactRoots(
         np.concatenate([one.eigenvalues for one in roots]),

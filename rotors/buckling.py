@@ -7,8 +7,8 @@ import numpy as np
 
 from .bearing import RadialSupport
 from .errors import require
-from .root_count import count_below
-from .rotor_lines import bending_line
+from .root_count import wittrick_williams_count
+from .rotor_lines import bending_shaft
 from .segment import Segment
 from .shaft import Rotor
 
@@ -78,7 +78,7 @@ def _has_buckled(rotor: Rotor, supports: Sequence[RadialSupport], factor: float)
         replace(part, axial_force=factor * part.axial_force) if isinstance(part, Segment) else part
         for part in rotor.segments
     ]
-    line = bending_line(replace(rotor, segments=parts), supports)
+    line = bending_shaft(replace(rotor, segments=parts), supports)
     # Every chain of this line has the same scale; the pieces of a standstill are the longest.
     chain = line.cut(STANDSTILL * line.likely_frequency(1))
-    return count_below(chain, chain.highest) > int(chain.rigid_shapes.shape[0])
+    return wittrick_williams_count(chain, chain.highest) > int(chain.rigid_shapes.shape[0])

@@ -25,10 +25,10 @@ from .exact_roots import refine_each
 from .harmonic import finite_values
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
-from .projection import Projection
+from .projection import ModalProjection
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, retied, whirl_reach
-from .spatial_ties import block_sets
+from .spatial_chain import WhirlEquations, retied, whirl_reach
+from .spatial_ties import coupled_motions
 from .whirl import NEUTRAL, START_REACH, WhirlSolver
 from .whirl_certificate import NO_OSCILLATION
 
@@ -170,7 +170,7 @@ class Campbell:
             )
         return Crossing(found.speed, found.eigenvalue, order, found.shape[0], branch, found.shape[1])
 
-    def _chain(self, branch: int, highest: float, speed: float) -> SpatialChain:
+    def _chain(self, branch: int, highest: float, speed: float) -> WhirlEquations:
         sets = self.blocks[branch]
         constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.solver.bearings]
         return self.solver.equations(constant, sets, whirl_reach(START_REACH * highest, speed))
@@ -221,11 +221,11 @@ def campbell(
     chosen = shared.planar_basis(frequency_limit, count)
     tabled = any(bearing.speeds is not None for bearing in bearings)
     at_speeds = [[b.at_speed(float(s)) for b in bearings] for s in turning] if tabled else [list(bearings)]
-    sets = block_sets([bearing for row in at_speeds for bearing in row])
+    sets = coupled_motions([bearing for row in at_speeds for bearing in row])
     wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
     starts = []
     for blocks in sets:
-        one = Projection.of(rotor, at_speeds[0], blocks, chosen)
+        one = ModalProjection.of(rotor, at_speeds[0], blocks, chosen)
         if tabled:
             rows = [one.pencil(b).eigenvalues(turning[k : k + 1]) for k, b in enumerate(at_speeds)]
             values = np.concatenate(rows)
@@ -235,7 +235,7 @@ def campbell(
         starts.append(np.where(oscillates, values, np.nan))
     limits = limits_behind(starts, frequency_limit, wanted)
     least = NO_OSCILLATION * chosen.floor
-    undriven = shared.is_undriven([bearing for row in at_speeds for bearing in row])
+    undriven = shared.is_conservative_rotor([bearing for row in at_speeds for bearing in row])
     highest = max(whirl_reach(START_REACH * r, float(s)) for r, s in zip(limits, turning, strict=True))
     branches: list[Branch] = []
     owners: list[tuple[int, ...]] = []

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from .certificate import ACCEPTED
 from .coalesced_roots import refine_roots
 from .exact_roots import NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each
-from .spatial_chain import SpatialChain
+from .spatial_chain import WhirlEquations
 from .whirl_certificate import certified_roots, oscillating
 from .whirl_count import negative_count
 
@@ -43,7 +43,7 @@ def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None,
 
 
 def roots_at_speeds(
-    chains: Sequence[SpatialChain], values: ComplexArray, speeds: FloatArray, limits: FloatArray
+    chains: Sequence[WhirlEquations], values: ComplexArray, speeds: FloatArray, limits: FloatArray
 ) -> list[ExactRoots]:
     """Exact roots at every speed: separated ones of all speeds in one batch, clusters at their own speed."""
     chosen = [row[np.abs(row) < WINDOW * limit] for row, limit in zip(values, limits, strict=True)]
@@ -67,7 +67,7 @@ def roots_at_speeds(
 
 
 def proved_at(
-    chains: Sequence[SpatialChain],
+    chains: Sequence[WhirlEquations],
     roots: list[ExactRoots],
     speeds: FloatArray,
     least: float,
@@ -98,7 +98,7 @@ def proved_at(
 
 
 def _expected(
-    chains: Sequence[SpatialChain], speeds: FloatArray, least: float, limits: FloatArray
+    chains: Sequence[WhirlEquations], speeds: FloatArray, least: float, limits: FloatArray
 ) -> npt.NDArray[np.intp]:
     """Roots below the limits by inertia, (s,)."""
     if all(chain is chains[0] for chain in chains):

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from .profile import restricted
 from .quadrature import gauss_rule
 from .shaft import merged_positions, station_index
-from .timoshenko import NumberArray, PieceTable
+from .timoshenko import NumberArray, ShaftElements
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -42,7 +42,7 @@ class EnergyWeights:
 
 
 @dataclass(frozen=True)
-class Chain:
+class DiscretisedShaft:
     """A shaft as pieces between nodes, in scaled units; n is 2 for bending and 1 for a rod.
 
     Attributes
@@ -68,7 +68,7 @@ class Chain:
     """
 
     nodes: FloatArray
-    table: PieceTable
+    table: ShaftElements
     element: IntArray
     node_inertia: FloatArray
     node_stiffness: FloatArray
@@ -118,7 +118,7 @@ class Chain:
         """Coefficients of the table at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
         return self.table.coefficients_at(self.element[piece], fraction)
 
-    def transfers(self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None) -> NumberArray:
+    def transfer_matrices(self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None) -> NumberArray:
         """Transfer matrices of all pieces at every ω² of a (b,) array, (p, b, 2n, 2n).
 
         Parameters
@@ -127,9 +127,9 @@ class Chain:
             (b,): ω² that multiplies the mass and the rotary inertia, real or complex; without the second, both
             are the first. For e^{λt} in circular coordinates they are −λ² and −λ² ± 2iΩλ.
         """
-        return np.moveaxis(self.table.transfers(translation, rotation)[:, :, 0], 0, 1)[self.element]
+        return np.moveaxis(self.table.transfer_matrices(translation, rotation)[:, :, 0], 0, 1)[self.element]
 
-    def transfers_to(
+    def transfer_matrices_to(
         self,
         piece: IntArray,
         fraction: FloatArray,
@@ -137,7 +137,7 @@ class Chain:
         rotation: npt.ArrayLike | None = None,
     ) -> NumberArray:
         """Transfer matrices from the left ends of pieces (z,) to fractions (z,) of them, (z, b, 2n, 2n)."""
-        return self.table.transfers_to(self.element[piece], fraction, translation, rotation)
+        return self.table.transfer_matrices_to(self.element[piece], fraction, translation, rotation)
 
     def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
         """Index of the piece at each position (z,) in m, and the fraction of it to the left, both (z,)."""
@@ -147,7 +147,7 @@ class Chain:
         fraction = (positions - left) / (self.nodes[piece + 1] - left)
         return piece, np.minimum(np.maximum(fraction, 0.0), 1.0)
 
-    def on_springs(self, stiffness: FloatArray) -> "Chain":
+    def on_springs(self, stiffness: FloatArray) -> "DiscretisedShaft":
         """The same pieces with other springs at the nodes, (p + 1, n), in scaled units."""
         return replace(self, node_stiffness=stiffness)
 
@@ -155,7 +155,7 @@ class Chain:
         """Index of the node at a position (m), which must be one of the nodes."""
         return station_index(self.nodes, position)
 
-    def with_nodes(self, positions: FloatArray) -> "Chain":
+    def with_nodes(self, positions: FloatArray) -> "DiscretisedShaft":
         """The same chain with nodes, bare ones where there were none, at positions (k,) in m as well."""
         nodes = merged_positions(self.nodes, positions.tolist())
         if nodes.size == self.nodes.size:
@@ -168,7 +168,7 @@ class Chain:
         return replace(
             self,
             nodes=nodes,
-            table=PieceTable(self.table.lengths[element] * part, coefficients),
+            table=ShaftElements(self.table.lengths[element] * part, coefficients),
             element=np.arange(piece.size),
             node_inertia=spread(nodes.size, index, self.node_inertia),
             node_stiffness=spread(nodes.size, index, self.node_stiffness),

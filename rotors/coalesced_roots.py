@@ -20,12 +20,12 @@ from .exact_roots import (
     Speed,
     apart,
     clusters,
+    converged_roots,
     distinct,
     random_vectors,
     refine_alone,
-    settled_roots,
 )
-from .spatial_chain import SpatialChain
+from .spatial_chain import WhirlEquations
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -47,7 +47,7 @@ CLOSE = 3e-3
 SAME_PLACE = 1e-3
 
 
-def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> ExactRoots:
+def refine_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots near starting values; fewer where several lead to one root, or one to none.
 
     Parameters
@@ -59,7 +59,7 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
     speed
         Speed of rotation as an analytic function of λ.
     """
-    roots, crawling = settled_roots(chain, starts, speed)
+    roots, crawling = converged_roots(chain, starts, speed)
     if crawling.size == 0:
         return roots
     for place in clusters(crawling, CIRCLES[0]):
@@ -67,7 +67,7 @@ def refine_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> Exa
     return distinct(roots)
 
 
-def with_circle(chain: SpatialChain, roots: ExactRoots, centre: complex, speed: Speed) -> ExactRoots:
+def with_circle(chain: WhirlEquations, roots: ExactRoots, centre: complex, speed: Speed) -> ExactRoots:
     """The roots, with those about a place replaced by the roots of contour integrals."""
     for part in CIRCLES:
         radius = part * abs(centre)
@@ -78,7 +78,7 @@ def with_circle(chain: SpatialChain, roots: ExactRoots, centre: complex, speed: 
     return roots
 
 
-def roots_in_circle(chain: SpatialChain, centre: complex, radius: float, speed: Speed) -> ExactRoots | None:
+def roots_in_circle(chain: WhirlEquations, centre: complex, radius: float, speed: Speed) -> ExactRoots | None:
     """All roots within ``radius`` of ``centre``, rad/s; None where the circle passes too near one, or holds too many.
 
     The second vector of a coalesced pair is a principal vector: the pair has one shape.
@@ -111,7 +111,7 @@ def roots_in_circle(chain: SpatialChain, centre: complex, radius: float, speed: 
     return whole
 
 
-def _settled(chain: SpatialChain, roots: ExactRoots, span: ComplexArray, radius: float, speed: Speed) -> ExactRoots:
+def _settled(chain: WhirlEquations, roots: ExactRoots, span: ComplexArray, radius: float, speed: Speed) -> ExactRoots:
     """Roots of one group refined one by one, or kept together at their mean where they are not resolved."""
     polished = refine_alone(chain, roots.eigenvalues, roots.solutions, speed)
     moved = np.abs(polished.eigenvalues - roots.eigenvalues)

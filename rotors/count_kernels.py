@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .compiled import counted, inner
-from .piece_kernels import piece_transfers
+from .piece_kernels import element_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -76,7 +76,7 @@ def _with_term(first: State, second: State, row: int, term: float) -> tuple[Stat
 
 @inner(error_model="python")
 def _beam_count(
-    squared: float, transfers: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
+    squared: float, transfer_matrices: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
     """Number of roots below ω² and the determinant there, from the two admissible states of the left part."""
     first, second = (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)
@@ -100,7 +100,7 @@ def _beam_count(
             negative = (closing < 0.0) != (sign < 0.0)
             trace = 0.0
         else:
-            transfer = transfers[element[node]]
+            transfer = transfer_matrices[element[node]]
             next_first, next_second = _moved(transfer, first), _moved(transfer, second)
             closing = next_first[0] * next_second[1] - next_first[1] * next_second[0]
             negative = (closing < 0.0) != (sign < 0.0)
@@ -123,7 +123,7 @@ def _beam_count(
 
 @inner(error_model="python")
 def _rod_count(
-    squared: float, transfers: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
+    squared: float, transfer_matrices: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
     """The same for a rod, whose left part has one admissible state."""
     u, f, sign, total, scale = 1.0, 0.0, 1.0, 0, 1.0
@@ -137,7 +137,7 @@ def _rod_count(
             f += (stiffness[node, 0] - squared * inertia[node, 0]) * u
         if node == element.size:
             break
-        transfer = transfers[element[node]]
+        transfer = transfer_matrices[element[node]]
         u, f = transfer[0, 0] * u + transfer[0, 1] * f, transfer[1, 0] * u + transfer[1, 1] * f
         if (u < 0.0) != (sign < 0.0):
             total += 1
@@ -158,19 +158,19 @@ def count_at(
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
-    transfers: FloatArray,
+    transfer_matrices: FloatArray,
 ) -> tuple[int, float]:
-    """Number of roots below a frequency and the determinant there; ``transfers`` (e, 1, 2n, 2n) is scratch."""
+    """Number of roots below a frequency and the determinant there; ``transfer_matrices`` (e, 1, 2n, 2n) is scratch."""
     squared = frequency * frequency
     for e in range(lengths.size):
-        piece_transfers(lengths[e], given[e], squared, squared, WHOLE, transfers[e])
+        element_transfer_matrices(lengths[e], given[e], squared, squared, WHOLE, transfer_matrices[e])
     if given.shape[1] == 6:
-        return _beam_count(squared, transfers[:, 0], element, stiffness, inertia)
-    return _rod_count(squared, transfers[:, 0], element, stiffness, inertia)
+        return _beam_count(squared, transfer_matrices[:, 0], element, stiffness, inertia)
+    return _rod_count(squared, transfer_matrices[:, 0], element, stiffness, inertia)
 
 
 @counted(error_model="python")
-def count_of(
+def wittrick_williams_count_of(
     frequency: float,
     lengths: FloatArray,
     given: FloatArray,
@@ -180,5 +180,5 @@ def count_of(
 ) -> int:
     """Number of roots below a frequency."""
     size = 2 * stiffness.shape[1]
-    transfers = np.empty((lengths.size, 1, size, size))
-    return count_at(frequency, lengths, given, element, stiffness, inertia, transfers)[0]
+    transfer_matrices = np.empty((lengths.size, 1, size, size))
+    return count_at(frequency, lengths, given, element, stiffness, inertia, transfer_matrices)[0]

@@ -13,9 +13,9 @@ from .errors import require
 from .exact_roots import SYNCHRONOUS
 from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT
-from .projection import Projection, basis_for
+from .projection import ModalProjection, basis_for
 from .shaft import Rotor
-from .spatial_ties import block_sets
+from .spatial_ties import coupled_motions
 from .whirl import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
 from .whirl_certificate import NO_OSCILLATION
 
@@ -101,7 +101,7 @@ def critical_speeds(
     chosen = basis_for(rotor, free, speed_limit, count, basis)
     if any(bearing.speeds is not None for bearing in free):
         return _tabled_critical_speeds(rotor, free, speed_limit, count, basis)
-    sets = [Projection.of(rotor, free, blocks, chosen) for blocks in block_sets(free)]
+    sets = [ModalProjection.of(rotor, free, blocks, chosen) for blocks in coupled_motions(free)]
     roots, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
     speeds = roots.eigenvalues.imag
     order = np.argsort(speeds)
@@ -128,7 +128,7 @@ def _tabled_critical_speeds(
 
 
 def certified_criticals(
-    rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[Projection], limit: float | None, count: int | None
+    rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[ModalProjection], limit: float | None, count: int | None
 ) -> tuple[WhirlRoots, ModeCertificate]:
     """Synchronous whirl in undamped bearings below a limit, or the lowest roots, for some sets of coupled motions."""
     return certified_whirl(

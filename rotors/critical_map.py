@@ -15,7 +15,7 @@ from .bearing import Bearing
 from .critical import certified_criticals
 from .errors import RotorError, require, require_count
 from .planar_basis import planar_basis
-from .projection import Projection
+from .projection import ModalProjection
 from .shaft import Rotor
 
 FloatArray = npt.NDArray[np.float64]
@@ -84,7 +84,7 @@ def critical_speed_map(
             for b in bearings
         ]
         basis = planar_basis(rotor, held, None, 2 * count)
-        one = Projection.of(rotor, held, (direction,), basis)
+        one = ModalProjection.of(rotor, held, (direction,), basis)
         roots, _ = certified_criticals(rotor, held, [one], None, count)
         speeds = np.sort(roots.eigenvalues.imag)
         rows[k, : speeds.size] = speeds

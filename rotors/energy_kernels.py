@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .compiled import counted
-from .piece_kernels import piece_transfers
+from .piece_kernels import element_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -86,16 +86,16 @@ def energy_rows(
     """
     size, pieces = states.shape[2], element.size
     n = size // 2
-    transfers = np.empty((lengths.size, fractions.size, size, size))
+    transfer_matrices = np.empty((lengths.size, fractions.size, size, size))
     state = np.empty(size)
     for k in range(squared.size):
         if k == 0 or squared[k] != squared[k - 1]:
             for e in range(lengths.size):
-                piece_transfers(lengths[e], given[e], squared[k], squared[k], fractions, transfers[e])
+                element_transfer_matrices(lengths[e], given[e], squared[k], squared[k], fractions, transfer_matrices[e])
         at_motion, at_strain = 0, 0
         for piece in range(pieces):
             for g in range(fractions.size):
-                transfer = transfers[element[piece], g]
+                transfer = transfer_matrices[element[piece], g]
                 for row in range(size):
                     state[row] = 0.0
                     for column in range(size):

@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .banded import BandPattern
-from .chain import Chain
-from .layout import Layout, TiePlaces
-from .spatial_ties import MEMBERS, Tie
+from .chain import DiscretisedShaft
+from .layout import BearingPlaces, Layout
+from .spatial_ties import BLOCK_COORDINATES, NodeBearing
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -32,7 +32,7 @@ NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NOWHERE, np.zeros(1, dtype=np.intp)
 
 
 @dataclass(frozen=True)
-class EntryTable:
+class ShootingMatrix:
     """The shooting matrix of one set of equations, as a table of its entries.
 
     Attributes
@@ -79,15 +79,20 @@ class EntryTable:
         return self.blocks, self.beams, self.rods, self.numerators, self.denominators, self.constants
 
 
-def entry_table(
-    bending: Chain, axial: Chain | None, blocks: tuple[int, ...], ties: Sequence[Tie], kept: IntArray, layout: Layout
-) -> EntryTable:
+def shooting_matrix(
+    bending: DiscretisedShaft,
+    axial: DiscretisedShaft | None,
+    blocks: tuple[int, ...],
+    ties: Sequence[NodeBearing],
+    kept: IntArray,
+    layout: Layout,
+) -> ShootingMatrix:
     """The shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
     first, terms, runs = 0, _Terms(), []
     states = np.stack([layout.displacements[:-1], layout.forces])
     reached = np.stack([layout.continuity, layout.balances[1:]])
     for block in blocks:
-        own = slice(first, first + len(MEMBERS[block]))
+        own = slice(first, first + len(BLOCK_COORDINATES[block]))
         # (r, 2n) each, displacements before forces.
         rows, columns = (np.concatenate([*places[:, :, own]], axis=1) for places in (reached, states))
         runs.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
@@ -100,7 +105,7 @@ def entry_table(
         _add_tie(terms, tie, layout.balances[node], layout.displacements[node], own_places)
     places, numerators, denominators, constants = terms.parted()
     rows, columns = np.concatenate(runs + places, axis=1)
-    return EntryTable(
+    return ShootingMatrix(
         BandPattern.of(rows, columns, layout.order),
         np.array(blocks, dtype=np.intp),
         _runs(bending, kept),
@@ -111,24 +116,24 @@ def entry_table(
     )
 
 
-def _runs(chain: Chain, kept: IntArray) -> Runs:
+def _runs(chain: DiscretisedShaft, kept: IntArray) -> Runs:
     first: dict[bytes, int] = {}
     pieces = [chain.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
     like = [first.setdefault(same, run) for run, same in enumerate(pieces)]
     return chain.table.lengths, chain.table.coefficients, chain.element, kept, np.array(like, dtype=np.intp)
 
 
-def _inertias(chain: Chain, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
+def _inertias(chain: DiscretisedShaft, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
     """−M and the gyroscopic term of λΩ, (r + 1, n) both, of the nodes' own inertias."""
     inertia, polar = chain.node_inertia[kept], chain.node_polar[kept]
     squared, turning = [], []
     for block in blocks:
-        squared += [-inertia[:, 0], -inertia[:, -1]][: len(MEMBERS[block])]
-        turning += [0.0 * polar, block * 1j * polar][: len(MEMBERS[block])]
+        squared += [-inertia[:, 0], -inertia[:, -1]][: len(BLOCK_COORDINATES[block])]
+        turning += [0.0 * polar, block * 1j * polar][: len(BLOCK_COORDINATES[block])]
     return np.stack(squared, axis=1), np.stack(turning, axis=1)
 
 
-def _add_tie(terms: "_Terms", tie: Tie, balance: IntArray, node: IntArray, places: TiePlaces) -> None:
+def _add_tie(terms: "_Terms", tie: NodeBearing, balance: IntArray, node: IntArray, places: BearingPlaces) -> None:
     """Add the entries of a bearing's forces g and its pedestal's displacements p at a node."""
     shared = list(tie.foot)
     held = _over(tie.stiffness)

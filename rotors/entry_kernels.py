@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .banded_kernels import TINY, factor, fill, put
 from .compiled import FUSED, counted, inner
-from .piece_kernels import whole_transfer
+from .piece_kernels import transfer_matrix
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -41,14 +41,14 @@ def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
 
 @counted(error_model="python", no_cpython_wrapper=True, fastmath=FUSED)
 def _put_runs(
-    runs: Runs, translation: complex, rotation: complex, scale: float, transfers: Any, out: ComplexArray
+    runs: Runs, translation: complex, rotation: complex, scale: float, transfer_matrices: Any, out: ComplexArray
 ) -> int:
     """−T of every run of pieces, forces in the given unit, at the start of ``out``; returns the number of entries."""
     lengths, given, element, kept, like = runs
     whole, over = np.ones(1), 1.0 / scale
-    size, half, spare = transfers.shape[2], transfers.shape[2] // 2, lengths.size
+    size, half, spare = transfer_matrices.shape[2], transfer_matrices.shape[2] // 2, lengths.size
     for e in range(lengths.size):
-        whole_transfer(lengths[e], given[e], translation, rotation, whole, transfers[e])
+        transfer_matrix(lengths[e], given[e], translation, rotation, whole, transfer_matrices[e])
     entry = 0
     for run in range(kept.size - 1):
         if like[run] < run:
@@ -60,13 +60,13 @@ def _put_runs(
         for piece in range(kept[run] + 1, kept[run + 1]):
             # Two spare matrices take turns.
             following = spare + 1 if product == spare else spare
-            _times(transfers[element[piece], 0], transfers[product, 0], transfers[following, 0])
+            _times(transfer_matrices[element[piece], 0], transfer_matrices[product, 0], transfer_matrices[following, 0])
             product = following
         for i in range(size):
             for j in range(size):
                 # Displacements from forces, and forces from displacements.
                 unit = scale if i < half <= j else (over if j < half <= i else 1.0)
-                value = transfers[product, 0, i, j]
+                value = transfer_matrices[product, 0, i, j]
                 out[entry] = complex(-unit * value.real, -unit * value.imag)
                 entry += 1
     return entry
@@ -74,7 +74,7 @@ def _put_runs(
 
 @inner(error_model="python")
 def force_unit(at: complex, mass: float) -> float:
-    """Unit of force for roots near λ, as `rotors.spatial_chain.SpatialChain.force_scale`."""
+    """Unit of force for roots near λ, as `rotors.spatial_chain.WhirlEquations.force_scale`."""
     return min(max((at.real**2 + at.imag**2) * mass, 1e-30), 1.0)
 
 
@@ -155,17 +155,17 @@ def node_states(
     """
     lengths, given, element, kept, _ = runs
     size, whole = states.shape[2], np.ones(1)
-    transfers = np.empty((lengths.size, 1, size, size), dtype=np.complex128)
+    transfer_matrices = np.empty((lengths.size, 1, size, size), dtype=np.complex128)
     for w in range(states.shape[0]):
         for e in range(lengths.size):
-            whole_transfer(lengths[e], given[e], translation[w], rotation[w], whole, transfers[e])
+            transfer_matrix(lengths[e], given[e], translation[w], rotation[w], whole, transfer_matrices[e])
         for end in range(kept.size):
             for i in range(size):
                 unit, place = scale[w] if i >= size // 2 else 1.0, places[end, i]
                 states[w, kept[end], i] = unit * solutions[w, place] if place >= 0 else 0.0j
         for run in range(kept.size - 1):
             for node in range(kept[run] + 1, kept[run + 1]):
-                transfer = transfers[element[node - 1], 0]
+                transfer = transfer_matrices[element[node - 1], 0]
                 for i in range(size):
                     total = transfer[i, 0] * states[w, node - 1, 0]
                     for j in range(1, size):

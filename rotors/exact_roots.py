@@ -21,7 +21,7 @@ import numpy.typing as npt
 from scipy import linalg
 
 from .certificate import ACCEPTED, MOST_STEPS, SETTLED
-from .spatial_chain import SpatialChain
+from .spatial_chain import WhirlEquations
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -104,7 +104,7 @@ def constant_speed(speed: float) -> Speed:
     return Speed(complex(speed))
 
 
-def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
+def converged_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
     """Exact roots near starting values, each once, and the places where the iteration has not converged.
 
     Parameters
@@ -147,9 +147,9 @@ def settled_roots(chain: SpatialChain, starts: ComplexArray, speed: Speed) -> tu
 
 def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
     """The converged roots, each once, and the values of the others."""
-    from .place_kernels import are_done
+    from .place_kernels import are_converged
 
-    if are_done(roots.eigenvalues, roots.residuals, ACCEPTED, SAME):
+    if are_converged(roots.eigenvalues, roots.residuals, ACCEPTED, SAME):
         return roots, NO_PLACES
     good = roots.residuals <= ACCEPTED
     return distinct(roots.take(good)), roots.eigenvalues[~good]
@@ -192,7 +192,7 @@ def distinct(roots: ExactRoots) -> ExactRoots:
     return roots.take(np.array(sorted(kept), dtype=np.intp))
 
 
-def slopes_at(chain: SpatialChain, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray) -> ComplexArray:
+def slopes_at(chain: WhirlEquations, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray) -> ComplexArray:
     """Entries of dN/dλ at every λ, (b, nnz)."""
     step = SLOPE_STEP * np.abs(eigenvalues)
     ahead, behind = (
@@ -202,7 +202,7 @@ def slopes_at(chain: SpatialChain, eigenvalues: ComplexArray, speed: Speed, scal
 
 
 def refine_each(
-    chain: SpatialChain, starts: ComplexArray, speeds: FloatArray, vectors: ComplexArray | None = None
+    chain: WhirlEquations, starts: ComplexArray, speeds: FloatArray, vectors: ComplexArray | None = None
 ) -> ExactRoots:
     """Exact roots from starting values, each alone and at its own speed, (w,) both; none is dropped.
 
@@ -214,7 +214,7 @@ def refine_each(
     return refine_alone(chain, starts, vectors, Speed(speeds.astype(np.complex128)))
 
 
-def refine_alone(chain: SpatialChain, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
+def refine_alone(chain: WhirlEquations, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
     from .newton_kernels import newton
 
@@ -235,7 +235,9 @@ def random_vectors(count: int, order: int) -> ComplexArray:
     return np.asarray(vectors)
 
 
-def _together(chain: SpatialChain, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int) -> ExactRoots:
+def _together(
+    chain: WhirlEquations, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int
+) -> ExactRoots:
     """All roots of one cluster by the small eigenproblem about their mean."""
     basis, mixture = vectors[None], np.eye(values.size, dtype=np.complex128)
     change = np.full(values.size, np.inf)

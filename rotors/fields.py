@@ -11,13 +11,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from .chain import GAUSS_FRACTIONS, Chain
+from .chain import GAUSS_FRACTIONS, DiscretisedShaft
 
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Fields:
+class ShaftFields:
     """Exact fields along one discretised shaft, in its scaled units.
 
     Attributes
@@ -30,15 +30,15 @@ class Fields:
         (k, p + 1, 2n): state just right of each node.
     """
 
-    chain: Chain
+    chain: DiscretisedShaft
     frequency_squared: FloatArray
     states: FloatArray
 
     def at(self, positions: FloatArray) -> FloatArray:
         """States at positions (z,) in m on the shaft, (k, z, 2n)."""
         piece, fraction = self.chain.places(positions)
-        transfers = self.chain.transfers_to(piece, fraction, self.frequency_squared)
-        return np.asarray(np.einsum("zkij,kzj->kzi", transfers, self.states[:, piece]))
+        transfer_matrices = self.chain.transfer_matrices_to(piece, fraction, self.frequency_squared)
+        return np.asarray(np.einsum("zkij,kzj->kzi", transfer_matrices, self.states[:, piece]))
 
     def energies(self, mixture: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Mass and stiffness matrices of combinations of the fields, in the chain's units.
@@ -87,19 +87,19 @@ class Fields:
         pieces = (strain**2 * weights)[:, :inside]
         return np.asarray(pieces.reshape(mixture.shape[0], self.chain.element.size, -1).sum(axis=2))
 
-    def joined(self, other: "Fields") -> "Fields":
+    def joined(self, other: "ShaftFields") -> "ShaftFields":
         """These fields followed by those of ``other``, on the same shaft."""
-        return Fields(
+        return ShaftFields(
             self.chain,
             np.concatenate([self.frequency_squared, other.frequency_squared]),
             np.concatenate([self.states, other.states]),
         )
 
-    def on(self, chain: Chain) -> "Fields":
+    def on(self, chain: DiscretisedShaft) -> "ShaftFields":
         """The same fields on a discretised shaft with further nodes."""
         if chain is self.chain:
             return self
-        return Fields(chain, self.frequency_squared, self.at(chain.nodes))
+        return ShaftFields(chain, self.frequency_squared, self.at(chain.nodes))
 
     @cached_property
     def _rows(self) -> tuple[FloatArray, FloatArray]:

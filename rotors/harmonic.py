@@ -14,9 +14,9 @@ from .bearing import Bearing
 from .errors import require, require_finite
 from .loads import HarmonicForce
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, retied, spatial_chain, whirl_reach
-from .spatial_field import SpatialMotion
-from .spatial_ties import CIRCULAR, MEMBERS, block_sets
+from .spatial_chain import WhirlEquations, retied, whirl_equations, whirl_reach
+from .spatial_field import ShaftMotion
+from .spatial_ties import BLOCK_COORDINATES, CIRCULAR, coupled_motions
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -59,7 +59,7 @@ class HarmonicResponse:
 
     frequencies: FloatArray
     speeds: FloatArray
-    motion: SpatialMotion = field(repr=False)
+    motion: ShaftMotion = field(repr=False)
     bearings: tuple[str, ...]
     bearing_forces: ComplexArray = field(repr=False)
 
@@ -174,15 +174,15 @@ def solve_harmonic(
     tabled = any(bearing.speeds is not None for bearing in bearings)
     constant = [bearing.at_speed(float(speeds[0])) if tabled else bearing for bearing in bearings]
     # Tables may couple motions at one speed and not at another: then all are solved together.
-    sets = block_sets([b.at_speed(float(s)) for s in speeds for b in bearings] if tabled else constant)
+    sets = coupled_motions([b.at_speed(float(s)) for s in speeds for b in bearings] if tabled else constant)
     highest = max(
         (whirl_reach(float(w), float(s)) for w, s in zip(np.abs(frequencies), speeds, strict=True)), default=0.0
     )
     eigenvalues = (1j * frequencies).astype(np.complex128)
     forces = np.zeros((frequencies.size, len(constant), 5), dtype=np.complex128)
-    motion: SpatialMotion | None = None
+    motion: ShaftMotion | None = None
     for blocks in sets:
-        chain = spatial_chain(rotor, constant, blocks, max(highest, 1e-6), places)
+        chain = whirl_equations(rotor, constant, blocks, max(highest, 1e-6), places)
         scale = chain.response_scale(eigenvalues)
         sides = _sides(chain, places, loads) / scale[:, None]
         solutions = np.empty((frequencies.size, chain.pattern.order), dtype=np.complex128)
@@ -195,13 +195,13 @@ def solve_harmonic(
             values = tied.values(eigenvalues[run], speeds[run].astype(np.complex128), scale[run])
             solutions[run] = tied.pattern.solve(values, sides[run, None])[:, 0]
             forces[run] += bearing_forces(tied, solutions[run], scale[run])
-        part = SpatialMotion.of(chain, eigenvalues, speeds.astype(np.complex128), solutions, scale)
+        part = ShaftMotion.of(chain, eigenvalues, speeds.astype(np.complex128), solutions, scale)
         motion = part if motion is None else motion.plus(part)
     assert motion is not None
     return HarmonicResponse(frequencies, speeds, motion, tuple(bearing.name for bearing in bearings), forces)
 
 
-def bearing_forces(chain: SpatialChain, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
+def bearing_forces(chain: WhirlEquations, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
     """Forces on the bearings' carriers (b, ties, 5) over x, y, z and about x and y, in SI."""
     length, angle = chain.bending.displacement_unit
     forces = np.zeros((solutions.shape[0], len(chain.ties), 5), dtype=np.complex128)
@@ -217,9 +217,9 @@ def bearing_forces(chain: SpatialChain, solutions: ComplexArray, scale: FloatArr
     return forces
 
 
-def _sides(chain: SpatialChain, places: Sequence[float], loads: Loads) -> ComplexArray:
+def _sides(chain: WhirlEquations, places: Sequence[float], loads: Loads) -> ComplexArray:
     """Right-hand sides (b, order) of loads, before the scale of forces."""
-    members = [member for block in chain.blocks for member in MEMBERS[block]]
+    members = [member for block in chain.blocks for member in BLOCK_COORDINATES[block]]
     sides = np.zeros((loads.shape[0], chain.pattern.order), dtype=np.complex128)
     for index, place in enumerate(places):
         row = chain.layout.balances[chain.bending.node_at(place)]

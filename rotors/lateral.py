@@ -9,8 +9,8 @@ import numpy.typing as npt
 from .bearing import RadialSupport
 from .buckling import require_unbuckled
 from .certificate import ModeCertificate
-from .fields import Fields
-from .rotor_lines import bending_line
+from .fields import ShaftFields
+from .rotor_lines import bending_shaft
 from .search import find_modes, require_positions
 from .shaft import Rotor
 
@@ -37,7 +37,7 @@ class LateralModes:
     supports
         The springs in K, which a coupled model removes again.
     certificate
-        Proof of completeness. It does not cover the attachment modes of `rotors.attach_loads`.
+        Proof of completeness. It does not cover the attachment modes of `rotors.add_attachment_modes`.
     """
 
     frequencies: FloatArray
@@ -47,7 +47,7 @@ class LateralModes:
     polar_inertia_matrix: FloatArray
     supports: tuple[RadialSupport, ...]
     certificate: ModeCertificate
-    fields: Fields = field(repr=False)
+    fields: ShaftFields = field(repr=False)
     mixture: FloatArray = field(repr=False)
 
     @property
@@ -169,13 +169,13 @@ def solve_lateral_modes(
     """
     held = tuple(supports)
     require_unbuckled(rotor, held)
-    found = find_modes(bending_line(rotor, held), frequency_limit, count)
+    found = find_modes(bending_shaft(rotor, held), frequency_limit, count)
     return lateral_modes(found.frequencies, found.fields, found.mixture, held, found.certificate)
 
 
 def lateral_modes(
     frequencies: FloatArray,
-    fields: Fields,
+    fields: ShaftFields,
     mixture: FloatArray,
     supports: tuple[RadialSupport, ...],
     certificate: ModeCertificate,

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .spatial_ties import MEMBERS, Tie
+from .spatial_ties import BLOCK_COORDINATES, NodeBearing
 
 IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class TiePlaces:
+class BearingPlaces:
     """Columns of a bearing's forces (m,) and of its pedestal's displacements (f,), and the rows of both."""
 
     forces: IntArray
@@ -48,12 +48,12 @@ class Layout:
     forces: IntArray
     continuity: IntArray
     balances: IntArray
-    ties: tuple[TiePlaces, ...]
+    ties: tuple[BearingPlaces, ...]
 
     @classmethod
-    def of(cls, blocks: tuple[int, ...], kept: IntArray, ties: Sequence[Tie]) -> "Layout":
+    def of(cls, blocks: tuple[int, ...], kept: IntArray, ties: Sequence[NodeBearing]) -> "Layout":
         """Layout of the blocks at the nodes with unknowns, (r + 1,), and of the bearings at some of them."""
-        widths = np.array([len(MEMBERS[block]) for block in blocks])
+        widths = np.array([len(BLOCK_COORDINATES[block]) for block in blocks])
         n, width = int(widths.sum()), np.repeat(widths, widths)
         # A block's displacements and then its forces, behind those of the blocks before it.
         own = np.arange(n) + np.repeat(np.cumsum(widths) - widths, widths)
@@ -73,7 +73,7 @@ class Layout:
         for node, tie in zip(at, ties, strict=True):
             m, f = len(tie.directions), len(tie.foot)
             column, row = np.arange(columns[node], columns[node] + m + f), np.arange(behind[node], behind[node] + m + f)
-            places.append(TiePlaces(column[:m], column[m:], row[:m], row[m:]))
+            places.append(BearingPlaces(column[:m], column[m:], row[:m], row[m:]))
             columns[node] += m + f
             behind[node] += m + f
         return cls(

@@ -18,11 +18,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from .chain import Chain, spread
+from .chain import DiscretisedShaft, spread
 from .errors import RotorError
 from .profile import restricted
 from .shaft import merged_positions, station_index
-from .timoshenko import PieceTable
+from .timoshenko import ShaftElements
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -33,7 +33,7 @@ MOST_PIECES = 50_000
 
 
 @dataclass(frozen=True)
-class Line:
+class ContinuousShaft:
     """One motion of a shaft as spans between stations, in scaled units; n is 2 for bending and 1 for a rod.
 
     Attributes
@@ -47,13 +47,13 @@ class Line:
     kind, start, end, lengths
         (s,): of every span its kind, the fractions of that kind's own span it covers, and its length, m.
     coefficients, uniform
-        (k, 6 or 2, j) and (k,): of the kinds, as in `rotors.timoshenko.PieceTable`.
+        (k, 6 or 2, j) and (k,): of the kinds, as in `rotors.timoshenko.ShaftElements`.
     stiffness, inertia, force
         (k, n), (k, n) and (k,): their least stiffness, their largest inertia, and axial force, per length in SI.
     node_inertia, node_stiffness
         (s + 1, n); and ``node_polar`` (s + 1,).
     length_unit, displacement_unit
-        As in `rotors.chain.Chain`.
+        As in `rotors.chain.DiscretisedShaft`.
     """
 
     label: str
@@ -103,7 +103,7 @@ class Line:
         bending = self.lengths @ (heavy / self.stiffness[self.kind, 1]) ** 0.25 if bent else 0.0
         return float(shear), float(bending)
 
-    def cut(self, highest: float) -> Chain:
+    def cut(self, highest: float) -> DiscretisedShaft:
         """The discretised shaft, valid up to ``highest`` rad/s.
 
         Raises
@@ -121,7 +121,7 @@ class Line:
             )
         return self.in_pieces(counts.astype(np.intp), highest)
 
-    def in_pieces(self, counts: IntArray, highest: float) -> Chain:
+    def in_pieces(self, counts: IntArray, highest: float) -> DiscretisedShaft:
         """The discretised shaft with every span in ``counts`` (s,) equal pieces, valid up to ``highest`` rad/s."""
         from .line_kernels import cut_spans
 
@@ -131,9 +131,9 @@ class Line:
         given = self.coefficients[kind]
         if given.shape[2] > 1:
             given = restricted(given, middle, half)
-        return Chain(
+        return DiscretisedShaft(
             nodes=nodes,
-            table=PieceTable(lengths / self.length_unit, given),
+            table=ShaftElements(lengths / self.length_unit, given),
             element=element,
             node_inertia=spread(nodes.size, index, self.node_inertia),
             node_stiffness=spread(nodes.size, index, self.node_stiffness),
@@ -144,7 +144,7 @@ class Line:
             stations=self.stations,
         )
 
-    def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[Line]":
+    def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[ContinuousShaft]":
         """The same shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
 
         Returns one shaft for each set of springs; the places are common to all sets.
@@ -163,7 +163,7 @@ class Line:
             lines.append(replace(line, node_stiffness=node_stiffness, stations=stations))
         return lines
 
-    def with_nodes(self, nodes: FloatArray) -> "Line":
+    def with_nodes(self, nodes: FloatArray) -> "ContinuousShaft":
         """The same shaft with nodes (m) that include its own; new ones carry nothing, and are no stations."""
         span = np.clip(np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, self.kind.size - 1)
         left, width = self.nodes[span], np.diff(self.nodes)[span]
@@ -185,7 +185,7 @@ class Line:
         )
 
 
-def cut_together(lines: Sequence[Line], highest: float) -> list[Chain]:
+def discretise_together(lines: Sequence[ContinuousShaft], highest: float) -> list[DiscretisedShaft]:
     """Discretised shafts, valid up to ``highest`` rad/s, of shafts that differ in their springs only."""
     first = lines[0].cut(highest)
     index = first.nodes.searchsorted(lines[0].nodes)

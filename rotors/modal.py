@@ -22,14 +22,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .attachment import attach_loads, attach_motions
+from .attachment import add_attachment_modes, add_rod_attachment_modes
 from .axial import AxialModes, solve_axial_modes
 from .bearing import Bearing, RadialSupport
 from .errors import require, require_finite
 from .lateral import LateralModes, solve_lateral_modes
 from .participation import Participation, participation
-from .root_count import counts_below
-from .rotor_lines import bending_line, rod_line
+from .root_count import wittrick_williams_counts
+from .rotor_lines import bending_shaft, rod_shaft
 from .shaft import Rotor
 from .torsion import TorsionalModes, solve_torsional_modes
 
@@ -206,16 +206,16 @@ def modal_rotor(
     torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
     ports = (*(bearing.at for bearing in bearings), *gears_at, *forces_at)
     if frequency_limit is not None and lateral.count < _FEWEST:
-        least = min(_FEWEST, bending_line(rotor, supports).available_modes)
+        least = min(_FEWEST, bending_shaft(rotor, supports).available_modes)
         lateral = solve_lateral_modes(rotor, supports, count=int(least))
     if frequency_limit is not None and torsional.count < _FEWEST:
-        least = min(_FEWEST, rod_line(rotor, (), "torsion").available_modes)
+        least = min(_FEWEST, rod_shaft(rotor, (), "torsion").available_modes)
         torsional = solve_torsional_modes(rotor, count=int(least))
     # A lumped rotor has no more motions than its modes.
     if rotor.mass_model == "distributed":
         tilted = [one.at for one in bearings if one.spatial_stiffness[3:].any() or one.spatial_damping[3:].any()]
-        lateral = attach_loads(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
-        torsional = attach_motions(torsional, gears_at)
+        lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
+        torsional = add_rod_attachment_modes(torsional, gears_at)
     axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)
     return ModalRotor(lateral, torsional, axial, tuple(bearings), ports, participation(rotor, lateral, axial))
 
@@ -230,8 +230,8 @@ def _require_few(
     if frequency_limit is None:
         return
     require_finite("frequency_limit", frequency_limit, positive=True)
-    for kind, line in (("bending", bending_line(rotor, supports)), ("torsional", rod_line(rotor, (), "torsion"))):
-        (number,) = counts_below([line.cut(frequency_limit)], frequency_limit)
+    for kind, line in (("bending", bending_shaft(rotor, supports)), ("torsional", rod_shaft(rotor, (), "torsion"))):
+        (number,) = wittrick_williams_counts([line.cut(frequency_limit)], frequency_limit)
         below = f"below {frequency_limit / (2.0 * np.pi):.5g} Hz"
         require(number <= MOST_MODES, f"rotor {rotor.name!r}: number of {kind} modes {below}", number, most)
 
@@ -248,4 +248,4 @@ def _axial(
     if not thrust:
         return None
     modes = solve_axial_modes(rotor, frequency_limit=frequency_limit, count=count)
-    return modes if rotor.mass_model == "lumped" else attach_motions(modes, (*thrust, *thrusts_at))
+    return modes if rotor.mass_model == "lumped" else add_rod_attachment_modes(modes, (*thrust, *thrusts_at))

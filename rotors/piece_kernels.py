@@ -42,8 +42,8 @@ NEGLIGIBLE = 1e-18
 
 
 @inner(error_model="python", fastmath=FINITE)
-def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
-    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `PieceTable`."""
+def timoshenko_transfer_matrix(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
+    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `ShaftElements`."""
     a, b, k = given[0] * h, given[1] * h, given[4] * h
     m, j = translation * given[2] * h, (rotation * given[3] - given[5]) * h
     am, bj, bk, km = a * m, b * j, b * k, k * m
@@ -81,7 +81,7 @@ def uniform_beam(h: float, given: FloatArray, translation: Any, rotation: Any, o
 
 
 @inner(error_model="python", fastmath=FINITE)
-def uniform_rod(h: float, given: FloatArray, translation: Any, out: NumberArray) -> None:
+def rod_transfer_matrix(h: float, given: FloatArray, translation: Any, out: NumberArray) -> None:
     """T of a uniform rod of length h, by the series of cosine and sine."""
     twist, swing = given[0] * h, translation * given[1] * h
     root = -twist * swing
@@ -96,7 +96,7 @@ def uniform_rod(h: float, given: FloatArray, translation: Any, out: NumberArray)
 
 
 @inner(error_model="python")
-def taper_series(h: float, given: FloatArray, translation: Any, rotation: Any, series: NumberArray) -> int:
+def taper_power_series(h: float, given: FloatArray, translation: Any, rotation: Any, series: NumberArray) -> int:
     """Power series of the fundamental matrix about the middle of a tapering piece; returns its number of terms.
 
     With s from −1 to 1, y(s) = Σ Y_k s^k · y(0) and Y_{k+1} = h/2 Σ_j A_j Y_{k−j} / (k + 1).
@@ -161,21 +161,21 @@ def symplectic_inverse(matrix: NumberArray, out: NumberArray) -> None:
 
 
 @counted(error_model="python", no_cpython_wrapper=True)
-def piece_transfers(
+def element_transfer_matrices(
     h: float, given: FloatArray, translation: Any, rotation: Any, fractions: FloatArray, out: NumberArray
 ) -> None:
     """T from a piece's left end to fractions (k,) of its length h, into ``out`` (k, 2n, 2n)."""
     if given.shape[1] == 1:
         for k in range(fractions.size):
             if given.shape[0] == 6:
-                uniform_beam(fractions[k] * h, given[:, 0], translation, rotation, out[k])
+                timoshenko_transfer_matrix(fractions[k] * h, given[:, 0], translation, rotation, out[k])
             else:
-                uniform_rod(fractions[k] * h, given[:, 0], translation, out[k])
+                rod_transfer_matrix(fractions[k] * h, given[:, 0], translation, out[k])
         return
     size = out.shape[1]
     series = np.empty((MOST_TERMS, size, size), out.dtype)
     value, inverse = np.empty((size, size), out.dtype), np.empty((size, size), out.dtype)
-    terms = taper_series(h, given, translation, rotation, series)
+    terms = taper_power_series(h, given, translation, rotation, series)
     series_at(series, terms, -1.0, value)
     symplectic_inverse(value, inverse)
     for k in range(fractions.size):
@@ -189,18 +189,18 @@ def piece_transfers(
 
 
 @counted(error_model="python", no_cpython_wrapper=True)
-def whole_transfer(
+def transfer_matrix(
     h: float, given: FloatArray, translation: Any, rotation: Any, whole: FloatArray, out: NumberArray
 ) -> None:
     """Transfer matrix T of a whole piece into ``out`` (1, 2n, 2n), faster for uniform beams; ``whole`` is one."""
     if given.shape[0] == 6 and given.shape[1] == 1:
-        uniform_beam(h, given[:, 0], translation, rotation, out[0])
+        timoshenko_transfer_matrix(h, given[:, 0], translation, rotation, out[0])
     else:
-        piece_transfers(h, given, translation, rotation, whole, out)
+        element_transfer_matrices(h, given, translation, rotation, whole, out)
 
 
 @counted(error_model="python")
-def table_transfers(
+def table_transfer_matrices(
     lengths: FloatArray,
     given: FloatArray,
     translation: NumberArray,
@@ -211,11 +211,11 @@ def table_transfers(
     """T of every piece of a table at every pair of ω² (b,), into ``out`` (b, e, k, 2n, 2n)."""
     for b in range(translation.size):
         for e in range(lengths.size):
-            piece_transfers(lengths[e], given[e], translation[b], rotation[b], fractions, out[b, e])
+            element_transfer_matrices(lengths[e], given[e], translation[b], rotation[b], fractions, out[b, e])
 
 
 @counted(error_model="python")
-def place_transfers(
+def place_transfer_matrices(
     lengths: FloatArray,
     given: FloatArray,
     element: IntArray,
@@ -228,4 +228,6 @@ def place_transfers(
     for z in range(element.size):
         e = element[z]
         for b in range(translation.size):
-            piece_transfers(lengths[e], given[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1])
+            element_transfer_matrices(
+                lengths[e], given[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1]
+            )

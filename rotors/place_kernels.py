@@ -50,7 +50,7 @@ def are_apart(values: ComplexArray, tolerance: float) -> bool:
 
 
 @uncounted(error_model="python")
-def are_done(values: ComplexArray, residuals: FloatArray, accepted: float, tolerance: float) -> bool:
+def are_converged(values: ComplexArray, residuals: FloatArray, accepted: float, tolerance: float) -> bool:
     """Whether no residual exceeds ``accepted`` and no two values are closer than ``tolerance`` times a modulus."""
     for residual in residuals:
         if not residual <= accepted:

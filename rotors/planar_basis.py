@@ -15,13 +15,13 @@ import numpy.typing as npt
 from .attachment import FREE_SHIFT, NOTHING_LEFT
 from .bearing import Bearing, RadialSupport
 from .buckling import require_unbuckled
-from .chain import GAUSS_FRACTIONS, GAUSS_WEIGHTS, Chain
+from .chain import GAUSS_FRACTIONS, GAUSS_WEIGHTS, DiscretisedShaft
 from .errors import require, require_finite
 from .lateral import LateralModes
-from .lines import Line
-from .root_count import chain_arrays, count_below, isolate
-from .rotor_lines import bending_line
-from .search import chain_that_holds
+from .lines import ContinuousShaft
+from .root_count import lowest_natural_frequencies, shaft_arrays, wittrick_williams_count
+from .rotor_lines import bending_shaft
+from .search import shaft_with_modes
 from .shaft import Rotor
 from .shapes import responses, rigid_states, shared_roots
 
@@ -117,7 +117,7 @@ def planar_basis(
     require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
     supports = mean_supports(bearings)
     require_unbuckled(rotor, supports)
-    chain, frequencies = _lowest_modes(bending_line(rotor, supports), frequency_limit, count)
+    chain, frequencies = _lowest_modes(bending_shaft(rotor, supports), frequency_limit, count)
     zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
     elastic = frequencies[zeros:]
     forces, moments = loaded_places(rotor, bearings)
@@ -127,7 +127,7 @@ def planar_basis(
     # As in `rotors.attachment`, a free shaft answers a little below zero.
     shift = -((FREE_SHIFT * (float(elastic[0]) if elastic.size else 1.0)) ** 2) if zeros else 0.0
     squared = shared_roots(elastic) ** 2
-    states = [null_states(squared, *chain_arrays(chain))]
+    states = [null_states(squared, *shaft_arrays(chain))]
     if zeros:
         states.insert(0, rigid_states(chain)[:zeros])
     if loads:
@@ -155,18 +155,20 @@ def planar_basis(
     )
 
 
-def _lowest_modes(line: Line, frequency_limit: float | None, count: int | None) -> tuple[Chain, FloatArray]:
+def _lowest_modes(
+    line: ContinuousShaft, frequency_limit: float | None, count: int | None
+) -> tuple[DiscretisedShaft, FloatArray]:
     """A discretised shaft and its lowest natural frequencies, rad/s, those that the basis needs."""
     available = line.available_modes
     if frequency_limit is not None:
         require_finite("frequency_limit", frequency_limit, positive=True)
         highest = BASIS_REACH * frequency_limit
         chain = line.cut(highest)
-        below = count_below(chain, highest)
+        below = wittrick_williams_count(chain, highest)
         if below >= min(LEAST_MODES, available):
-            return chain, isolate(chain, below, highest)
+            return chain, lowest_natural_frequencies(chain, below, highest)
         wanted = int(min(LEAST_MODES, available))
     else:
         wanted = modes_needed(count, available)
-    chain = chain_that_holds(line, wanted)
-    return chain, isolate(chain, wanted, chain.highest)
+    chain = shaft_with_modes(line, wanted)
+    return chain, lowest_natural_frequencies(chain, wanted, chain.highest)

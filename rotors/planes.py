@@ -9,14 +9,14 @@ import numpy.typing as npt
 from .bearing import Bearing, undamped
 from .buckling import require_unbuckled
 from .certificate import ModeCertificate, combined_certificate
-from .chain import Chain
+from .chain import DiscretisedShaft
 from .errors import require, require_count, require_finite
-from .lines import Line, cut_together
+from .lines import ContinuousShaft, discretise_together
 from .planar_basis import DEFAULT_COUNT
 from .projection import slowest
-from .root_count import counts_below, isolate
-from .rotor_lines import bending_lines
-from .search import chain_that_holds, limit_above, proved_modes
+from .root_count import lowest_natural_frequencies, wittrick_williams_counts
+from .rotor_lines import bending_shafts
+from .search import limit_above, proved_modes, shaft_with_modes
 from .shaft import Rotor
 from .whirl import solve_whirl
 
@@ -84,25 +84,29 @@ def rest_frequencies(
     planes = [tuple(bearing.plane_support(direction) for bearing in held) for direction in (0, 1)]
     for supports in planes:
         require_unbuckled(rotor, supports)
-    lines = bending_lines(rotor, planes)
+    lines = bending_shafts(rotor, planes)
     alike = planes[0] == planes[1]
     if frequency_limit is not None:
         require(count is None, "frequency_limit and count", (frequency_limit, count), "one of the two")
         require_finite("frequency_limit", frequency_limit, positive=True)
-        limit, chains = frequency_limit, cut_together(lines[:1] if alike else lines, frequency_limit)
-        expected = counts_below(chains, limit)
-        found = [isolate(chain, number, limit) for chain, number in zip(chains, expected, strict=True)]
+        limit, chains = frequency_limit, discretise_together(lines[:1] if alike else lines, frequency_limit)
+        expected = wittrick_williams_counts(chains, limit)
+        found = [
+            lowest_natural_frequencies(chain, number, limit) for chain, number in zip(chains, expected, strict=True)
+        ]
     else:
         chains, shares = _shares(lines, wanted or DEFAULT_COUNT)
         if alike:
             chains, shares = chains[:1], shares[:1]
-        found = [isolate(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)]
+        found = [
+            lowest_natural_frequencies(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)
+        ]
         both = np.sort(np.concatenate(found * 2 if alike else found))
         if count is not None:
             most = f"at most {both.size}, all this lumped rotor has"
             require(count <= both.size, "count of frequencies", count, most)
         limit = limit_above(float(both[min(wanted or DEFAULT_COUNT, both.size) - 1]), chains[0])
-        expected = counts_below(chains, limit)
+        expected = wittrick_williams_counts(chains, limit)
         found = [one[:number] for one, number in zip(found, expected, strict=True)]
     solved = [
         proved_modes(chain, frequencies, number, limit)
@@ -122,7 +126,7 @@ def _is_planar(bearing: Bearing) -> bool:
     return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
 
 
-def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
+def _shares(lines: list[ContinuousShaft], count: int) -> tuple[list[DiscretisedShaft], list[int]]:
     """Discretised shafts of the planes, and the number of modes of each among the lowest ``count`` of both.
 
     A lumped rotor with fewer modes gives all of them.
@@ -131,11 +135,11 @@ def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
     available = [line.available_modes for line in lines] if lines[0].available_modes < np.inf else [np.inf]
     if sum(available) <= count:
         most = [int(number) for number in available]
-        return [chain_that_holds(line, number) for line, number in zip(lines, most, strict=True)], most
+        return [shaft_with_modes(line, number) for line, number in zip(lines, most, strict=True)], most
     low, high = 0.0, lines[0].likely_frequency((count + 1) // 2)
     while True:
-        chains = cut_together(lines, high)
-        shares = counts_below(chains, high)
+        chains = discretise_together(lines, high)
+        shares = wittrick_williams_counts(chains, high)
         if sum(shares) >= count:
             break
         low, high = high, 2.0 * high
@@ -144,7 +148,7 @@ def _shares(lines: list[Line], count: int) -> tuple[list[Chain], list[int]]:
         if sum(shares) <= count + 1:
             break
         middle = 0.5 * (low + high)
-        fewer = counts_below(chains, middle)
+        fewer = wittrick_williams_counts(chains, middle)
         if sum(fewer) >= count:
             high, shares = middle, fewer
         else:

@@ -73,7 +73,7 @@ class Profile:
         return float(np.exp(np.log(self.extremes[self.kind, 1]).mean()))
 
 
-def profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:
+def stiffness_profile(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:
     """Profile of segments and couplings between the given joints (parts + 1,), m."""
     kinds: dict[tuple[object, ...], int] = {}
     tables: list[tuple[FloatArray, FloatArray]] = []

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from .attachment import attach_loads
+from .attachment import add_attachment_modes
 from .axial import solve_axial_modes
 from .bearing import Bearing
 from .errors import require, require_count, require_finite
@@ -35,10 +35,10 @@ from .planar_basis import (
     modes_needed,
     planar_basis,
 )
-from .rotor_lines import bending_line, rod_line
+from .rotor_lines import bending_shaft, rod_shaft
 from .shaft import Rotor
-from .spatial_ties import CIRCULAR, MEMBERS, block_sets
-from .tied_planes import TiedPlanes
+from .spatial_ties import BLOCK_COORDINATES, CIRCULAR, coupled_motions
+from .tied_planes import CoupledPlanes
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -80,7 +80,7 @@ def whirl_basis(
     both = (frequency_limit, count)
     require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
     supports = mean_supports(bearings)
-    available = bending_line(rotor, supports).available_modes
+    available = bending_shaft(rotor, supports).available_modes
     if frequency_limit is None:
         modes = solve_lateral_modes(rotor, supports, count=modes_needed(count, available))
     else:
@@ -89,7 +89,7 @@ def whirl_basis(
         if modes.count < min(LEAST_MODES, available):
             modes = solve_lateral_modes(rotor, supports, count=int(min(LEAST_MODES, available)))
     forces, moments = loaded_places(rotor, bearings)
-    return attach_loads(modes, forces_at=forces, moments_at=moments)
+    return add_attachment_modes(modes, forces_at=forces, moments_at=moments)
 
 
 def basis_for(
@@ -116,7 +116,7 @@ def slowest(bearing: Bearing) -> float:
 
 
 @dataclass(frozen=True)
-class Projection:
+class ModalProjection:
     """Projection of one set of coupled motions of a rotor on its modal basis.
 
     Coordinates are the circular ones of `rotors.spatial_ties` where forward or backward motion stands alone. Where both
@@ -127,7 +127,7 @@ class Projection:
     basis
         Motions of one plane.
     blocks
-        As of `rotors.spatial_chain.SpatialChain`.
+        As of `rotors.spatial_chain.WhirlEquations`.
     axial_frequencies, axial_shapes
         (a,) in rad/s and (a, bearings): free axial modes at the bearings; empty where no bearing needs them.
     total_mass
@@ -141,7 +141,9 @@ class Projection:
     total_mass: float
 
     @classmethod
-    def of(cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: PlanarBasis) -> "Projection":
+    def of(
+        cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: PlanarBasis
+    ) -> "ModalProjection":
         """The projection for one set of coupled motions of a rotor."""
         frequencies, shapes = np.zeros(0), np.zeros((0, len(bearings)))
         if 0 in blocks:
@@ -196,14 +198,14 @@ class Projection:
 
     def _tied_planes(
         self, mass: FloatArray, stiffness: NumberArray, damping: NumberArray, gyroscopic: NumberArray
-    ) -> TiedPlanes | None:
+    ) -> CoupledPlanes | None:
         if self.blocks != (1, -1):
             return None
         b = self.basis.count
         # Behind the shaft's coordinates stand those of pedestals, each in the plane that its stiffness ties it to.
         in_x = np.asarray(stiffness[:, :b].any(axis=1))
         in_x[: 2 * b] = np.arange(2 * b) < b
-        return TiedPlanes.of(mass, stiffness, damping, gyroscopic, in_x)
+        return CoupledPlanes.of(mass, stiffness, damping, gyroscopic, in_x)
 
     def critical(self, bearings: Sequence[Bearing]) -> ComplexArray:
         """λ at which λ = iΩ, from K q = ω² (M − iG) q with the gyroscopic term beside the mass, (N,)."""
@@ -229,7 +231,7 @@ class Projection:
             spatial[0, k], spatial[1, k] = bearing.spatial_stiffness, bearing.spatial_damping
         held: NumberArray = spatial
         if alone:
-            turn = CIRCULAR[list(MEMBERS[self.blocks[0]])]
+            turn = CIRCULAR[list(BLOCK_COORDINATES[self.blocks[0]])]
             held = turn @ spatial @ turn.conj().T
         feet: list[tuple[int, IntArray, list[int]]] = []
         order = shaft
@@ -260,7 +262,7 @@ class Projection:
         """A matrix over x and y in the projection's coordinates."""
         if len(self.blocks) > 1:
             return radial
-        turn = CIRCULAR[MEMBERS[self.blocks[0]][0], :2]
+        turn = CIRCULAR[BLOCK_COORDINATES[self.blocks[0]][0], :2]
         return np.asarray([[turn @ radial @ turn.conj()]])
 
 
@@ -271,7 +273,7 @@ class Pencil:
     Attributes
     ----------
     blocks
-        As of `rotors.spatial_chain.SpatialChain`.
+        As of `rotors.spatial_chain.WhirlEquations`.
     still, turning
         (2N, 2N): in 1/s, and per rad/s of the speed Ω.
     planes
@@ -281,7 +283,7 @@ class Pencil:
     blocks: tuple[int, ...]
     still: NumberArray
     turning: NumberArray
-    planes: TiedPlanes | None
+    planes: CoupledPlanes | None
 
     def eigenvalues(self, speeds: FloatArray) -> ComplexArray:
         """All eigenvalues at every speed, (speeds, 2N), rad/s, as starting values."""
@@ -299,8 +301,8 @@ class Pencil:
 
 def pencils(rotor: Rotor, bearings: Sequence[Bearing], basis: PlanarBasis) -> list[Pencil]:
     """First-order systems of all sets of motions that bearings of constant coefficients couple."""
-    sets = block_sets(bearings)
-    return [Projection.of(rotor, bearings, blocks, basis).pencil(bearings) for blocks in sets]
+    sets = coupled_motions(bearings)
+    return [ModalProjection.of(rotor, bearings, blocks, basis).pencil(bearings) for blocks in sets]
 
 
 def _times(matrices: NumberArray, motions: FloatArray) -> NumberArray:
@@ -311,6 +313,6 @@ def _times(matrices: NumberArray, motions: FloatArray) -> NumberArray:
 def _axial_modes(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[FloatArray, FloatArray]:
     """Frequencies (a,) and shapes at the bearings (a, bearings) of the shaft free along its axis."""
 
-    available = rod_line(rotor, (), "axial").available_modes
+    available = rod_shaft(rotor, (), "axial").available_modes
     modes = solve_axial_modes(rotor, count=int(min(AXIAL_MODES, available)))
     return modes.frequencies, modes.evaluate([bearing.at for bearing in bearings])

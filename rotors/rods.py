@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .certificate import ModeCertificate
-from .fields import Fields
-from .search import FoundModes, require_positions
+from .fields import ShaftFields
+from .search import SolvedModes, require_positions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class RodModes:
     stations: FloatArray
     amplitude: FloatArray
     certificate: ModeCertificate
-    fields: Fields = field(repr=False)
+    fields: ShaftFields = field(repr=False)
     mixture: FloatArray = field(repr=False)
 
     @property
@@ -56,7 +56,7 @@ class RodModes:
 Modes = TypeVar("Modes", bound=RodModes)
 
 
-def rod_modes(kind: type[Modes], found: FoundModes) -> Modes:
+def rod_modes(kind: type[Modes], found: SolvedModes) -> Modes:
     """Modes of a kind from what the search found; the largest amplitude of each is positive."""
     chain = found.fields.chain
     nodal = found.mixture @ found.fields.at(chain.stations)[:, :, 0]

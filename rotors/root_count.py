@@ -34,7 +34,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from .chain import Chain
+from .chain import DiscretisedShaft
 from .errors import IncompleteModesError
 
 FloatArray = npt.NDArray[np.float64]
@@ -44,13 +44,13 @@ IntArray = npt.NDArray[np.intp]
 LOWEST = 1e-16
 
 
-def chain_arrays(chain: Chain) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
+def shaft_arrays(chain: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
     """A discretised shaft as the arrays that compiled functions take."""
     table = chain.table
     return table.lengths, table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
 
 
-def count_below(chain: Chain, frequency: float) -> int:
+def wittrick_williams_count(chain: DiscretisedShaft, frequency: float) -> int:
     """Number of natural frequencies strictly below one, with multiplicity.
 
     Parameters
@@ -60,17 +60,17 @@ def count_below(chain: Chain, frequency: float) -> int:
     frequency
         Positive, rad/s. Rigid motions at zero count as below.
     """
-    return counts_below([chain], frequency)[0]
+    return wittrick_williams_counts([chain], frequency)[0]
 
 
-def counts_below(chains: Sequence[Chain], frequency: float) -> list[int]:
+def wittrick_williams_counts(chains: Sequence[DiscretisedShaft], frequency: float) -> list[int]:
     """The same of several chains."""
-    from .count_kernels import count_of
+    from .count_kernels import wittrick_williams_count_of
 
-    return [int(count_of(frequency, *chain_arrays(chain))) for chain in chains]
+    return [int(wittrick_williams_count_of(frequency, *shaft_arrays(chain))) for chain in chains]
 
 
-def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
+def lowest_natural_frequencies(chain: DiscretisedShaft, wanted: int, limit: float) -> FloatArray:
     """The lowest ``wanted`` natural frequencies of a shaft, each to a relative 1e-13 or so.
 
     Rigid motions are zeros; a root of multiplicity r stands r times.
@@ -95,7 +95,7 @@ def isolate(chain: Chain, wanted: int, limit: float) -> FloatArray:
     if wanted <= zeros:
         return np.zeros(wanted)
     lowest = LOWEST * limit
-    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *chain_arrays(chain))
+    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *shaft_arrays(chain))
     if found.size < wanted - zeros:
         raise IncompleteModesError(
             f"the root count is {first} at {lowest:g} rad/s and {last} at {limit:g} rad/s, but "

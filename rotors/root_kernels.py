@@ -41,10 +41,10 @@ def lowest_roots(
     determinant, decides on which side of the root a step lies. Other brackets are halved.
     """
     size = 2 * stiffness.shape[1]
-    transfers = np.empty((lengths.size, 1, size, size))
+    transfer_matrices = np.empty((lengths.size, 1, size, size))
     number = wanted - zeros
-    first, first_value = count_at(lowest, lengths, given, element, stiffness, inertia, transfers)
-    last, last_value = count_at(limit, lengths, given, element, stiffness, inertia, transfers)
+    first, first_value = count_at(lowest, lengths, given, element, stiffness, inertia, transfer_matrices)
+    last, last_value = count_at(limit, lengths, given, element, stiffness, inertia, transfer_matrices)
     if first > zeros or last < wanted:
         return first, last, np.empty(0)
     low, high = np.full(number, lowest), np.full(number, limit)
@@ -62,7 +62,7 @@ def lowest_roots(
             if a == lowest and b == limit:
                 # The lowest frequency is seldom lower than this part of the limit.
                 middle = max(middle, FIRST_PART * limit)
-            count, value = count_at(middle, lengths, given, element, stiffness, inertia, transfers)
+            count, value = count_at(middle, lengths, given, element, stiffness, inertia, transfer_matrices)
             for k in range(root, number):
                 if count <= zeros + k:
                     if middle > low[k]:
@@ -79,7 +79,7 @@ def lowest_roots(
         x3, f3 = x2, f2
         for _ in range(MOST_STEPS):
             x = x1 + share * (x2 - x1)
-            count, value = count_at(x, lengths, given, element, stiffness, inertia, transfers)
+            count, value = count_at(x, lengths, given, element, stiffness, inertia, transfer_matrices)
             if (count > order) == above:
                 x3, f3 = x1, f1
             else:

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from .axis_spring import AxisSpring
 from .bearing import RadialSupport
-from .chain import Chain
-from .lines import Line
+from .chain import DiscretisedShaft
+from .lines import ContinuousShaft
 from .profile import AXIAL, BENDING, TORSION
 from .shaft import Rotor
 
@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 RodMotion = Literal["torsion", "axial"]
 
 
-def free_bending_shaft(rotor: Rotor) -> Line:
+def free_bending_shaft(rotor: Rotor) -> ContinuousShaft:
     """A rotor's bending in one plane without supports."""
     profile, length = rotor.profile, rotor.length
     stiffness = profile.extremes[:, :2]
@@ -39,7 +39,7 @@ def free_bending_shaft(rotor: Rotor) -> Line:
     )
 
 
-def free_rod_shaft(rotor: Rotor, motion: RodMotion) -> Line:
+def free_rod_shaft(rotor: Rotor, motion: RodMotion) -> ContinuousShaft:
     """A rotor's torsion, or its axial motion, without supports."""
     rows, inertia_column = (TORSION, 2) if motion == "torsion" else (AXIAL, 0)
     profile = rotor.profile
@@ -72,9 +72,9 @@ def _continuous_shaft(
     node_inertia: FloatArray,
     node_polar: FloatArray,
     displacement_unit: FloatArray,
-) -> Line:
+) -> ContinuousShaft:
     spans = rotor.spans
-    return Line(
+    return ContinuousShaft(
         label=f"rotor {rotor.name!r}",
         nodes=spans.nodes,
         stations=rotor.stations,
@@ -95,12 +95,12 @@ def _continuous_shaft(
     )
 
 
-def bending_line(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> Line:
+def bending_shaft(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> ContinuousShaft:
     """A rotor's bending in one plane on springs."""
-    return bending_lines(rotor, [supports])[0]
+    return bending_shafts(rotor, [supports])[0]
 
 
-def bending_lines(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> list[Line]:
+def bending_shafts(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> list[ContinuousShaft]:
     """A rotor's bending in several planes, whose springs stand at the same places."""
     places = [support.at for support in planes[0]]
     for place in places:
@@ -112,12 +112,12 @@ def bending_lines(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> li
     return free.held(places, *springs)
 
 
-def bending_chain(rotor: Rotor, supports: Sequence[RadialSupport], highest: float) -> Chain:
+def discretised_bending_shaft(rotor: Rotor, supports: Sequence[RadialSupport], highest: float) -> DiscretisedShaft:
     """A rotor's bending in one plane on springs, discretised for frequencies up to ``highest`` rad/s."""
-    return bending_line(rotor, supports).cut(highest)
+    return bending_shaft(rotor, supports).cut(highest)
 
 
-def rod_line(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) -> Line:
+def rod_shaft(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) -> ContinuousShaft:
     """A rotor's torsion, or its axial motion, on springs."""
     for spring in springs:
         rotor.require_on_shaft(f"rotor {rotor.name!r} spring", spring.at)
@@ -126,7 +126,7 @@ def rod_line(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) -> 
     return free.held([spring.at for spring in springs], [(spring.stiffness * unit,) for spring in springs])[0]
 
 
-def axial_chain_on(rotor: Rotor, bending: Chain) -> Chain:
+def axial_shaft_on(rotor: Rotor, bending: DiscretisedShaft) -> DiscretisedShaft:
     """A rotor's axial motion, discretised with the nodes and the units of length and force of its bending.
 
     It has no springs, and the same nodal masses as the bending shaft.

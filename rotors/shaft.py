@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .errors import RotorError, require, require_finite
 from .material import ShaftMaterial
-from .profile import Profile, profile_of
+from .profile import Profile, stiffness_profile
 from .segment import Segment
 from .shaft_coupling import Coupling
 
@@ -114,7 +114,7 @@ class Rotor:
     @cached_property
     def profile(self) -> Profile:
         """Stiffness and inertia along the shaft, as its transfer matrices take them."""
-        return profile_of(self.segments, self.joints)
+        return stiffness_profile(self.segments, self.joints)
 
     @cached_property
     def spans(self) -> "ShaftSpans":
@@ -163,7 +163,7 @@ class ShaftSpans:
     nodes
         (s + 1,): ends of the spans, m.
     kind, start, end, lengths
-        (s,): as in `rotors.lines.Line`, the kinds those of the rotor's profile.
+        (s,): as in `rotors.lines.ContinuousShaft`, the kinds those of the rotor's profile.
     inertias
         (s + 1, 3): mass (kg), diametral and polar moment of inertia (kg·m²) at the nodes.
     """

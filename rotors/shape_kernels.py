@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .compiled import counted, inner
-from .piece_kernels import table_transfers
+from .piece_kernels import table_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -23,7 +23,7 @@ LEAST_PIVOT = 1e-30
 @inner(error_model="python")
 def shooting_band(
     squared: float,
-    transfers: FloatArray,
+    transfer_matrices: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
@@ -59,7 +59,7 @@ def shooting_band(
                 band[row, own] = -term / scale[row]
                 band[row, own + n] = 1.0 / scale[row]
             if node > 0:
-                transfer = transfers[element[node - 1]]
+                transfer = transfer_matrices[element[node - 1]]
                 for j in range(2 * n):
                     band[row, 2 * n * (node - 1) + j - row + width] = -transfer[i, j] / scale[row]
     for i in range(n):
@@ -165,15 +165,15 @@ def null_states(
     order, width = 2 * n * nodes, 3 * n - 1
     states = np.empty((number, order))
     band, scale, pivots = np.empty((order, 3 * width + 1)), np.empty(order), np.empty(order, np.intp)
-    transfers = np.empty((1, lengths.size, 1, 2 * n, 2 * n))
+    transfer_matrices = np.empty((1, lengths.size, 1, 2 * n, 2 * n))
     first = 0
     while first < number:
         end = first + 1
         while end < number and squared[end] == squared[first]:
             end += 1
         at = squared[first : first + 1]
-        table_transfers(lengths, given, at, at, np.ones(1), transfers)
-        shooting_band(squared[first], transfers[0, :, 0], element, stiffness, inertia, band, scale)
+        table_transfer_matrices(lengths, given, at, at, np.ones(1), transfer_matrices)
+        shooting_band(squared[first], transfer_matrices[0, :, 0], element, stiffness, inertia, band, scale)
         factor_band(band, pivots)
         group = states[first:end]
         for k in range(end - first):
@@ -205,10 +205,10 @@ def shooting_responses(
     n, nodes = stiffness.shape[1], stiffness.shape[0]
     order, width = 2 * n * nodes, 3 * n - 1
     band, scale, pivots = np.empty((order, 3 * width + 1)), np.empty(order), np.empty(order, np.intp)
-    transfers = np.empty((1, lengths.size, 1, 2 * n, 2 * n))
+    transfer_matrices = np.empty((1, lengths.size, 1, 2 * n, 2 * n))
     at = np.full(1, squared)
-    table_transfers(lengths, given, at, at, np.ones(1), transfers)
-    shooting_band(squared, transfers[0, :, 0], element, stiffness, inertia, band, scale)
+    table_transfer_matrices(lengths, given, at, at, np.ones(1), transfer_matrices)
+    shooting_band(squared, transfer_matrices[0, :, 0], element, stiffness, inertia, band, scale)
     factor_band(band, pivots)
     states = np.empty(loads.shape)
     for k in range(loads.shape[0]):

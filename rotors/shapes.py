@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from .chain import Chain
+from .chain import DiscretisedShaft
 from .errors import IncompleteModesError, RotorError
-from .fields import Fields
-from .root_count import chain_arrays
+from .fields import ShaftFields
+from .root_count import shaft_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def groups(frequencies: FloatArray, tolerance: float) -> list[slice]:
     return [slice(left, right) for left, right in pairwise(edges) if right > left]
 
 
-def responses(chain: Chain, loads: list[tuple[int, int]], frequency_squared: float) -> FloatArray:
+def responses(chain: DiscretisedShaft, loads: list[tuple[int, int]], frequency_squared: float) -> FloatArray:
     """Node states under unit forces at one ω² off the roots, each on a node and a component, (loads, p + 1, 2n)."""
     from .shape_kernels import shooting_responses
 
@@ -47,10 +47,10 @@ def responses(chain: Chain, loads: list[tuple[int, int]], frequency_squared: flo
     for load, (node, component) in enumerate(loads):
         # The force balance of a displacement at a node; an external force stands in it with a negative sign.
         sides[load, 2 * n * node + component] = -1.0
-    return np.asarray(shooting_responses(frequency_squared, sides, *chain_arrays(chain)))
+    return np.asarray(shooting_responses(frequency_squared, sides, *shaft_arrays(chain)))
 
 
-def rigid_states(chain: Chain) -> FloatArray:
+def rigid_states(chain: DiscretisedShaft) -> FloatArray:
     """Node states of the rigid motions, orthonormal in mass, (zero modes, p + 1, 2n).
 
     Raises
@@ -62,7 +62,7 @@ def rigid_states(chain: Chain) -> FloatArray:
     states = np.concatenate([shapes, np.zeros_like(shapes)], axis=-1)
     if states.shape[0] == 0:
         return states
-    mass, _ = Fields(chain, np.zeros(states.shape[0]), states).energies()
+    mass, _ = ShaftFields(chain, np.zeros(states.shape[0]), states).energies()
     size = np.sqrt(np.diag(mass))
     if size.min() == 0.0 or linalg.eigvalsh(mass / np.outer(size, size))[0] < 1e-13:
         raise RotorError(
@@ -88,7 +88,9 @@ def has_neighbours(elastic: FloatArray) -> bool:
     return bool(np.count_nonzero(elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]))
 
 
-def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArray, FloatArray, FloatArray]:
+def solve_mode_shapes(
+    chain: DiscretisedShaft, frequencies: FloatArray
+) -> tuple[ShaftFields, FloatArray, FloatArray, FloatArray]:
     """Fields of the modes at the given natural frequencies, the mixture that makes them orthonormal, and its energies.
 
     Parameters
@@ -115,10 +117,10 @@ def mode_fields(chain: Chain, frequencies: FloatArray) -> tuple[Fields, FloatArr
     if has_neighbours(elastic):
         shared, near = np.concatenate([frequencies[:zeros], shared_roots(elastic)]), groups(elastic, NEAR_ROOT)
     squared = shared**2
-    states = null_states(squared[zeros:], *chain_arrays(chain))
+    states = null_states(squared[zeros:], *shaft_arrays(chain))
     if zeros:
         states = np.concatenate([rigid_states(chain)[:zeros], states])
-    fields = Fields(chain, squared, states)
+    fields = ShaftFields(chain, squared, states)
     mass, stiffness = fields.energies()
     scale = 1.0 / np.sqrt(mass.diagonal())
     scale[:zeros] = 1.0

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .compiled import counted
-from .piece_kernels import piece_transfers
+from .piece_kernels import element_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -30,15 +30,17 @@ def inertia_shares(
     the weights are ``along`` (e, g, 2) at the ``fractions`` (g,) of the pieces and ``nodal`` (p + 1, 2).
     """
     lengths, given, element = pieces
-    transfers = np.empty((lengths.size, fractions.size, 4, 4), dtype=np.complex128)
+    transfer_matrices = np.empty((lengths.size, fractions.size, 4, 4), dtype=np.complex128)
     totals = np.zeros(states.shape[0])
     for w in range(states.shape[0]):
         for e in range(lengths.size):
-            piece_transfers(lengths[e], given[e], translation[w], rotation[w], fractions, transfers[e])
+            element_transfer_matrices(
+                lengths[e], given[e], translation[w], rotation[w], fractions, transfer_matrices[e]
+            )
         for piece in range(element.size):
             state, e = states[w, piece], element[piece]
             for g in range(fractions.size):
-                transfer = transfers[e, g]
+                transfer = transfer_matrices[e, g]
                 for row in range(2):
                     value = transfer[row, 0] * state[0] + transfer[row, 1] * state[1]
                     value += transfer[row, 2] * state[2] + transfer[row, 3] * state[3]

@@ -27,7 +27,7 @@ the bearings' forces have unit diagonal, and what is left is the map from the di
 the pedestals to the forces on the right end and the pedestals.) `rotors.layout` puts them in order.
 
 A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of pieces has
-the product of their transfer matrices (`SpatialChain.in_runs`), so that a shaft of sixty steps has no more unknowns
+the product of their transfer matrices (`WhirlEquations.in_runs`), so that a shaft of sixty steps has no more unknowns
 than a plain one.
 
 Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
@@ -44,12 +44,12 @@ import numpy.typing as npt
 
 from .banded import BandPattern
 from .bearing import Bearing, RadialSupport
-from .chain import Chain
-from .entries import EntryTable, entry_table
+from .chain import DiscretisedShaft
+from .entries import ShootingMatrix, shooting_matrix
 from .layout import Layout
-from .rotor_lines import axial_chain_on, bending_chain
+from .rotor_lines import axial_shaft_on, discretised_bending_shaft
 from .shaft import Rotor
-from .spatial_ties import MEMBERS, Tie, make_tie
+from .spatial_ties import BLOCK_COORDINATES, NodeBearing, node_bearing
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -64,7 +64,7 @@ REACH_STEPS = 4
 
 
 @dataclass(frozen=True)
-class SpatialChain:
+class WhirlEquations:
     """Exact equations of a rotor on its bearings, for one set of coupled motions.
 
     Attributes
@@ -82,15 +82,15 @@ class SpatialChain:
     """
 
     rotor: Rotor
-    bending: Chain
+    bending: DiscretisedShaft
     blocks: tuple[int, ...]
-    ties: tuple[Tie, ...]
+    ties: tuple[NodeBearing, ...]
     kept: IntArray
 
     @property
     def size(self) -> int:
         """Displacements at a node, n."""
-        return sum(len(MEMBERS[block]) for block in self.blocks)
+        return sum(len(BLOCK_COORDINATES[block]) for block in self.blocks)
 
     @property
     def units(self) -> FloatArray:
@@ -98,9 +98,9 @@ class SpatialChain:
         return block_units(self.bending, self.blocks)
 
     @cached_property
-    def axial(self) -> Chain:
+    def axial(self) -> DiscretisedShaft:
         """Axial motion of the same shaft, with the same nodes and units."""
-        return axial_chain_on(self.rotor, self.bending)
+        return axial_shaft_on(self.rotor, self.bending)
 
     @cached_property
     def total_mass(self) -> float:
@@ -115,10 +115,10 @@ class SpatialChain:
         return Layout.of(self.blocks, self.kept, self.ties)
 
     @cached_property
-    def entries(self) -> EntryTable:
+    def entries(self) -> ShootingMatrix:
         """The table from which the matrix is made at any λ."""
         axial = self.axial if 0 in self.blocks else None
-        return entry_table(self.bending, axial, self.blocks, self.ties, self.kept, self.layout)
+        return shooting_matrix(self.bending, axial, self.blocks, self.ties, self.kept, self.layout)
 
     @property
     def pattern(self) -> BandPattern:
@@ -157,7 +157,7 @@ class SpatialChain:
         dense = np.zeros((self.bending.lengths.size, eigenvalues.size, 2 * n, 2 * n), dtype=np.complex128)
         first = 0
         for block in self.blocks:
-            local = first + np.arange(len(MEMBERS[block]))
+            local = first + np.arange(len(BLOCK_COORDINATES[block]))
             both = np.concatenate([local, n + local])
             dense[:, :, both[:, None], both] = self._transfers(block, eigenvalues, speeds, scale)
             first += local.size
@@ -167,7 +167,7 @@ class SpatialChain:
         self, block: int, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
     ) -> ComplexArray:
         chain = self.bending if block else self.axial
-        transfer = chain.transfers(*squared_frequencies(block, eigenvalues, speeds))
+        transfer = chain.transfer_matrices(*squared_frequencies(block, eigenvalues, speeds))
         half = transfer.shape[-1] // 2
         transfer[..., :half, half:] *= scale[:, None, None]
         transfer[..., half:, :half] /= scale[:, None, None]
@@ -193,12 +193,12 @@ class SpatialChain:
         first, places, layout = 0, [], self.layout
         forces = np.concatenate([layout.forces, np.full((1, self.size), -1)])
         for block in self.blocks:
-            own = slice(first, first + len(MEMBERS[block]))
+            own = slice(first, first + len(BLOCK_COORDINATES[block]))
             places.append(np.concatenate([layout.displacements[:, own], forces[:, own]], axis=1))
             first = own.stop
         return places
 
-    def in_runs(self) -> "SpatialChain":
+    def in_runs(self) -> "WhirlEquations":
         """The same equations with unknowns at loaded nodes only; no external load may act at the others."""
         chain = self.bending
         needed = chain.node_inertia.any(axis=1) | (chain.node_polar != 0.0)
@@ -210,7 +210,7 @@ class SpatialChain:
         return replace(self, kept=np.flatnonzero(needed))
 
 
-def block_units(chain: Chain, blocks: tuple[int, ...]) -> FloatArray:
+def block_units(chain: DiscretisedShaft, blocks: tuple[int, ...]) -> FloatArray:
     """Units of a node's displacements, (n,)."""
     return np.concatenate([chain.displacement_unit if block else chain.displacement_unit[:1] for block in blocks])
 
@@ -231,13 +231,13 @@ def whirl_reach(limit: float, speed: float) -> float:
     return math.sqrt(limit * (limit + 2.0 * abs(speed)))
 
 
-def spatial_chain(
+def whirl_equations(
     rotor: Rotor,
     bearings: Sequence[Bearing],
     blocks: tuple[int, ...],
     highest: float,
     places: Sequence[float] = (),
-) -> SpatialChain:
+) -> WhirlEquations:
     """Exact equations of one set of coupled motions of a rotor on bearings of constant coefficients.
 
     Parameters
@@ -245,22 +245,22 @@ def spatial_chain(
     rotor, bearings
         The rotor and its bearings.
     blocks
-        One of `rotors.spatial_ties.block_sets`.
+        One of `rotors.spatial_ties.coupled_motions`.
     highest
         Planar frequency up to which pieces are short enough, rad/s: see `whirl_reach`.
     places
         Further places to be nodes, m.
     """
     supports = [RadialSupport(at, 0.0) for at in (*(bearing.at for bearing in bearings), *places)]
-    chain = bending_chain(rotor, tuple(supports), highest)
+    chain = discretised_bending_shaft(rotor, tuple(supports), highest)
     units = block_units(chain, blocks)
-    ties = tuple(make_tie(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
-    return SpatialChain(rotor, chain, blocks, ties, np.arange(chain.nodes.size))
+    ties = tuple(node_bearing(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
+    return WhirlEquations(rotor, chain, blocks, ties, np.arange(chain.nodes.size))
 
 
-def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
-    """The equations of `spatial_chain` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
-    return spatial_chain(rotor, bearings, blocks, reach_step(highest)).in_runs()
+def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> WhirlEquations:
+    """The equations of `whirl_equations` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
+    return whirl_equations(rotor, bearings, blocks, reach_step(highest)).in_runs()
 
 
 def reach_step(highest: float) -> float:
@@ -268,11 +268,11 @@ def reach_step(highest: float) -> float:
     return math.exp2(math.ceil(REACH_STEPS * math.log2(highest)) / REACH_STEPS)
 
 
-def retied(chain: SpatialChain, bearings: Sequence[Bearing], speed: float) -> SpatialChain:
+def retied(chain: WhirlEquations, bearings: Sequence[Bearing], speed: float) -> WhirlEquations:
     """The same equations with the bearings' coefficients at another speed (rad/s)."""
     units = block_units(chain.bending, chain.blocks)
     ties = tuple(
-        make_tie(bearing.at_speed(speed), tie.node, chain.blocks, units)
+        node_bearing(bearing.at_speed(speed), tie.node, chain.blocks, units)
         for bearing, tie in zip(bearings, chain.ties, strict=True)
     )
     return replace(chain, ties=ties)

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from .chain import SQUARE_FRACTIONS, SQUARE_WEIGHTS, Chain
+from .chain import SQUARE_FRACTIONS, SQUARE_WEIGHTS, DiscretisedShaft
 from .search import require_positions
-from .spatial_chain import SpatialChain, squared_frequencies
-from .spatial_ties import MEMBERS
+from .spatial_chain import WhirlEquations, squared_frequencies
+from .spatial_ties import BLOCK_COORDINATES
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -17,7 +17,7 @@ IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class SpatialMotion:
+class ShaftMotion:
     """Motions e^{λt} of a shaft, each with its own λ and speed of rotation.
 
     Attributes
@@ -34,27 +34,27 @@ class SpatialMotion:
         The shaft's axial motion, discretised; None without any.
     """
 
-    chain: Chain
+    chain: DiscretisedShaft
     eigenvalues: ComplexArray
     speeds: ComplexArray
     forward: ComplexArray
     backward: ComplexArray
     axial: ComplexArray
-    rod: Chain | None = None
+    rod: DiscretisedShaft | None = None
 
     @classmethod
     def of(
         cls,
-        chain: SpatialChain,
+        chain: WhirlEquations,
         eigenvalues: ComplexArray,
         speeds: ComplexArray,
         solutions: ComplexArray,
         scale: FloatArray,
-    ) -> "SpatialMotion":
+    ) -> "ShaftMotion":
         """Motions from solutions (w, order) and their unit of force (w,); blocks without equations are at rest."""
         parts = chain.states(solutions, eigenvalues, speeds, scale)
-        for block in MEMBERS.keys() - parts.keys():
-            shape = (eigenvalues.size, chain.bending.nodes.size, 2 * len(MEMBERS[block]))
+        for block in BLOCK_COORDINATES.keys() - parts.keys():
+            shape = (eigenvalues.size, chain.bending.nodes.size, 2 * len(BLOCK_COORDINATES[block]))
             parts[block] = np.zeros(shape, dtype=np.complex128)
         rod = chain.axial if 0 in chain.blocks else None
         return cls(chain.bending, eigenvalues, speeds, parts[1], parts[-1], parts[0], rod)
@@ -64,7 +64,7 @@ class SpatialMotion:
         """Number of motions w."""
         return int(self.eigenvalues.size)
 
-    def take(self, index: npt.ArrayLike) -> "SpatialMotion":
+    def take(self, index: npt.ArrayLike) -> "ShaftMotion":
         """Selected motions, in the order of the index."""
         chosen = np.asarray(index)
         return replace(
@@ -76,7 +76,7 @@ class SpatialMotion:
             axial=self.axial[chosen],
         )
 
-    def joined(self, other: "SpatialMotion") -> "SpatialMotion":
+    def joined(self, other: "ShaftMotion") -> "ShaftMotion":
         """These motions followed by others of the same shaft."""
         return replace(
             self,
@@ -87,7 +87,7 @@ class SpatialMotion:
             axial=np.concatenate([self.axial, other.axial]),
         )
 
-    def plus(self, other: "SpatialMotion") -> "SpatialMotion":
+    def plus(self, other: "ShaftMotion") -> "ShaftMotion":
         """Sum of two responses at the same frequencies."""
         return replace(
             self,
@@ -96,7 +96,7 @@ class SpatialMotion:
             axial=self.axial + other.axial,
         )
 
-    def scaled(self, factors: ComplexArray) -> "SpatialMotion":
+    def scaled(self, factors: ComplexArray) -> "ShaftMotion":
         """Every motion times a number, (w,)."""
         by = factors[:, None, None]
         return replace(self, forward=by * self.forward, backward=by * self.backward, axial=by * self.axial)
@@ -125,8 +125,8 @@ class SpatialMotion:
             return np.zeros(self.count)
         pieces = np.repeat(np.arange(rod.element.size), SQUARE_FRACTIONS.size)
         fractions = np.tile(SQUARE_FRACTIONS, rod.element.size)
-        transfers = rod.transfers_to(pieces, fractions, -(self.eigenvalues**2))
-        along = np.einsum("zwj,wzj->wz", transfers[:, :, 0], self.axial[:, pieces])
+        transfer_matrices = rod.transfer_matrices_to(pieces, fractions, -(self.eigenvalues**2))
+        along = np.einsum("zwj,wzj->wz", transfer_matrices[:, :, 0], self.axial[:, pieces])
         mass = rod.coefficients_at(pieces, fractions)[:, 1]
         weight = np.tile(SQUARE_WEIGHTS, rod.element.size) * np.repeat(rod.lengths, SQUARE_FRACTIONS.size) * mass
         nodal = np.abs(self.axial[:, :, 0]) ** 2 @ rod.node_inertia[:, 0]
@@ -183,12 +183,12 @@ class SpatialMotion:
         """Axial states (w, len(z), 2) at positions z (m) of a shaft that moves along its axis, in scaled units."""
         assert self.rod is not None
         pieces, fractions = self.rod.places(require_positions(self.rod.nodes, z))
-        transfers = self.rod.transfers_to(pieces, fractions, -(self.eigenvalues**2))
-        return np.asarray(np.einsum("zwij,wzj->wzi", transfers, self.axial[:, pieces]))
+        transfer_matrices = self.rod.transfer_matrices_to(pieces, fractions, -(self.eigenvalues**2))
+        return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, self.axial[:, pieces]))
 
     def _inside(self, block: int, states: ComplexArray, pieces: IntArray, fractions: FloatArray) -> ComplexArray:
-        transfers = self.chain.transfers_to(pieces, fractions, *self._squared(block))
-        return np.asarray(np.einsum("zwij,wzj->wzi", transfers, states[:, pieces]))
+        transfer_matrices = self.chain.transfer_matrices_to(pieces, fractions, *self._squared(block))
+        return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, states[:, pieces]))
 
     def _squared(self, block: int) -> tuple[ComplexArray, ComplexArray]:
         return squared_frequencies(block, self.eigenvalues, self.speeds)

@@ -32,7 +32,7 @@ CIRCULAR = np.array(
 ) / np.sqrt(2.0)
 CARTESIAN = np.eye(5, dtype=np.complex128)
 # Members of the five circular coordinates by kind of block: forward, backward, axial.
-MEMBERS = {1: (0, 1), -1: (2, 3), 0: (4,)}
+BLOCK_COORDINATES = {1: (0, 1), -1: (2, 3), 0: (4,)}
 # Lateral displacements among the five coordinates: Cartesian and circular.
 RADIAL = {False: (0, 1), True: (0, 2)}
 # Terms below this part of a matrix's largest are rounding of the change of coordinates.
@@ -40,7 +40,7 @@ NO_COUPLING = 1e-14
 
 
 @dataclass(frozen=True)
-class Tie:
+class NodeBearing:
     """A bearing at a node of a discretised shaft, in scaled units, along directions of its own.
 
     Where it couples forward and backward motion, its directions are x, y and their like: circular coordinates would mix
@@ -81,7 +81,7 @@ class Tie:
         return bearing, self.foot_stiffness + at * self.foot_damping + at**2 * self.foot_mass
 
 
-def block_sets(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
+def coupled_motions(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
     """Sets of motions that the bearings couple: 1 (forward), −1 (backward) and 0 (axial).
 
     Axial motion appears only where a bearing couples it to lateral motion; alone it is no whirl.
@@ -99,16 +99,16 @@ def block_sets(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
     couples |= couples.T
 
     def tied(first: int, second: int) -> bool:
-        return bool(couples[list(MEMBERS[first])][:, MEMBERS[second]].any())
+        return bool(couples[list(BLOCK_COORDINATES[first])][:, BLOCK_COORDINATES[second]].any())
 
     if tied(0, 1) or tied(0, -1):
         return ((1, -1, 0),)
     return ((1, -1),) if tied(1, -1) else ((1,), (-1,))
 
 
-def make_tie(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatArray) -> Tie:
+def node_bearing(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatArray) -> NodeBearing:
     """A bearing of constant coefficients at a node, for some blocks; ``units`` (n,) are those of their coordinates."""
-    members = [member for block in blocks for member in MEMBERS[block]]
+    members = [member for block in blocks for member in BLOCK_COORDINATES[block]]
     circular = len(blocks) == 1
     if circular:
         turn, known, names = CIRCULAR, dict(zip(members, units.tolist(), strict=True)), members
@@ -135,4 +135,4 @@ def make_tie(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatA
             whole = np.zeros((5, 5))
             whole[:2, :2] = given
             ground[index] = (turn @ whole @ turn.conj().T)[np.ix_(own, own)] * scale[np.ix_(foot, foot)]
-    return Tie(node, tuple(busy), circular, frame, stiffness, damping, foot, *ground)
+    return NodeBearing(node, tuple(busy), circular, frame, stiffness, damping, foot, *ground)

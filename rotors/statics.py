@@ -21,8 +21,8 @@ from .errors import RotorError, require, require_finite
 from .harmonic import bearing_forces
 from .search import require_positions
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, spatial_chain, whirl_reach
-from .spatial_ties import CIRCULAR, MEMBERS, block_sets
+from .spatial_chain import WhirlEquations, whirl_equations, whirl_reach
+from .spatial_ties import BLOCK_COORDINATES, CIRCULAR, coupled_motions
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -73,7 +73,7 @@ class StaticDeflection:
     gravity: FloatArray
     bearings: tuple[str, ...]
     bearing_loads: FloatArray
-    chains: tuple[SpatialChain, ...] = field(repr=False)
+    chains: tuple[WhirlEquations, ...] = field(repr=False)
     states: tuple[dict[int, ComplexArray], ...] = field(repr=False)
 
     def evaluate(self, z: npt.ArrayLike) -> FloatArray:
@@ -99,13 +99,13 @@ class StaticDeflection:
         positions = require_positions(self.chains[0].bending.nodes, z)
         whole = np.zeros((5, positions.size), dtype=np.complex128)
         for chain, states in zip(self.chains, self.states, strict=True):
-            members = [member for block in chain.blocks for member in MEMBERS[block]]
+            members = [member for block in chain.blocks for member in BLOCK_COORDINATES[block]]
             pieces, fractions = chain.bending.places(positions)
             units, first = chain.units, 0
             for block in chain.blocks:
-                width = len(MEMBERS[block])
+                width = len(BLOCK_COORDINATES[block])
                 planar = chain.bending if block else chain.axial
-                at = planar.transfers_to(pieces, fractions, np.array([TINY * 1j]))[:, 0]
+                at = planar.transfer_matrices_to(pieces, fractions, np.array([TINY * 1j]))[:, 0]
                 inside = np.einsum("zij,zj->zi", at.real, states[block][0, pieces])
                 inside = inside + acceleration(self.gravity, block) / units[first] * at.imag[:, :, 0] / TINY
                 for k in range(width):
@@ -147,14 +147,14 @@ def static_deflection(
     for what, at in [(f"bearing {b.name!r}", b.at) for b in bearings] + [("force", f.at) for f in forces]:
         rotor.require_on_shaft(what, at)
     constant = [bearing.at_speed(speed) for bearing in bearings]
-    sets = block_sets(constant)
+    sets = coupled_motions(constant)
     if (pull[2] != 0.0 or any(force.z for force in forces)) and not any(0 in blocks for blocks in sets):
         sets = (*sets, (0,))
     places = [force.at for force in forces]
     chains, states = [], []
     loads = np.zeros((1, len(constant), 5), dtype=np.complex128)
     for blocks in sets:
-        chain = spatial_chain(rotor, constant, blocks, whirl_reach(1e-6, 0.0), places)
+        chain = whirl_equations(rotor, constant, blocks, whirl_reach(1e-6, 0.0), places)
         require_held(rotor, chain)
         solution, scale = _solve(chain, forces, pull)
         chains.append(chain)
@@ -167,10 +167,10 @@ def static_deflection(
 def acceleration(gravity: FloatArray, block: int) -> complex:
     """Gravity's part in r+, r− or z."""
     circular = CIRCULAR @ np.concatenate([gravity, np.zeros(2)])
-    return complex(circular[MEMBERS[block][0]])
+    return complex(circular[BLOCK_COORDINATES[block][0]])
 
 
-def require_held(rotor: Rotor, chain: SpatialChain) -> None:
+def require_held(rotor: Rotor, chain: WhirlEquations) -> None:
     """Raise `RotorError` unless the bearings resist every rigid motion of the chain."""
     n = chain.size
     place = (chain.bending.nodes - chain.bending.nodes.mean()) / chain.bending.length_unit
@@ -180,7 +180,7 @@ def require_held(rotor: Rotor, chain: SpatialChain) -> None:
         if block:
             rigid[column, column + 1] = place
             rigid[column + 1, column + 1] = 1.0
-        column += len(MEMBERS[block])
+        column += len(BLOCK_COORDINATES[block])
     whole = np.zeros((n, n), dtype=np.complex128)
     for tie in chain.ties:
         shape = tie.frame @ rigid[:, :, tie.node]
@@ -192,19 +192,21 @@ def require_held(rotor: Rotor, chain: SpatialChain) -> None:
         )
 
 
-def _solve(chain: SpatialChain, forces: Sequence[StaticForce], gravity: FloatArray) -> tuple[ComplexArray, FloatArray]:
+def _solve(
+    chain: WhirlEquations, forces: Sequence[StaticForce], gravity: FloatArray
+) -> tuple[ComplexArray, FloatArray]:
     zero = np.zeros(1, dtype=np.complex128)
     scale = chain.response_scale(zero)
     units, layout = chain.units, chain.layout
-    members = [member for block in chain.blocks for member in MEMBERS[block]]
+    members = [member for block in chain.blocks for member in BLOCK_COORDINATES[block]]
     sides = np.zeros((1, chain.pattern.order), dtype=np.complex128)
     first = 0
     for block in chain.blocks:
-        width = len(MEMBERS[block])
+        width = len(BLOCK_COORDINATES[block])
         own = slice(first, first + width)
         planar = chain.bending if block else chain.axial
         pull = acceleration(gravity, block) / units[first]
-        particular = pull * planar.transfers(np.array([TINY * 1j]))[:, 0].imag[:, :, 0] / TINY
+        particular = pull * planar.transfer_matrices(np.array([TINY * 1j]))[:, 0].imag[:, :, 0] / TINY
         particular[:, width:] /= scale[0]
         sides[0, layout.continuity[:, own]] += particular[:, :width]
         sides[0, layout.balances[1:, own]] += particular[:, width:]

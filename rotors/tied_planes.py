@@ -34,7 +34,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class TiedPlanes:
+class CoupledPlanes:
     """Both planes at rest, with gyroscopic coupling and light damping.
 
     Attributes
@@ -55,7 +55,7 @@ class TiedPlanes:
     @classmethod
     def of(
         cls, mass: FloatArray, stiffness: FloatArray, damping: FloatArray, gyroscopic: FloatArray, in_x: BoolArray
-    ) -> "TiedPlanes | None":
+    ) -> "CoupledPlanes | None":
         """From diagonal mass (N,) and matrices (N, N), ``in_x`` marking one plane; None where it does not apply."""
         x, y = np.flatnonzero(in_x), np.flatnonzero(~in_x)
         apart = np.ix_(x, y), np.ix_(y, x)

@@ -48,7 +48,7 @@ WHOLE = np.ones(1)
 
 
 @dataclass(frozen=True)
-class PieceTable:
+class ShaftElements:
     """Pieces of shaft that differ from each other, in any consistent units.
 
     Attributes
@@ -68,7 +68,7 @@ class PieceTable:
         """Displacements at an end, n: 2 in bending, 1 of a rod."""
         return 2 if self.coefficients.shape[1] == 6 else 1
 
-    def transfers(
+    def transfer_matrices(
         self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None, fractions: FloatArray = WHOLE
     ) -> NumberArray:
         """Transfer matrices from the left end to fractions of the length: state there = T · state at the left.
@@ -86,15 +86,15 @@ class PieceTable:
         (b, e, k, 2n, 2n)
             In the order displacement, rotation, force, moment; or angle, torque.
         """
-        from .piece_kernels import table_transfers
+        from .piece_kernels import table_transfer_matrices
 
         moving, turning = _pair(translation, rotation)
         shape = (moving.size, self.lengths.size, fractions.size, 2 * self.size, 2 * self.size)
         out = np.empty(shape, moving.dtype)
-        table_transfers(self.lengths, self.coefficients, moving, turning, fractions, out)
+        table_transfer_matrices(self.lengths, self.coefficients, moving, turning, fractions, out)
         return out
 
-    def transfers_to(
+    def transfer_matrices_to(
         self,
         element: IntArray,
         fractions: FloatArray,
@@ -102,11 +102,11 @@ class PieceTable:
         rotation: npt.ArrayLike | None = None,
     ) -> NumberArray:
         """Transfer matrices to one fraction (z,) each of some pieces (z,), at every ω² (b,), (z, b, 2n, 2n)."""
-        from .piece_kernels import place_transfers
+        from .piece_kernels import place_transfer_matrices
 
         moving, turning = _pair(translation, rotation)
         out = np.empty((element.size, moving.size, 2 * self.size, 2 * self.size), moving.dtype)
-        place_transfers(self.lengths, self.coefficients, element, fractions, moving, turning, out)
+        place_transfer_matrices(self.lengths, self.coefficients, element, fractions, moving, turning, out)
         return out
 
     def growth(self, frequency: float) -> FloatArray:

@@ -8,9 +8,9 @@ import numpy.typing as npt
 
 from .axis_spring import AxisSpring
 from .errors import require
-from .lines import Line
+from .lines import ContinuousShaft
 from .rods import RodModes, rod_modes
-from .rotor_lines import rod_line
+from .rotor_lines import rod_shaft
 from .search import find_modes
 from .shaft import Rotor
 
@@ -56,7 +56,7 @@ def solve_torsional_modes(
         The modes fail their own proof.
     """
     require(rotor.polar_inertia > 0.0, f"rotor {rotor.name!r} polar inertia", 0.0, "a positive inertia")
-    return rod_modes(TorsionalModes, find_modes(rod_line(rotor, springs, "torsion"), frequency_limit, count))
+    return rod_modes(TorsionalModes, find_modes(rod_shaft(rotor, springs, "torsion"), frequency_limit, count))
 
 
 def solve_torsional_chain(
@@ -92,7 +92,7 @@ def solve_torsional_chain(
     require(fitting, "torsional chain ground", held.tolist(), "one stiffness for each inertia, none negative")
 
     moment = float(np.exp(np.log(springs).mean()))
-    line = Line(
+    line = ContinuousShaft(
         label="torsional chain",
         nodes=np.arange(masses.size, dtype=np.float64),
         stations=np.arange(masses.size, dtype=np.float64),

@@ -14,10 +14,10 @@ import numpy.typing as npt
 
 from .axis_spring import AxisSpring
 from .banded import BandPattern
-from .chain import Chain
+from .chain import DiscretisedShaft
 from .errors import require, require_finite
 from .harmonic import finite_values
-from .rotor_lines import rod_line
+from .rotor_lines import rod_shaft
 from .search import require_positions
 from .shaft import Rotor
 from .shaft_coupling import Coupling
@@ -66,7 +66,7 @@ class TorsionalResponse:
 
     frequencies: FloatArray
     damping_ratio: float
-    chain: Chain = field(repr=False)
+    chain: DiscretisedShaft = field(repr=False)
     states: ComplexArray = field(repr=False)
     softness: ComplexArray = field(repr=False)
 
@@ -81,10 +81,10 @@ class TorsionalResponse:
     def _at(self, z: npt.ArrayLike) -> ComplexArray:
         pieces, fractions = self.chain.places(require_positions(self.chain.nodes, z))
         modulus = 1.0 + 2j * self.damping_ratio
-        transfers = self.chain.transfers_to(pieces, fractions, self.frequencies**2 / modulus)
-        transfers = in_units_of(transfers, modulus)
-        transfers[..., 0, 1] *= self.softness[pieces]
-        return np.asarray(np.einsum("zbij,bzj->bzi", transfers, self.states[:, pieces]))
+        transfer_matrices = self.chain.transfer_matrices_to(pieces, fractions, self.frequencies**2 / modulus)
+        transfer_matrices = in_units_of(transfer_matrices, modulus)
+        transfer_matrices[..., 0, 1] *= self.softness[pieces]
+        return np.asarray(np.einsum("zbij,bzj->bzi", transfer_matrices, self.states[:, pieces]))
 
 
 def torsional_response(
@@ -123,27 +123,27 @@ def torsional_response(
     for place in places:
         rotor.require_on_shaft("torque or dashpot", place)
     bare = [AxisSpring(place, 0.0) for place in places]
-    chain = rod_line(rotor, [*springs, *bare], "torsion").cut(float(omega.max()))
+    chain = rod_shaft(rotor, [*springs, *bare], "torsion").cut(float(omega.max()))
     modulus, unit = 1.0 + 2j * damping_ratio, float(chain.displacement_unit[0])
     dashed = np.zeros(chain.nodes.size)
     for dashpot in dashpots:
         dashed[chain.node_at(dashpot.at)] += dashpot.coefficient * unit**2
     terms = modulus * chain.finite_stiffness[:, 0] + 1j * omega[:, None] * dashed
     terms = terms - omega[:, None] ** 2 * chain.node_inertia[:, 0]
-    transfers = in_units_of(chain.transfers(omega**2 / modulus), modulus)
+    transfer_matrices = in_units_of(chain.transfer_matrices(omega**2 / modulus), modulus)
     softness = _softness(rotor, chain, omega, modulus)
-    transfers[..., 0, 1] *= softness
+    transfer_matrices[..., 0, 1] *= softness
     order = 2 * chain.nodes.size
     sides = np.zeros((omega.size, 1, order), dtype=np.complex128)
     for torque in torques:
         node = chain.node_at(torque.at)
         if not chain.constrained[node, 0]:
             sides[:, 0, 2 * node] -= torque.amplitude * unit
-    solved = _pattern(chain.nodes.size).solve(_values(chain, terms, transfers), sides)
+    solved = _pattern(chain.nodes.size).solve(_values(chain, terms, transfer_matrices), sides)
     return TorsionalResponse(omega, damping_ratio, chain, solved.reshape(omega.size, -1, 2), softness)
 
 
-def _softness(rotor: Rotor, chain: Chain, omega: FloatArray, modulus: complex) -> ComplexArray:
+def _softness(rotor: Rotor, chain: DiscretisedShaft, omega: FloatArray, modulus: complex) -> ComplexArray:
     """Twist of every piece under a torque, relative to that without the dashpots of couplings, (p, b)."""
     found = np.ones((chain.lengths.size, omega.size), dtype=np.complex128)
     middles = 0.5 * (chain.nodes[1:] + chain.nodes[:-1])
@@ -155,9 +155,9 @@ def _softness(rotor: Rotor, chain: Chain, omega: FloatArray, modulus: complex) -
     return found
 
 
-def in_units_of(transfers: ComplexArray, unit: complex) -> ComplexArray:
+def in_units_of(transfer_matrices: ComplexArray, unit: complex) -> ComplexArray:
     """Transfer matrices of a rod (..., 2, 2) in plain forces, from those with forces in a complex unit."""
-    plain = transfers.astype(np.complex128)
+    plain = transfer_matrices.astype(np.complex128)
     plain[..., 0, 1] /= unit
     plain[..., 1, 0] *= unit
     return plain
@@ -172,10 +172,10 @@ def _pattern(nodes: int) -> BandPattern:
     return BandPattern.of(np.concatenate(rows), np.concatenate([*columns, last]), 2 * nodes)
 
 
-def _values(chain: Chain, terms: ComplexArray, transfers: ComplexArray) -> ComplexArray:
+def _values(chain: DiscretisedShaft, terms: ComplexArray, transfer_matrices: ComplexArray) -> ComplexArray:
     """Entries for `_pattern`; the equation of a constrained node is that its displacement is zero."""
     held, batch = chain.constrained[:, 0], terms.shape[0]
-    moved = np.moveaxis(transfers, 1, 0)
+    moved = np.moveaxis(transfer_matrices, 1, 0)
     free = np.where(held[1:], 0.0, 1.0)
     parts = [
         np.where(held, 1.0, -terms),

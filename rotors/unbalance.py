@@ -21,7 +21,7 @@ from .bearing import Bearing
 from .harmonic import HarmonicResponse, finite_values, solve_harmonic
 from .loads import Bow, Unbalance
 from .projection import slowest
-from .rotor_lines import bending_line
+from .rotor_lines import bending_shaft
 from .segment import Segment
 from .shaft import Rotor
 from .shaft_coupling import Coupling
@@ -104,7 +104,7 @@ def bow_shape(rotor: Rotor, bow: Bow) -> BowShape:
     # The static axial force acts on the whole displacement, not on what the shaft is bent by.
     free = replace(rotor, segments=[_unloaded(part) for part in rotor.segments])
     # About EI / L³.
-    stiffness = float(bending_line(rotor).displacement_unit[0]) ** -2
+    stiffness = float(bending_shaft(rotor).displacement_unit[0]) ** -2
     springs = [Bearing.isotropic(f"point {k}", at, stiffness) for k, at in enumerate(bow.at.tolist())]
     places = bow.at.tolist()
     unit = np.zeros((len(places), len(places), 5), dtype=np.complex128)

@@ -25,8 +25,8 @@ from .lateral import LateralModes
 from .planar_basis import DEFAULT_COUNT, PlanarBasis
 from .projection import Pencil, basis_for, pencils
 from .shaft import Rotor
-from .spatial_chain import SpatialChain, reach_step, whirl_chain, whirl_reach
-from .spatial_field import SpatialMotion
+from .spatial_chain import WhirlEquations, reach_step, whirl_chain, whirl_reach
+from .spatial_field import ShaftMotion
 from .whirl_certificate import NO_OSCILLATION, certified_roots, oscillating
 from .whirl_count import is_conservative
 from .whirl_energy import StrainShares, strain_shares
@@ -76,7 +76,7 @@ class WhirlModes:
     roots: "WhirlRoots" = field(repr=False)
 
     @cached_property
-    def motion(self) -> SpatialMotion:
+    def motion(self) -> ShaftMotion:
         """The exact mode shapes, of unit norm in the inertias of shaft and nodes, m per √kg."""
         motion = self.roots.motion
         return motion.scaled(1.0 / np.sqrt(motion.shares.sum(axis=1)).astype(np.complex128))
@@ -214,16 +214,16 @@ class WhirlSolver:
             lambda: basis_for(self.rotor, self.bearings, frequency_limit, count, self.basis),
         )
 
-    def equations(self, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> SpatialChain:
+    def equations(self, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> WhirlEquations:
         """Exact equations of some tied motions on bearings of constant coefficients; see `whirl_chain`."""
         return self._hold(
             ("equations", tuple(bearings), blocks, reach_step(highest)),
             lambda: whirl_chain(self.rotor, bearings, blocks, highest),
         )
 
-    def is_undriven(self, bearings: Sequence[Bearing]) -> bool:
+    def is_conservative_rotor(self, bearings: Sequence[Bearing]) -> bool:
         """Whether roots may be counted by inertia: nothing damps or drives, and all stiffness is positive."""
-        return self._hold(("undriven", tuple(bearings)), lambda: is_undriven(self.rotor, bearings))
+        return self._hold(("undriven", tuple(bearings)), lambda: is_conservative_rotor(self.rotor, bearings))
 
     def _pencils(self, bearings: tuple[Bearing, ...], basis: PlanarBasis) -> list[Pencil]:
         return self._hold(("pencils", bearings, basis), lambda: pencils(self.rotor, bearings, basis))
@@ -287,7 +287,7 @@ class WhirlRoots:
         (w,): index of each root among the roots of all sets.
     """
 
-    chains: Sequence[SpatialChain]
+    chains: Sequence[WhirlEquations]
     parts: Sequence[ExactRoots]
     speed: Speed
     order: npt.NDArray[np.intp]
@@ -298,10 +298,10 @@ class WhirlRoots:
         return _all([roots.eigenvalues for roots in self.parts])[self.order]
 
     @cached_property
-    def motion(self) -> SpatialMotion:
+    def motion(self) -> ShaftMotion:
         """The exact motion of every root, without normalisation."""
         motions = [
-            SpatialMotion.of(chain, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
+            ShaftMotion.of(chain, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
             for chain, one in zip(self.chains, self.parts, strict=True)
         ]
         motion = motions[0]
@@ -345,7 +345,7 @@ def certified_whirl(
         sector = oscillating(least, _limit_behind(refined, least, count))
     else:
         sector = oscillating(least, limit)
-    conservative = solver.is_undriven(bearings)
+    conservative = solver.is_conservative_rotor(bearings)
     parts = [
         certified_roots(chain, roots, speed, sector, conservative, values[k:])
         for chain, roots, values, k in zip(chains, refined, kept, near, strict=True)
@@ -357,7 +357,7 @@ def certified_whirl(
     return WhirlRoots(chains, [roots for roots, _ in parts], speed, order), certificate
 
 
-def is_undriven(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
+def is_conservative_rotor(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
     """Whether roots may be counted by inertia: nothing damps or drives, and all stiffness is positive."""
     # Under compression the shaft's own stiffness may fail to be.
     return not rotor.is_compressed and is_conservative(bearings)

@@ -7,9 +7,9 @@ from .certificate import ModeCertificate
 from .coalesced_roots import refine_roots, with_circle
 from .errors import IncompleteModesError
 from .exact_roots import ExactRoots, Speed, distinct
-from .spatial_chain import SpatialChain
+from .spatial_chain import WhirlEquations
 from .whirl_count import negative_count
-from .winding import NONE, RootOnContourError, Sector, wind
+from .winding import NONE, RootOnContourError, Sector, count_by_argument_principle
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -26,7 +26,7 @@ def oscillating(least: float, most: float) -> Sector:
 
 
 def certified_roots(
-    chain: SpatialChain,
+    chain: WhirlEquations,
     roots: ExactRoots,
     speed: Speed,
     sector: Sector,
@@ -57,22 +57,22 @@ def certified_roots(
 
 
 def count_roots(
-    chain: SpatialChain, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
+    chain: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
 ) -> int:
     """Number of roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
     if conservative:
         edges = np.array([sector.least, sector.most])
         low, high = negative_count(chain, edges, speed).tolist()
         return int(high - low)
-    return wind(chain, sector, speed, known).count
+    return count_by_argument_principle(chain, sector, speed, known).count
 
 
-def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
+def search(chain: WhirlEquations, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
     """All roots in a sector: the known ones, and the missing ones by the argument principle and power sums."""
     roots, waiting, cuts = known, [sector], 0
     while waiting:
         part = waiting.pop()
-        winding = wind(chain, part, speed, roots.eigenvalues)
+        winding = count_by_argument_principle(chain, part, speed, roots.eigenvalues)
         inside = roots.eigenvalues[part.holds(roots.eigenvalues)]
         missing = winding.count - inside.size
         if missing <= 0:
@@ -93,12 +93,12 @@ def search(chain: SpatialChain, known: ExactRoots, speed: Speed, sector: Sector)
     return roots.take(sector.holds(roots.eigenvalues))
 
 
-def _cut(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
+def _cut(chain: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
     """Two parts of a sector without a root on their common side."""
     for nudge in range(MOST_NUDGES):
         halves = sector.halves(0.5 + 0.037 * nudge)
         try:
-            wind(chain, halves[0], speed, known)
+            count_by_argument_principle(chain, halves[0], speed, known)
         except RootOnContourError:
             continue
         return list(halves)

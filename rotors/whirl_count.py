@@ -27,8 +27,8 @@ import numpy.typing as npt
 
 from .bearing import Bearing
 from .exact_roots import Speed
-from .spatial_chain import SpatialChain
-from .spatial_ties import Tie
+from .spatial_chain import WhirlEquations
+from .spatial_ties import NodeBearing
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -60,19 +60,19 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
     return True
 
 
-def negative_count(chain: SpatialChain, frequencies: FloatArray, speed: Speed) -> IntArray:
+def negative_count(chain: WhirlEquations, frequencies: FloatArray, speed: Speed) -> IntArray:
     """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω (rad/s), (b,)."""
     eigenvalues = (1j * frequencies).astype(np.complex128)
     # One unit of force for all frequencies: with that of a frequency near zero every bearing would seem rigid.
     speeds, scale = speed(eigenvalues), np.full(frequencies.size, chain.force_scale(eigenvalues).max())
     n, batch = chain.size, frequencies.size
     nodes, added = _node_matrices(chain, eigenvalues, speeds, scale)
-    transfers = chain.dense_transfers(eigenvalues, speeds, scale)
+    transfer_matrices = chain.dense_transfers(eigenvalues, speeds, scale)
     displacements = np.broadcast_to(np.eye(n, dtype=np.complex128), (batch, n, n))
     forces = np.zeros((batch, n, n), dtype=np.complex128)
     for piece in range(nodes.shape[1] - 1):
         forces = forces + nodes[:, piece] @ displacements
-        transfer = transfers[piece]
+        transfer = transfer_matrices[piece]
         moved = transfer @ np.concatenate([displacements, forces], axis=1)
         reaction = np.linalg.solve(transfer[:, :n, n:], moved[:, :n])
         added += _negatives(_adjoint(displacements) @ reaction)
@@ -83,7 +83,7 @@ def negative_count(chain: SpatialChain, frequencies: FloatArray, speed: Speed) -
 
 
 def _node_matrices(
-    chain: SpatialChain, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+    chain: WhirlEquations, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
 ) -> tuple[ComplexArray, IntArray]:
     """Dynamic stiffness at every node, (b, p + 1, n, n), and the pedestals' own negative eigenvalues, (b,)."""
     terms = chain.node_terms(eigenvalues, speeds) / scale[:, None, None]
@@ -96,7 +96,7 @@ def _node_matrices(
     return nodes, negatives
 
 
-def _reduced(tie: Tie, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
+def _reduced(tie: NodeBearing, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
     bearing, ground = tie.dynamic_stiffness(eigenvalues)
     turned = tie.frame.conj().T
     if not tie.foot:

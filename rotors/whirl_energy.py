@@ -23,7 +23,7 @@ from .bearing import Bearing
 from .chain import GAUSS_FRACTIONS, GAUSS_WEIGHTS
 from .search import require_positions
 from .shaft import merged_positions
-from .spatial_field import SpatialMotion
+from .spatial_field import ShaftMotion
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -48,7 +48,7 @@ class StrainShares:
     pedestals: FloatArray
 
 
-def strain_shares(motion: SpatialMotion, bearings: Sequence[Bearing], edges: npt.ArrayLike) -> StrainShares:
+def strain_shares(motion: ShaftMotion, bearings: Sequence[Bearing], edges: npt.ArrayLike) -> StrainShares:
     """Shares of motions (w,) on bearings of constant coefficients, in lengths between ascending ``edges`` (e + 1,), m.
 
     Raises
@@ -65,7 +65,7 @@ def strain_shares(motion: SpatialMotion, bearings: Sequence[Bearing], edges: npt
     return StrainShares(*parts)
 
 
-def _along(motion: SpatialMotion, edges: FloatArray) -> FloatArray:
+def _along(motion: ShaftMotion, edges: FloatArray) -> FloatArray:
     """Four times the mean strain energy of the shaft between the edges, (w, e), J."""
     chain = motion.chain
     cuts = merged_positions(chain.nodes, edges.tolist())
@@ -85,7 +85,7 @@ def _along(motion: SpatialMotion, edges: FloatArray) -> FloatArray:
     return np.stack([cells[:, owner == k].sum(axis=1) for k in range(edges.size - 1)], axis=1)
 
 
-def _in_springs(motion: SpatialMotion, bearing: Bearing) -> tuple[FloatArray, FloatArray]:
+def _in_springs(motion: ShaftMotion, bearing: Bearing) -> tuple[FloatArray, FloatArray]:
     """Four times the mean strain energy in a bearing and in its pedestal, (w,) each, J."""
     x, y = (part[:, 0] for part in motion.evaluate([bearing.at]))
     slope_x, slope_y = (part[:, 0] for part in motion.evaluate_slopes([bearing.at]))

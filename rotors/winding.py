@@ -38,7 +38,7 @@ import numpy.typing as npt
 
 from .errors import IncompleteModesError
 from .exact_roots import Speed
-from .spatial_chain import SpatialChain
+from .spatial_chain import WhirlEquations
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -82,7 +82,7 @@ class Sector:
 
 
 @dataclass(frozen=True)
-class Winding:
+class ContourCount:
     """Number of roots inside one contour, and the samples along it.
 
     Attributes
@@ -125,7 +125,9 @@ class Winding:
         return np.asarray(np.exp(np.roots(coefficients) * size + middle))
 
 
-def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray = NONE) -> Winding:
+def count_by_argument_principle(
+    chain: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray = NONE
+) -> ContourCount:
     """Count the roots in a sector by the winding number of the determinant along its edge.
 
     Parameters
@@ -144,11 +146,11 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
     RootOnContourError
         The phase does not settle however finely an edge is sampled.
     """
-    from .winding_kernels import walk
+    from .winding_kernels import follow_contour
 
     entries = chain.entries
     base, rate = complex(speed.base), complex(speed.rate)
-    points, samples, count, left, path = walk(
+    points, samples, count, left, path = follow_contour(
         sector.bounds,
         (base, rate),
         chain.total_mass,
@@ -159,7 +161,7 @@ def wind(chain: SpatialChain, sector: Sector, speed: Speed, known: ComplexArray 
         entries.pattern.arrays,
     )
     if points:
-        return Winding(count, samples, path[:, :points], left)
+        return ContourCount(count, samples, path[:, :points], left)
     raise RootOnContourError(
         f"the count of whirl modes with {sector.least:g} < |λ| < {sector.most:g} rad/s does not settle, as one lies "
         "on the edge of the region; choose a limit a little apart from it"

@@ -95,7 +95,7 @@ def _divide(
 
 
 @counted(error_model="python")
-def walk(
+def follow_contour(
     bounds: FloatArray,
     speed: tuple[complex, complex],
     mass: float,

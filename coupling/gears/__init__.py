@@ -3,11 +3,11 @@
 The steps, each usable alone:
 
 >>> from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness
->>> from coupling.gears import static_transmission_error, tooth_contact
+>>> from coupling.gears import loaded_transmission_error, tooth_contact
 >>> wheel = Gear("wheel", teeth=62, module=2e-3, pressure_angle=0.349066, face_width=20e-3, bore=35e-3)
 >>> pair = GearPairGeometry(wheel, wheel)  # path of contact, working angle, backlash
 >>> contact = tooth_contact(pair, PotentialEnergyStiffness())  # contact law: k(s), d(s), damping
->>> loaded = static_transmission_error(contact, force=2000.0)  # mesh stiffness, sharing
+>>> loaded = loaded_transmission_error(contact, force=2000.0)  # mesh stiffness, sharing
 >>> round(pair.contact_ratio, 4)
 1.7898
 
@@ -16,10 +16,10 @@ Positions along the path of contact are in base pitches, phases in mesh periods,
 """
 
 from coupling.gears.blank import Inertia
-from coupling.gears.centre_distance import profile_shift_sum, shifted_to, tip_shortening
+from coupling.gears.centre_distance import profile_shift_sum, shifted_for_centre_distance, tip_shortening
 from coupling.gears.compliant_teeth import CompliantTeeth, ToothCompliance
 from coupling.gears.cornell import CornellStiffness
-from coupling.gears.corner_contact import FlankPlaces, corner_reach, flank_places
+from coupling.gears.corner_contact import FlankContactPoints, corner_contact_range, flank_contact_points
 from coupling.gears.crack import ToothCrack
 from coupling.gears.damping import equivalent_mass, mesh_damping
 from coupling.gears.deviation import flank_gap, pair_deviation
@@ -44,13 +44,13 @@ from coupling.gears.gear_contact import tooth_contact
 from coupling.gears.geometry import Fault, Gear, require_tip_thickness
 from coupling.gears.harris_map import HarrisMap, harris_map, transmission_error_harmonics
 from coupling.gears.hertz import LineContact, hertz_compliance, line_contact
-from coupling.gears.hunting import hunting_mesh
+from coupling.gears.hunting import hunting_period_mesh
 from coupling.gears.involute import inverse_involute, involute
 from coupling.gears.iso6336 import Iso6336Stiffness, Iso6336Values, iso6336_stiffness
 from coupling.gears.modifications import RootRelief, TipRelief
 from coupling.gears.optimal_relief import PeakToPeak, ReliefAim, ReliefOptimum, WeightedHarmonics, optimal_tip_relief
 from coupling.gears.outline import gear_outline, meshing_rotations, pair_outlines
-from coupling.gears.pair_curves import PairCurves
+from coupling.gears.pair_curves import ToothPairCurves
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.path_of_contact import POINTS_OF_CONTACT, PathOfContact, path_of_contact, specific_sliding
 from coupling.gears.piecewise import PiecewiseCubic
@@ -65,10 +65,10 @@ from coupling.gears.profile import tooth_outline
 from coupling.gears.runout import runout_error
 from coupling.gears.sliding import SlidingFriction, sliding_friction
 from coupling.gears.static import (
-    StaticMesh,
+    LoadedMesh,
+    loaded_transmission_error,
     mesh_period_phases,
     mesh_stiffness,
-    static_transmission_error,
 )
 from coupling.gears.stiffness_models import (
     STIFFNESS_MODELS,
@@ -106,7 +106,7 @@ __all__ = [
     "ElasticRingStiffness",
     "FaceSlices",
     "Fault",
-    "FlankPlaces",
+    "FlankContactPoints",
     "Gear",
     "GearError",
     "GearPairGeometry",
@@ -117,11 +117,11 @@ __all__ = [
     "Iso6336Stiffness",
     "Iso6336Values",
     "LineContact",
+    "LoadedMesh",
     "MeshFriction",
     "MismatchedGearsError",
     "MissingTooth",
     "NoContactError",
-    "PairCurves",
     "PairStates",
     "PathOfContact",
     "PeakToPeak",
@@ -137,7 +137,6 @@ __all__ = [
     "Spall",
     "SpanMeasurement",
     "SquareStiffness",
-    "StaticMesh",
     "StiffnessModel",
     "StiffnessModelError",
     "TableStiffness",
@@ -146,6 +145,7 @@ __all__ = [
     "ToothCompliance",
     "ToothContact",
     "ToothCrack",
+    "ToothPairCurves",
     "UndercutError",
     "Wear",
     "WeberBanaschekStiffness",
@@ -155,20 +155,21 @@ __all__ = [
     "contact_curvature_radius",
     "contact_modulus",
     "contact_pressure",
-    "corner_reach",
+    "corner_contact_range",
     "equivalent_mass",
     "face_slices",
+    "flank_contact_points",
     "flank_gap",
-    "flank_places",
     "foundation_compliance",
     "gear_outline",
     "harris_map",
     "hertz_compliance",
-    "hunting_mesh",
+    "hunting_period_mesh",
     "inverse_involute",
     "involute",
     "iso6336_stiffness",
     "line_contact",
+    "loaded_transmission_error",
     "mesh_damping",
     "mesh_friction",
     "mesh_period_phases",
@@ -188,11 +189,10 @@ __all__ = [
     "profile_shift_sum",
     "require_tip_thickness",
     "runout_error",
-    "shifted_to",
+    "shifted_for_centre_distance",
     "sliding_friction",
     "span_measurement",
     "specific_sliding",
-    "static_transmission_error",
     "stiffness_model",
     "tip_shortening",
     "tooth_contact",

@@ -17,7 +17,7 @@ from coupling.gears.geometry import Gear
 from coupling.gears.involute import inverse_involute, involute
 
 
-def closing_pressure_angle(driver: Gear, driven: Gear, *, thinned: bool = False) -> float:
+def backlash_free_pressure_angle(driver: Gear, driven: Gear, *, thinned: bool = False) -> float:
     """Transverse pressure angle at which two gears mesh without backlash [rad].
 
     Parameters
@@ -74,7 +74,7 @@ def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> flo
     return (driver.teeth + driven.teeth) * opening / (2.0 * math.tan(driver.pressure_angle))
 
 
-def shifted_to(driver: Gear, driven: Gear, centre_distance: float) -> Gear:
+def shifted_for_centre_distance(driver: Gear, driven: Gear, centre_distance: float) -> Gear:
     """Driven gear with the profile shift of a pair without backlash at `centre_distance` [m], the driver unchanged.
 
     Raises

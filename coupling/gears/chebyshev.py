@@ -22,7 +22,7 @@ _TOLERANCE = 1e-13
 """Largest difference of interpolant and function between the points, relative to the largest value."""
 
 
-def by_few_values(function: Function, length: float) -> Function:
+def chebyshev_interpolant(function: Function, length: float) -> Function:
     """Interpolate a function on [0, length]; return the function itself where it is not smooth enough.
 
     The degree is doubled until the interpolant meets the function at all points between its own.

@@ -32,7 +32,7 @@ import numpy.typing as npt
 
 from coupling.gears import piecewise
 from coupling.gears.beam_compliance import PlaneState
-from coupling.gears.chebyshev import by_few_values
+from coupling.gears.chebyshev import chebyshev_interpolant
 from coupling.gears.errors import StiffnessModelError
 from coupling.gears.geometry import Gear
 from coupling.gears.hertz import hertz_compliance, line_contact
@@ -235,4 +235,4 @@ class CompliantTeeth(ABC):
         def stiffness(position: FloatArray) -> FloatArray:
             return np.asarray(1.0 / (teeth(position) + self.contact_compliance(geometry, position)), dtype=np.float64)
 
-        return piecewise.tabulated(by_few_values(stiffness, length), length)
+        return piecewise.tabulated(chebyshev_interpolant(stiffness, length), length)

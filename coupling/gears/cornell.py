@@ -31,7 +31,7 @@ from coupling.gears.beam_compliance import PlaneState, axis_crossing, beam_compl
 from coupling.gears.compliant_teeth import CompliantTeeth, SharedBody, SolvedTooth, ToothCompliance
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import fillet_points, flank_points, load_angle
-from coupling.gears.rim import solved_rim
+from coupling.gears.rim import rim_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -68,7 +68,7 @@ class CornellStiffness(CompliantTeeth):
         coupling, plane = 2.0 * (1.0 - nu), 1.0
         if state == "plane-strain":
             coupling, plane = 2.0 * (1.0 - nu - 2.0 * nu**2) / (1.0 - nu**2), 1.0 - nu**2
-        rim = solved_rim(gear, state)
+        rim = rim_compliance(gear, state)
 
         def tooth(radius: FloatArray) -> ToothCompliance:
             beta = load_angle(gear, radius)

@@ -35,7 +35,7 @@ LONGEST_REACH = 0.45
 
 
 @dataclass(frozen=True, eq=False)
-class FlankPlaces:
+class FlankContactPoints:
     """Contact points on both flanks at positions on or beyond the path of contact.
 
     Attributes
@@ -51,7 +51,7 @@ class FlankPlaces:
     gap: FloatArray
 
 
-def flank_places(geometry: GearPairGeometry, position: npt.ArrayLike) -> FlankPlaces:
+def flank_contact_points(geometry: GearPairGeometry, position: npt.ArrayLike) -> FlankContactPoints:
     """Contact points of flanks or corners at `position` in base pitches, on the path of contact and beyond."""
     at = np.atleast_1d(np.asarray(position, dtype=np.float64))
     early = at < 0.0
@@ -67,10 +67,10 @@ def flank_places(geometry: GearPairGeometry, position: npt.ArrayLike) -> FlankPl
     if np.any(late):
         roll, space = _corner(nominal[1][late], nominal[0][late], *radii[::-1], geometry.driver.tip_radius)
         driven[late], gap[late] = roll, space
-    return FlankPlaces(driver, driven, gap)
+    return FlankContactPoints(driver, driven, gap)
 
 
-def corner_reach(geometry: GearPairGeometry, largest_gap: float = LARGEST_GAP) -> tuple[float, float]:
+def corner_contact_range(geometry: GearPairGeometry, largest_gap: float = LARGEST_GAP) -> tuple[float, float]:
     """Range of corner contact before and after the path of contact [base pitches], both at least 0.
 
     It ends where the gap is `largest_gap` modules, at most `LONGEST_REACH`.
@@ -78,7 +78,7 @@ def corner_reach(geometry: GearPairGeometry, largest_gap: float = LARGEST_GAP) -
     widest = largest_gap * geometry.driver.module
 
     def beyond(reach: float, end: float, outward: float) -> float:
-        return float(flank_places(geometry, end + outward * reach).gap[0]) - widest
+        return float(flank_contact_points(geometry, end + outward * reach).gap[0]) - widest
 
     reaches = []
     for ends in ((0.0, -1.0), (geometry.contact_ratio, 1.0)):

@@ -29,21 +29,21 @@ def equivalent_mass(
     )
 
 
-def mesh_damping(ratio: float, mean_stiffness: float, equivalent_mass: float) -> float:
+def mesh_damping(ratio: float, mean_mesh_stiffness: float, equivalent_mass: float) -> float:
     """Damping coefficient of the mesh, ``2 ratio sqrt(k m)`` [N s/m].
 
     Parameters
     ----------
     ratio : float
         Fraction of critical damping of the two gears rotating against each other.
-    mean_stiffness : float
+    mean_mesh_stiffness : float
         Mean mesh stiffness [N/m].
     equivalent_mass : float
         See `equivalent_mass` [kg].
     """
-    if not (ratio >= 0.0 and mean_stiffness > 0.0 and equivalent_mass > 0.0):
+    if not (ratio >= 0.0 and mean_mesh_stiffness > 0.0 and equivalent_mass > 0.0):
         raise GearError(
             "mesh damping: ratio must be at least 0, stiffness and mass above 0, "
-            f"got {ratio!r}, {mean_stiffness!r}, {equivalent_mass!r}"
+            f"got {ratio!r}, {mean_mesh_stiffness!r}, {equivalent_mass!r}"
         )
-    return 2.0 * ratio * math.sqrt(mean_stiffness * equivalent_mass)
+    return 2.0 * ratio * math.sqrt(mean_mesh_stiffness * equivalent_mass)

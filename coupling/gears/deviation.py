@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import piecewise
-from coupling.gears.corner_contact import flank_places
+from coupling.gears.corner_contact import flank_contact_points
 from coupling.gears.geometry import Fault, Gear
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
@@ -64,7 +64,7 @@ def pair_deviation(
         rolls = geometry.driver_roll_angle(position), geometry.driven_roll_angle(position)
         total = np.zeros_like(position)
         if corner_contact:
-            places = flank_places(geometry, position)
+            places = flank_contact_points(geometry, position)
             rolls, total = (places.driver_roll_angle, places.driven_roll_angle), places.gap
         for gear, roll, own in zip(gears, rolls, faults, strict=True):
             total = total + flank_gap(gear, roll)

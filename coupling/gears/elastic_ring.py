@@ -30,7 +30,7 @@ import numpy.typing as npt
 from coupling.gears.beam_compliance import PlaneState, beam_compliance, foot_at_height
 from coupling.gears.compliant_teeth import CompliantTeeth, SharedBody, SolvedTooth, ToothCompliance
 from coupling.gears.geometry import Gear
-from coupling.gears.rim import solved_rim, solved_ring
+from coupling.gears.rim import rim_compliance, ring_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class ElasticRingStiffness(CompliantTeeth):
     def solve_tooth(self, gear: Gear) -> SolvedTooth:
         """See `CompliantTeeth`."""
         foot = foot_at_height(gear, gear.root_circle_radius)
-        ring, rim = solved_ring(gear, self.state), solved_rim(gear, self.state)
+        ring, rim = ring_compliance(gear, self.state), rim_compliance(gear, self.state)
 
         def tooth(radius: FloatArray) -> ToothCompliance:
             beam = beam_compliance(gear, radius, foot, self.state)

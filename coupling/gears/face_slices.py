@@ -152,7 +152,7 @@ def _has_pits(geometry: GearPairGeometry) -> bool:
     return any(isinstance(fault, Spall) and fault.across_face(gear) for gear, fault in faults)
 
 
-def tooth_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:
+def slice_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:
     """k_b [N/m per m] from the stiffness of a pair over its whole face [N/m], flattening included.
 
     The flattening takes at most half of the pair's compliance.
@@ -161,7 +161,7 @@ def tooth_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:
     return np.asarray(1.0 / np.maximum(1.0 / whole - 1.0 / slices.flattening, 0.5 / whole), dtype=np.float64)
 
 
-def load_faces(
+def face_loads(
     slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, compression: FloatArray
 ) -> FaceLoads:
     """Solve the load distribution across the faces of p tooth pairs at given compressions.
@@ -199,7 +199,7 @@ def load_faces(
     raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
 
 
-def balance_faces(
+def face_equilibrium(
     slices: FaceSlices,
     base: FloatArray,
     gap: FloatArray,
@@ -212,7 +212,7 @@ def balance_faces(
     Parameters
     ----------
     slices, base, gap, meeting
-        As for `load_faces`, of all pairs of all meshes.
+        As for `face_loads`, of all pairs of all meshes.
     owner : ndarray of int, shape (p,)
         Mesh of each pair.
     force : ndarray, shape (m,)

@@ -20,8 +20,8 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from coupling.gears import piecewise
-from coupling.gears.face_slices import FaceSlices, load_faces, tooth_stiffness
-from coupling.gears.pair_curves import PairCurves, corners_of
+from coupling.gears.face_slices import FaceSlices, face_loads, slice_stiffness
+from coupling.gears.pair_curves import ToothPairCurves, slope_jumps
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -40,7 +40,7 @@ _APART = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class FaceTable:
+class FaceForceTable:
     """Tables for every kind of pair.
 
     Attributes
@@ -63,7 +63,7 @@ class FaceTable:
 
 
 @dataclass(frozen=True, eq=False)
-class FaceState:
+class FaceSliceStates:
     """Slices of pairs at given positions, arrays of shape (p, n).
 
     Attributes
@@ -84,7 +84,9 @@ class FaceState:
     meeting: BoolArray
 
 
-def face_state(slices: FaceSlices, kinds: tuple[PairCurves, ...], position: FloatArray, kind: IntArray) -> FaceState:
+def face_slice_states(
+    slices: FaceSlices, kinds: tuple[ToothPairCurves, ...], position: FloatArray, kind: IntArray
+) -> FaceSliceStates:
     """Slices of pairs of some kinds, `kind` (p,), whose faces' middles are at `position` (p,) in base pitches."""
     at = position[:, None] + slices.shift
     start, end = kinds[0].stiffness.knots[[0, -1]]
@@ -92,16 +94,16 @@ def face_state(slices: FaceSlices, kinds: tuple[PairCurves, ...], position: Floa
     for number, curves in enumerate(kinds):
         these = kind == number if len(kinds) > 1 else slice(None)
         whole[these], gap[these] = curves.stiffness(at[these]), curves.deviation(at[these])
-    return FaceState(whole, tooth_stiffness(slices, whole), gap + slices.gap, (at >= start) & (at <= end))
+    return FaceSliceStates(whole, slice_stiffness(slices, whole), gap + slices.gap, (at >= start) & (at <= end))
 
 
-def face_table(
+def face_force_table(
     slices: FaceSlices,
-    kinds: tuple[PairCurves, ...],
+    kinds: tuple[ToothPairCurves, ...],
     module: float,
     weights: Sequence[Weight] = (np.ones_like,),
     breaks: Sequence[float] = (),
-) -> FaceTable:
+) -> FaceForceTable:
     """Table of every kind of pair, or of sums over its slices with other weights than one.
 
     Parameters
@@ -125,14 +127,14 @@ def face_table(
     factors = [slices.width * weight(knots[:, None] + slices.shift) for weight in weights]
     touches, cells = [], []
     for number in range(len(kinds)):
-        state = face_state(slices, kinds, knots, np.full(knots.size, number))
+        state = face_slice_states(slices, kinds, knots, np.full(knots.size, number))
         gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         # At the very ends rounding may leave no slice in contact: the next position is taken.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
         shape = (knots.size, _DEPTHS + 1, slices.z.size)
         base, gaps = np.repeat(state.base, _DEPTHS + 1, axis=0), np.repeat(state.gap, _DEPTHS + 1, axis=0)
         meeting = np.repeat(state.meeting, _DEPTHS + 1, axis=0)
-        loads = load_faces(slices, base, gaps, meeting, (gap[:, None] + compressions).ravel())
+        loads = face_loads(slices, base, gaps, meeting, (gap[:, None] + compressions).ravel())
         for factor in factors:
             force = np.einsum("pdz,pz->pd", loads.line_load.reshape(shape), factor)
             tangent = np.einsum("pdz,pz->pd", loads.line_tangent.reshape(shape), factor)
@@ -140,14 +142,14 @@ def face_table(
             rise = tangent * 2.0 * unit * np.arange(_DEPTHS + 1.0)
             touches.append(_powers(pieces, gap[:, None])[:, 0])
             cells.append(_cells(_powers(pieces, force), _powers(pieces, rise), unit))
-    return FaceTable(knots, np.array(touches), np.stack(cells, axis=1), unit)
+    return FaceForceTable(knots, np.array(touches), np.stack(cells, axis=1), unit)
 
 
-def _breaks(kinds: tuple[PairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
+def _breaks(kinds: tuple[ToothPairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
     """Find the positions where corners enter or leave the face, `reach` from its middle, with the ends of the range."""
     start, end = kinds[0].stiffness.knots[[0, -1]]
     curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
-    corners = np.concatenate([*(corners_of(curve) for curve in curves), others])
+    corners = np.concatenate([*(slope_jumps(curve) for curve in curves), others])
     breaks = np.unique(np.concatenate([corners - reach, corners + reach]))
     first, last = start - reach, end + reach
     breaks = breaks[(breaks > first + _APART) & (breaks < last - _APART)]

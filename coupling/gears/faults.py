@@ -16,7 +16,7 @@ from coupling.gears.geometry import Gear
 
 FloatArray = npt.NDArray[np.float64]
 
-NEVER = 1.0
+NO_CONTACT_GAP = 1.0
 """Gap of a missing tooth [m], wider than any load closes."""
 _EDGE = 0.1
 """Part of a spall's length over which its edges rise, as a contact of finite width rides over them."""
@@ -166,7 +166,7 @@ class MissingTooth:
 
     def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
         """Gap wider than any load closes."""
-        return np.full_like(roll_angle, NEVER)
+        return np.full_like(roll_angle, NO_CONTACT_GAP)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
         """Zero: such a pair carries nothing."""

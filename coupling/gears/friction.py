@@ -22,8 +22,8 @@ import numpy.typing as npt
 
 from coupling.gears.errors import require_finite
 from coupling.gears.pair_geometry import GearPairGeometry
-from coupling.gears.sliding import turned_share
-from coupling.gears.static import StaticMesh, period_mean
+from coupling.gears.sliding import sliding_direction_means
+from coupling.gears.static import LoadedMesh, period_mean
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,7 +56,7 @@ class MeshFriction:
 
 
 def mesh_friction(
-    geometry: GearPairGeometry, contact: ToothContact, mesh: StaticMesh, coefficient: float
+    geometry: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh, coefficient: float
 ) -> MeshFriction:
     """Friction of a gear mesh under its static loads.
 
@@ -81,7 +81,7 @@ def mesh_friction(
         forces = mesh.line_loads * contact.faces.width
     else:
         positions, half, forces = mesh.positions[..., None], 0.0, mesh.pair_forces[..., None]
-    signed, moment = turned_share(positions, half, geometry.pitch_point_position, geometry.contact_ratio)
+    signed, moment = sliding_direction_means(positions, half, geometry.pitch_point_position, geometry.contact_ratio)
     normal = coefficient * forces / math.cos(geometry.driver.base_helix_angle)
     # Before the pitch point the force is positive, and both distances are straight lines along the path.
     across, by_position = -(normal * signed).sum(axis=(1, 2)), -(normal * moment).sum(axis=(1, 2))

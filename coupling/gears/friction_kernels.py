@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.kernels import PRECISE, locate, nearness, number_at, pair_rise, pairs_compression
+from coupling.gears.kernels import PRECISE, law_value, locate, pair_force_and_tangent, pairs_compression, penetration
 from coupling.gears.law_table import FIRST_PAIR, HUNTING, KIND_STEP, PAIR, PAIRS, PAIRS_AT
 from rotors.compiled import counted, uncounted
 
@@ -46,21 +46,21 @@ def friction_shares(
     number, interval, u, _ = locate(law, at, phase)
     # The pairs' own compression, without that of their gears' bodies.
     own, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)
-    pairs = int(number_at(law, at + PAIRS))
-    hunting, first = int(number_at(law, at + HUNTING)), int(number_at(law, at + FIRST_PAIR))
-    pairs_at = at + int(number_at(law, at + PAIRS_AT))
+    pairs = int(law_value(law, at + PAIRS))
+    hunting, first = int(law_value(law, at + HUNTING)), int(law_value(law, at + FIRST_PAIR))
+    pairs_at = at + int(law_value(law, at + PAIRS_AT))
     # Shares hold three kinds for each: the force, the signed force, and the signed force times its position.
-    next_kind = int(number_at(law, at + KIND_STEP))
+    next_kind = int(law_value(law, at + KIND_STEP))
     elastic, stiff, across, across_slope, moments, moments_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for pair in range(pairs):
         start = pairs_at + PAIR * (pairs * interval + pair)
-        approach, here = nearness(law, at, hunting, int(number) - first - pair, u, own, start)
+        approach, here = penetration(law, at, hunting, int(number) - first - pair, u, own, start)
         if approach <= 0.0:
             continue
-        force, k, _ = pair_rise(law, at, here, u, approach)
+        force, k, _ = pair_force_and_tangent(law, at, here, u, approach)
         if by_slices:
-            signed, signed_slope, _ = pair_rise(law, at, here + next_kind, u, approach)
-            moment, moment_slope, _ = pair_rise(law, at, here + 2 * next_kind, u, approach)
+            signed, signed_slope, _ = pair_force_and_tangent(law, at, here + next_kind, u, approach)
+            moment, moment_slope, _ = pair_force_and_tangent(law, at, here + 2 * next_kind, u, approach)
         else:
             # Beyond the path the corner slides, at the end of the path.
             position = min(max(phase - number + (first + pair), 0.0), path_end)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coupling.gears.face_slices import FaceSlices
-from coupling.gears.pair_curves import pair_kinds
+from coupling.gears.pair_curves import tooth_pair_curves
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.pair_variants import pair_variants
 from coupling.gears.pitch_gaps import back_flank_pitch_gaps, pitch_gaps
@@ -48,7 +48,7 @@ def tooth_contact(
     """
     variants = pair_variants(geometry)
     stiffness = model.pair_stiffness(geometry)
-    kinds = pair_kinds(geometry, stiffness, variants.faults, corner_contact)
+    kinds = tooth_pair_curves(geometry, stiffness, variants.faults, corner_contact)
     none = np.zeros(0)
     deviating = any(geometry.driver.pitch_deviations) or any(geometry.driven.pitch_deviations)
     return ToothContact(

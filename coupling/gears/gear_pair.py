@@ -11,9 +11,9 @@ from coupling.gears.face_slices import FaceSlices, face_slices
 from coupling.gears.faults import MissingTooth
 from coupling.gears.gear_contact import tooth_contact
 from coupling.gears.geometry import Gear
-from coupling.gears.hunting import hunting_mesh
+from coupling.gears.hunting import hunting_period_mesh
 from coupling.gears.pair_geometry import GearPairGeometry
-from coupling.gears.static import StaticMesh, static_transmission_error
+from coupling.gears.static import LoadedMesh, loaded_transmission_error
 from coupling.gears.stiffness_models import (
     ConstantStiffness,
     SquareStiffness,
@@ -64,7 +64,7 @@ class GearPair:
     corner_contact: bool | None = None
 
     @property
-    def meets_with_corners(self) -> bool:
+    def has_corner_contact(self) -> bool:
         """Whether teeth touch beyond their path of contact."""
         if self.corner_contact is not None:
             return self.corner_contact
@@ -119,8 +119,8 @@ class GearPair:
         if any(isinstance(fault, MissingTooth) for gear in gears for fault in gear.faults):
             driver, driven = (replace(gear, faults=_missing(gear)) for gear in gears)
             sparse = replace(geometry, driver=driver, driven=driven)
-            contact = tooth_contact(sparse, SquareStiffness(1e8), corner_contact=self.meets_with_corners)
-            hunting_mesh(contact, 1.0, points=4)
+            contact = tooth_contact(sparse, SquareStiffness(1e8), corner_contact=self.has_corner_contact)
+            hunting_period_mesh(contact, 1.0, points=4)
 
 
 @dataclass(frozen=True)
@@ -148,8 +148,8 @@ class LoadedGearPair:
     geometry: GearPairGeometry
     model: StiffnessModel
     contact: ToothContact
-    static: StaticMesh
-    hunting: StaticMesh | None
+    static: LoadedMesh
+    hunting: LoadedMesh | None
     mesh_frequency: float | None
 
     @property
@@ -200,15 +200,15 @@ def load_gear_pair(
     contact = tooth_contact(
         geometry,
         model,
-        corner_contact=pair.meets_with_corners,
+        corner_contact=pair.has_corner_contact,
         faces=pair.face_slices(geometry, 1 if speed is None or speed >= 0.0 else -1),
     )
-    static = static_transmission_error(contact, force)
+    static = loaded_transmission_error(contact, force)
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
-    mean_stiffness = static.mean_stiffness if force > 0.0 else contact.mean_stiffness
-    damping = _damping_coefficient(pair, geometry, mean_stiffness, inertias)
-    contact = contact.with_damping(damping, _FADING * force / contact.mean_stiffness)
-    hunting = hunting_mesh(contact, force) if contact.hunting_period > 1 else None
+    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.mean_mesh_stiffness
+    damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
+    contact = contact.with_damping(damping, _FADING * force / contact.mean_mesh_stiffness)
+    hunting = hunting_period_mesh(contact, force) if contact.hunting_period > 1 else None
     frequency = None if speed is None else abs(speed) * geometry.driver.teeth / (2.0 * math.pi)
     return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
 
@@ -218,7 +218,7 @@ def _missing(gear: Gear) -> tuple[MissingTooth, ...]:
 
 
 def _damping_coefficient(
-    pair: GearPair, geometry: GearPairGeometry, mean_stiffness: float, inertias: tuple[float, float]
+    pair: GearPair, geometry: GearPairGeometry, mean_mesh_stiffness: float, inertias: tuple[float, float]
 ) -> float:
     """Damping coefficient of the mesh [N s/m]."""
     if pair.damping is not None:
@@ -226,4 +226,4 @@ def _damping_coefficient(
     if pair.damping_ratio == 0.0:
         return 0.0
     mass = equivalent_mass(*inertias, geometry.driver.base_radius, geometry.driven.base_radius)
-    return mesh_damping(pair.damping_ratio, mean_stiffness, mass)
+    return mesh_damping(pair.damping_ratio, mean_mesh_stiffness, mass)

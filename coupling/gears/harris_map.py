@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import GearError
-from coupling.gears.static import StaticMesh, mesh_period_phases, static_transmission_error
+from coupling.gears.static import LoadedMesh, loaded_transmission_error, mesh_period_phases
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -68,11 +68,11 @@ def harris_map(contact: ToothContact, forces: npt.ArrayLike, phases: npt.ArrayLi
         raise GearError("Harris map: at least one load is needed")
     at = mesh_period_phases(contact, 200) if phases is None else np.atleast_1d(np.asarray(phases, dtype=np.float64))
     states = contact.pairs(at)
-    errors = [static_transmission_error(contact, float(load), at, states=states).transmission_error for load in loads]
+    errors = [loaded_transmission_error(contact, float(load), at, states=states).transmission_error for load in loads]
     return HarrisMap(loads, at, np.array(errors))
 
 
-def transmission_error_harmonics(mesh: StaticMesh, count: int = 8) -> FloatArray:
+def transmission_error_harmonics(mesh: LoadedMesh, count: int = 8) -> FloatArray:
     """Amplitudes of the first harmonics of the mesh frequency in the transmission error [m], (count,).
 
     Exact for the polygon through the points of one mesh period: a curve with a step has the harmonics of a step.

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.pair_geometry import IntArray
-from coupling.gears.static import StaticMesh, mesh_period_phases, static_transmission_error
+from coupling.gears.static import LoadedMesh, loaded_transmission_error, mesh_period_phases
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,7 +23,7 @@ _AT_ONCE = 1000
 """Phases solved together: more, with face slices, exceed the processor's cache."""
 
 
-def hunting_mesh(contact: ToothContact, force: float, points: int = 60) -> StaticMesh:
+def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -> LoadedMesh:
     """Equilibrium of the mesh under a load over the hunting period.
 
     Parameters
@@ -37,18 +37,18 @@ def hunting_mesh(contact: ToothContact, force: float, points: int = 60) -> Stati
     Returns
     -------
     StaticMesh
-        Result of `static_transmission_error` at the phases of ``contact.hunting_period`` mesh periods.
+        Result of `loaded_transmission_error` at the phases of ``contact.hunting_period`` mesh periods.
 
     Raises
     ------
     GearError, ContactAccuracyError
-        As `static_transmission_error` does.
+        As `loaded_transmission_error` does.
     """
     period = mesh_period_phases(contact, points)
     first, which = _different_periods(contact)
     at = (first[:, None] + period).ravel()
     parts = [
-        static_transmission_error(contact, force, at[begin : begin + _AT_ONCE]) for begin in range(0, at.size, _AT_ONCE)
+        loaded_transmission_error(contact, force, at[begin : begin + _AT_ONCE]) for begin in range(0, at.size, _AT_ONCE)
     ]
 
     def over_all(rows: list[FloatArray]) -> FloatArray:
@@ -70,7 +70,7 @@ def hunting_mesh(contact: ToothContact, force: float, points: int = 60) -> Stati
 
 def _different_periods(contact: ToothContact) -> tuple[IntArray, IntArray]:
     """First mesh period of every kind, and the kind of each mesh period of the hunting period."""
-    start, end = contact.touching_range
+    start, end = contact.contact_range
     entered = np.arange(contact.hunting_period)[:, None] - np.arange(math.floor(start), math.ceil(end))
     own = [
         values[entered % values.size]

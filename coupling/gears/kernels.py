@@ -7,7 +7,7 @@ contact is laid out by :mod:`coupling.gears.law_table` and comes from `ToothCont
 The overhead of calls costs more time here than the arithmetic. Each argument is copied at every call: hence one array.
 Numba counts references to an array atomically at each call, unless it can prove that it need not: hence entries are
 read one by one, never through views, nothing can raise (division follows numpy), and small functions are inlined. It
-checks every index for being negative, counted from the end: hence `number_at`.
+checks every index for being negative, counted from the end: hence `law_value`.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ PRECISE, _NEAR_ENOUGH = 1e-9, 1e-4
 
 
 @inner(inline="always")
-def number_at(law: FloatArray, index: int) -> float:
+def law_value(law: FloatArray, index: int) -> float:
     """Return the number of the contact law at a non-negative index."""
     value: float = law[np.uint64(index)]
     return value
@@ -68,17 +68,17 @@ def locate(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, f
     if x >= 1.0:  # a phase just below a whole number rounds up
         x -= 1.0
         number += 1.0
-    interval = int(number_at(law, at + HEADER + int(x * number_at(law, at + PARTS))))
-    here = at + int(number_at(law, at + INTERVALS_AT)) + INTERVAL * interval
-    while number_at(law, here + INTERVAL) <= x:
+    interval = int(law_value(law, at + HEADER + int(x * law_value(law, at + PARTS))))
+    here = at + int(law_value(law, at + INTERVALS_AT)) + INTERVAL * interval
+    while law_value(law, here + INTERVAL) <= x:
         here += INTERVAL
         interval += 1
-    per_width = number_at(law, here + 1)
-    return number, interval, (x - number_at(law, here)) * per_width, per_width
+    per_width = law_value(law, here + 1)
+    return number, interval, (x - law_value(law, here)) * per_width, per_width
 
 
 @inner(fastmath={"contract"}, inline="always")
-def nearness(
+def penetration(
     law: FloatArray, at: int, hunting: int, entered: int, u: float, compression: float, here: int
 ) -> tuple[float, int]:
     """Penetration of a pair's flanks [m], negative where they are apart, and the index of its numbers.
@@ -86,11 +86,11 @@ def nearness(
     ``here``: index of the same pair's numbers if it is of the first kind; ``entered``: phase at which it entered.
     """
     if hunting > 0:
-        entry = at + int(number_at(law, at + ENTERING_AT)) + ENTERING * (entered % hunting)
-        compression -= number_at(law, entry)
-        here += int(number_at(law, entry + 1)) * int(number_at(law, at + KIND_STEP))
-    g0, g1 = number_at(law, here), number_at(law, here + 1)
-    return compression - g0 - u * (g1 + u * (number_at(law, here + 2) + u * number_at(law, here + 3))), here
+        entry = at + int(law_value(law, at + ENTERING_AT)) + ENTERING * (entered % hunting)
+        compression -= law_value(law, entry)
+        here += int(law_value(law, entry + 1)) * int(law_value(law, at + KIND_STEP))
+    g0, g1 = law_value(law, here), law_value(law, here + 1)
+    return compression - g0 - u * (g1 + u * (law_value(law, here + 2) + u * law_value(law, here + 3))), here
 
 
 @inner(fastmath={"contract"}, inline="always")
@@ -103,26 +103,26 @@ def face_force(
     beyond first touch, ``per_unit`` is 1 / ``unit``.
     """
     # The force's cubic in rho at this p, and how it changes with p: Horner's scheme for both at once.
-    top = number_at(law, cell + 12)
-    low = number_at(law, cell + 8) + p * top
-    mid = number_at(law, cell + 4) + p * low
-    v0, d0 = number_at(law, cell) + p * mid, mid + p * (low + p * top)
-    top = number_at(law, cell + 13)
-    low = number_at(law, cell + 9) + p * top
-    mid = number_at(law, cell + 5) + p * low
-    v1, d1 = number_at(law, cell + 1) + p * mid, mid + p * (low + p * top)
-    top = number_at(law, cell + 14)
-    low = number_at(law, cell + 10) + p * top
-    mid = number_at(law, cell + 6) + p * low
-    v2, d2 = number_at(law, cell + 2) + p * mid, mid + p * (low + p * top)
-    top = number_at(law, cell + 15)
-    low = number_at(law, cell + 11) + p * top
-    mid = number_at(law, cell + 7) + p * low
-    v3, d3 = number_at(law, cell + 3) + p * mid, mid + p * (low + p * top)
-    top = number_at(law, cell + 19)
-    low = number_at(law, cell + 18) + p * top
-    mid = number_at(law, cell + 17) + p * low
-    v4, d4 = number_at(law, cell + 16) + p * mid, mid + p * (low + p * top)
+    top = law_value(law, cell + 12)
+    low = law_value(law, cell + 8) + p * top
+    mid = law_value(law, cell + 4) + p * low
+    v0, d0 = law_value(law, cell) + p * mid, mid + p * (low + p * top)
+    top = law_value(law, cell + 13)
+    low = law_value(law, cell + 9) + p * top
+    mid = law_value(law, cell + 5) + p * low
+    v1, d1 = law_value(law, cell + 1) + p * mid, mid + p * (low + p * top)
+    top = law_value(law, cell + 14)
+    low = law_value(law, cell + 10) + p * top
+    mid = law_value(law, cell + 6) + p * low
+    v2, d2 = law_value(law, cell + 2) + p * mid, mid + p * (low + p * top)
+    top = law_value(law, cell + 15)
+    low = law_value(law, cell + 11) + p * top
+    mid = law_value(law, cell + 7) + p * low
+    v3, d3 = law_value(law, cell + 3) + p * mid, mid + p * (low + p * top)
+    top = law_value(law, cell + 19)
+    low = law_value(law, cell + 18) + p * top
+    mid = law_value(law, cell + 17) + p * low
+    v4, d4 = law_value(law, cell + 16) + p * mid, mid + p * (low + p * top)
     # Integrals of the powers of rho times 2 a r.
     power = 2.0 * unit * rho
     w0 = power * (begin + 0.5 * rho)
@@ -139,21 +139,21 @@ def face_force(
 
 
 @inner(fastmath={"contract"}, inline="always")
-def face_rise(
+def face_force_and_tangent(
     law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float]:
     """Force and tangent, as of `face_force`, and the tangent's slope by the compression."""
-    v0 = number_at(law, cell) + p * (
-        number_at(law, cell + 4) + p * (number_at(law, cell + 8) + p * number_at(law, cell + 12))
+    v0 = law_value(law, cell) + p * (
+        law_value(law, cell + 4) + p * (law_value(law, cell + 8) + p * law_value(law, cell + 12))
     )
-    v1 = number_at(law, cell + 1) + p * (
-        number_at(law, cell + 5) + p * (number_at(law, cell + 9) + p * number_at(law, cell + 13))
+    v1 = law_value(law, cell + 1) + p * (
+        law_value(law, cell + 5) + p * (law_value(law, cell + 9) + p * law_value(law, cell + 13))
     )
-    v2 = number_at(law, cell + 2) + p * (
-        number_at(law, cell + 6) + p * (number_at(law, cell + 10) + p * number_at(law, cell + 14))
+    v2 = law_value(law, cell + 2) + p * (
+        law_value(law, cell + 6) + p * (law_value(law, cell + 10) + p * law_value(law, cell + 14))
     )
-    v3 = number_at(law, cell + 3) + p * (
-        number_at(law, cell + 7) + p * (number_at(law, cell + 11) + p * number_at(law, cell + 15))
+    v3 = law_value(law, cell + 3) + p * (
+        law_value(law, cell + 7) + p * (law_value(law, cell + 11) + p * law_value(law, cell + 15))
     )
     force = v0 + rho * (v1 + rho * (v2 + rho * v3))
     by_r, per_r = v1 + rho * (2.0 * v2 + 3.0 * rho * v3), 0.5 * per_unit / (begin + rho)
@@ -162,22 +162,24 @@ def face_rise(
 
 
 @inner(fastmath={"contract"}, inline="always")
-def pair_rise(law: FloatArray, at: int, here: int, u: float, approach: float) -> tuple[float, float, float]:
+def pair_force_and_tangent(
+    law: FloatArray, at: int, here: int, u: float, approach: float
+) -> tuple[float, float, float]:
     """Force, tangent and the tangent's derivative of a pair with a penetration ``approach`` > 0.
 
     ``here``: index of its numbers.
     """
-    unit = number_at(law, at + DEPTH_UNIT)
+    unit = law_value(law, at + DEPTH_UNIT)
     if unit > 0.0:
         per_unit = 1.0 / unit
         r = math.sqrt(approach * per_unit)
-        depth = min(int(r), int(number_at(law, at + DEPTHS)) - 1)
-        cell = at + int(number_at(law, at + CELLS_AT)) + depth * int(number_at(law, at + DEPTH_STEP))
-        cell += CELL * int(number_at(law, here + 4))
-        p = number_at(law, here + 5) + u * number_at(law, here + 6)
-        return face_rise(law, cell, per_unit, p, float(depth), r - depth)
-    c1, c2, c3 = number_at(law, here + 5), number_at(law, here + 6), number_at(law, here + 7)
-    k = number_at(law, here + 4) + u * (c1 + u * (c2 + u * c3))
+        depth = min(int(r), int(law_value(law, at + DEPTHS)) - 1)
+        cell = at + int(law_value(law, at + CELLS_AT)) + depth * int(law_value(law, at + DEPTH_STEP))
+        cell += CELL * int(law_value(law, here + 4))
+        p = law_value(law, here + 5) + u * law_value(law, here + 6)
+        return face_force_and_tangent(law, cell, per_unit, p, float(depth), r - depth)
+    c1, c2, c3 = law_value(law, here + 5), law_value(law, here + 6), law_value(law, here + 7)
+    k = law_value(law, here + 4) + u * (c1 + u * (c2 + u * c3))
     return k * approach, k, 0.0
 
 
@@ -193,30 +195,30 @@ def pairs_compression(
 
     ``number``, ``interval``, ``u``: from `locate`.
     """
-    shared = number_at(law, at + SHARED)
+    shared = law_value(law, at + SHARED)
     if shared == 0.0:
         return compression, 1.0
-    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
-    first = int(number) - int(number_at(law, at + FIRST_PAIR))
-    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
-    low = min(number_at(law, at + FIRST_TOUCH), compression)
+    pairs, hunting = int(law_value(law, at + PAIRS)), int(law_value(law, at + HUNTING))
+    first = int(number) - int(law_value(law, at + FIRST_PAIR))
+    start = at + int(law_value(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    low = min(law_value(law, at + FIRST_TOUCH), compression)
     high, x, gain = compression, compression, 1.0
     small = precision * (compression - low)
-    unit = number_at(law, at + DEPTH_UNIT)
+    unit = law_value(law, at + DEPTH_UNIT)
     if unit > 0.0:
         r = math.sqrt((compression - low) / unit)
-        depth = min(int(r), int(number_at(law, at + DEPTHS)) - 1)
-        guess = at + int(number_at(law, at + GUESS_AT)) + depth
-        left = number_at(law, guess)
-        left += min(r - depth, 1.0) * (number_at(law, guess + 1) - left)
+        depth = min(int(r), int(law_value(law, at + DEPTHS)) - 1)
+        guess = at + int(law_value(law, at + GUESS_AT)) + depth
+        left = law_value(law, guess)
+        left += min(r - depth, 1.0) * (law_value(law, guess + 1) - left)
         x = low + left * (compression - low)
     for _ in range(_NEWTON_STEPS):
         force, tangent, curvature, nearest = 0.0, 0.0, 0.0, math.inf
         for pair in range(pairs):
-            approach, here = nearness(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            approach, here = penetration(law, at, hunting, first - pair, u, x, start + PAIR * pair)
             nearest = min(nearest, abs(approach))
             if approach > 0.0:
-                pair_force, pair_tangent, pair_curvature = pair_rise(law, at, here, u, approach)
+                pair_force, pair_tangent, pair_curvature = pair_force_and_tangent(law, at, here, u, approach)
                 force += pair_force
                 tangent += pair_tangent
                 curvature += pair_curvature
@@ -239,7 +241,7 @@ def pairs_compression(
 
 
 @uncounted(fastmath={"contract"})
-def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
+def ranked_penetration(phase: float, compression: float, law: FloatArray, at: int, rank: int) -> float:
     """Penetration of the ``rank``-th most compressed tooth pair, by the mesh's compression [m]; -inf without one.
 
     At least ``rank`` pairs touch where it is positive, as `tooth_force` counts them, with the same arguments. Unlike
@@ -247,19 +249,19 @@ def ranked_nearness(phase: float, compression: float, law: FloatArray, at: int, 
     and their gears' bodies deflect by ``c F``.
     """
     number, interval, u, _ = locate(law, at, phase)
-    pairs, hunting = int(number_at(law, at + PAIRS)), int(number_at(law, at + HUNTING))
-    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
-    first = int(number) - int(number_at(law, at + FIRST_PAIR))
-    shared = number_at(law, at + SHARED)
+    pairs, hunting = int(law_value(law, at + PAIRS)), int(law_value(law, at + HUNTING))
+    start = at + int(law_value(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    first = int(number) - int(law_value(law, at + FIRST_PAIR))
+    shared = law_value(law, at + SHARED)
     for pair in range(pairs):
-        own, _ = nearness(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
+        own, _ = penetration(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
         before, force = 0, 0.0
         for rival in range(pairs):
-            other, here = nearness(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
+            other, here = penetration(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
             if other > own or (other == own and rival < pair):
                 before += 1
                 if shared > 0.0 and -math.inf < own < other:
-                    force += pair_rise(law, at, here, u, other - own)[0]
+                    force += pair_force_and_tangent(law, at, here, u, other - own)[0]
         if before == rank - 1:
             return own - shared * force
     return -math.inf
@@ -294,45 +296,45 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     touching : int
         Number of pairs that touch.
     """
-    if compression <= number_at(law, at + FIRST_TOUCH):
+    if compression <= law_value(law, at + FIRST_TOUCH):
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
     number, interval, u, per_width = locate(law, at, phase)
-    pairs = int(number_at(law, at + PAIRS))
-    hunting = int(number_at(law, at + HUNTING))
-    unit = number_at(law, at + DEPTH_UNIT)
+    pairs = int(law_value(law, at + PAIRS))
+    hunting = int(law_value(law, at + HUNTING))
+    unit = law_value(law, at + DEPTH_UNIT)
     uneven = unit > 0.0
     per_unit, cells, deepest_cell, depth_step = 0.0, 0, 0, 0
     if uneven:
         per_unit = 1.0 / unit
-        cells = at + int(number_at(law, at + CELLS_AT))
-        deepest_cell, depth_step = int(number_at(law, at + DEPTHS)) - 1, int(number_at(law, at + DEPTH_STEP))
-    start = at + int(number_at(law, at + PAIRS_AT)) + PAIR * pairs * interval
-    shared = number_at(law, at + SHARED)
+        cells = at + int(law_value(law, at + CELLS_AT))
+        deepest_cell, depth_step = int(law_value(law, at + DEPTHS)) - 1, int(law_value(law, at + DEPTH_STEP))
+    start = at + int(law_value(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    shared = law_value(law, at + SHARED)
     force, tangent, energy, slope = 0.0, 0.0, 0.0, 0.0
     touching, deepest, x = 0, 0.0, compression
     if uneven:
         x, _ = pairs_compression(law, at, number, interval, u, compression, _NEAR_ENOUGH)
-    first = int(number) - int(number_at(law, at + FIRST_PAIR))
+    first = int(number) - int(law_value(law, at + FIRST_PAIR))
     doubt = _DOUBT * abs(compression) if shared > 0.0 else 0.0
     # Pairs in contact at the mesh's whole compression lose contact as the bodies take their share, one round each.
     for _ in range(pairs + 1):
         force, tangent, energy, slope, slope_by_x, curve = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         touching, deepest, nearest = 0, 0.0, math.inf
         for pair in range(pairs):
-            approach, here = nearness(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            approach, here = penetration(law, at, hunting, first - pair, u, x, start + PAIR * pair)
             if approach <= 0.0:
                 continue
-            g2, g3 = number_at(law, here + 2), number_at(law, here + 3)
-            gap_slope = number_at(law, here + 1) + u * (2.0 * g2 + 3.0 * u * g3)
+            g2, g3 = law_value(law, here + 2), law_value(law, here + 3)
+            gap_slope = law_value(law, here + 1) + u * (2.0 * g2 + 3.0 * u * g3)
             touching += 1
             deepest = max(deepest, approach)
             nearest = min(nearest, approach)
             if uneven:
                 r = math.sqrt(approach * per_unit)
                 depth = min(int(r), deepest_cell)
-                cell = cells + depth * depth_step + CELL * int(number_at(law, here + 4))
-                length = number_at(law, here + 6)
-                p = number_at(law, here + 5) + u * length
+                cell = cells + depth * depth_step + CELL * int(law_value(law, here + 4))
+                length = law_value(law, here + 6)
+                p = law_value(law, here + 5) + u * length
                 begin = float(depth)
                 pair_force, pair_tangent, pair_energy, pair_slope = face_force(
                     law, cell, unit, per_unit, p, begin, r - begin
@@ -342,8 +344,8 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
                 energy += pair_energy
                 slope += pair_slope * length - pair_force * gap_slope
             else:
-                c1, c2, c3 = number_at(law, here + 5), number_at(law, here + 6), number_at(law, here + 7)
-                k = number_at(law, here + 4) + u * (c1 + u * (c2 + u * c3))
+                c1, c2, c3 = law_value(law, here + 5), law_value(law, here + 6), law_value(law, here + 7)
+                k = law_value(law, here + 4) + u * (c1 + u * (c2 + u * c3))
                 k_slope = c1 + u * (2.0 * c2 + 3.0 * u * c3)
                 force += k * approach
                 tangent += k
@@ -357,7 +359,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         touches = uneven or excess < nearest
         if abs(excess - nearest) <= doubt and not uneven:
             # Within rounding of its first touch a pair counts if the search for that event counts it.
-            touches = ranked_nearness(phase, compression, law, at, touching) > 0.0
+            touches = ranked_penetration(phase, compression, law, at, touching) > 0.0
         if touches:
             energy += excess * (0.5 * excess * tangent - force)
             slope += excess * (excess * curve - slope_by_x)
@@ -371,7 +373,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     gain = 1.0 / (1.0 + shared * tangent)
     tangent *= gain
     slope *= per_width
-    damping, damping_depth = number_at(law, at + DAMPING), number_at(law, at + DAMPING_DEPTH)
+    damping, damping_depth = law_value(law, at + DAMPING), law_value(law, at + DAMPING_DEPTH)
     if deepest < damping_depth:
         tangent += damping * rate / damping_depth * gain
         damping *= deepest / damping_depth

@@ -28,8 +28,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.face_table import CELL, FaceTable
-from coupling.gears.pair_curves import PairCurves
+from coupling.gears.face_table import CELL, FaceForceTable
+from coupling.gears.pair_curves import ToothPairCurves
 from coupling.gears.piecewise import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,7 +56,7 @@ _SAME_KNOT = 1e-9
 
 
 def law_table(
-    curves: Sequence[PairCurves] | FaceTable,
+    curves: Sequence[ToothPairCurves] | FaceForceTable,
     entering: FloatArray,
     damping: float,
     damping_depth: float,
@@ -75,7 +75,7 @@ def law_table(
     shared_compliance : float
         [m/N]
     """
-    if isinstance(curves, FaceTable):
+    if isinstance(curves, FaceForceTable):
         gaps = [PiecewiseCubic(curves.knots, touch) for touch in curves.first_touch]
         knots = _period_knots([curves.knots])
         second, cells = _cell_places(curves, knots), curves.cells
@@ -93,7 +93,7 @@ def law_table(
     # No cubic c0 + c1 u + ... falls below c0 and its negative coefficients together on 0 <= u <= 1.
     lowest = first[..., 0] + np.minimum(first[..., 1:], 0.0).sum(axis=-1)
     first_touch = lowest.min() + entering[:, 0].min(initial=0.0)
-    guesses = _guesses(curves, first_touch, shared_compliance) if isinstance(curves, FaceTable) else np.zeros(0)
+    guesses = _guesses(curves, first_touch, shared_compliance) if isinstance(curves, FaceForceTable) else np.zeros(0)
     sections = [array.ravel() for array in (begins, intervals, pairs, entering, cells, guesses)]
     at = HEADER + np.cumsum([0, *(section.size for section in sections)])
     header = np.zeros(HEADER)
@@ -103,12 +103,12 @@ def law_table(
     header[[DAMPING, DAMPING_DEPTH, HUNTING]] = damping, damping_depth, len(entering)
     header[SHARED] = shared_compliance
     header[[INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT, GUESS_AT]] = at[1:6]
-    if isinstance(curves, FaceTable):
+    if isinstance(curves, FaceForceTable):
         header[[DEPTH_UNIT, DEPTHS, DEPTH_STEP]] = curves.depth_unit, cells.shape[0], cells[0].size
     return np.concatenate([header, *sections])
 
 
-def _guesses(table: FaceTable, first_touch: float, shared: float) -> FloatArray:
+def _guesses(table: FaceForceTable, first_touch: float, shared: float) -> FloatArray:
     """Fraction of the mesh's compression in the pairs, without the shared bodies, mean over the period, by depth."""
     depths = np.arange(table.cells.shape[0], dtype=np.float64)
     compression = table.depth_unit * depths**2
@@ -151,7 +151,7 @@ def _by_pair(curve: PiecewiseCubic, knots: FloatArray, absent: float) -> FloatAr
     return cubics
 
 
-def _cell_places(table: FaceTable, knots: FloatArray) -> FloatArray:
+def _cell_places(table: FaceForceTable, knots: FloatArray) -> FloatArray:
     """Row of cells, begin and length in them, (v, m, j, 4), of all kinds of pairs."""
     low, high = _places(knots, table.knots)
     row = np.clip(np.searchsorted(table.knots, 0.5 * (low + high), side="right") - 1, 0, table.knots.size - 2)

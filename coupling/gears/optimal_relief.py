@@ -18,7 +18,7 @@ from coupling.gears.harris_map import transmission_error_harmonics
 from coupling.gears.modifications import ReliefShape, TipRelief
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.piecewise import PiecewiseCubic
-from coupling.gears.static import StaticMesh, mesh_period_phases, static_transmission_error
+from coupling.gears.static import LoadedMesh, loaded_transmission_error, mesh_period_phases
 from coupling.gears.stiffness_models import StiffnessModel, shared_compliance
 from coupling.gears.tooth_contact import ToothContact
 
@@ -37,7 +37,7 @@ _DEEPEST = 3.0
 class ReliefAim(Protocol):
     """Objective of a relief: a value of the loaded transmission error over one mesh period."""
 
-    def of(self, mesh: StaticMesh) -> float:
+    def of(self, mesh: LoadedMesh) -> float:
         """Value of the objective for a loaded mesh, at least 0."""
 
 
@@ -45,7 +45,7 @@ class ReliefAim(Protocol):
 class PeakToPeak:
     """Aim at the peak-to-peak transmission error [m]."""
 
-    def of(self, mesh: StaticMesh) -> float:
+    def of(self, mesh: LoadedMesh) -> float:
         """Peak-to-peak transmission error [m]."""
         return mesh.peak_to_peak_transmission_error
 
@@ -79,7 +79,7 @@ class WeightedHarmonics:
         if not any(self.weights.values()):
             raise GearError("relief aim: at least one multiple of the mesh frequency must have a weight above 0")
 
-    def of(self, mesh: StaticMesh) -> float:
+    def of(self, mesh: LoadedMesh) -> float:
         """Weighted root of the sum of squares, in metres times the weights' unit."""
         amplitudes = transmission_error_harmonics(mesh, max(self.weights))
         return math.sqrt(sum((weight * amplitudes[n - 1]) ** 2 for n, weight in self.weights.items()))
@@ -188,11 +188,11 @@ def optimal_tip_relief(
         )
         return pair, tooth_contact(pair, stiffness, corner_contact=corner_contact, faces=slices)
 
-    def meshes(contact: ToothContact) -> list[StaticMesh]:
+    def meshes(contact: ToothContact) -> list[LoadedMesh]:
         # Both sides of each step and every corner of this contact are among the phases.
         at = mesh_period_phases(contact, _POINTS)
         states = contact.pairs(at)
-        return [static_transmission_error(contact, force, at, states=states) for force in forces]
+        return [loaded_transmission_error(contact, force, at, states=states) for force in forces]
 
     def worst(amount: float, length: float) -> float:
         inside = 0.0 <= amount <= deepest and shortest <= length <= longest
@@ -204,7 +204,7 @@ def optimal_tip_relief(
     coarse = faces if searched_faces is None else searched_faces
     bare, plain = contact_of(None)
     # Counted from first touch, which crowning or a deviation shifts from nominal motion.
-    loaded, unloaded = (static_transmission_error(plain, force) for force in (max(forces), 0.0))
+    loaded, unloaded = (loaded_transmission_error(plain, force) for force in (max(forces), 0.0))
     deflection = loaded.mean_transmission_error - unloaded.mean_transmission_error
     longest = _LONGEST * 0.5 * geometry.path_length
     shortest, deepest = 0.05 * longest, _DEEPEST * deflection

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import piecewise
-from coupling.gears.corner_contact import LARGEST_GAP, LONGEST_REACH, corner_reach, flank_places
+from coupling.gears.corner_contact import LARGEST_GAP, LONGEST_REACH, corner_contact_range, flank_contact_points
 from coupling.gears.deviation import SAME_CORNER, pair_deviation
 from coupling.gears.errors import GearError
 from coupling.gears.faults import MissingTooth
@@ -26,7 +26,7 @@ _STIFFNESS_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class PairCurves:
+class ToothPairCurves:
     """Stiffness and profile deviation of a pair of teeth along the path of contact.
 
     Attributes
@@ -39,9 +39,9 @@ class PairCurves:
     deviation: PiecewiseCubic
 
 
-def pair_kinds(
+def tooth_pair_curves(
     geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Sequence[PairFaults], corner_contact: bool
-) -> tuple[PairCurves, ...]:
+) -> tuple[ToothPairCurves, ...]:
     """Curves of every kind of pair.
 
     Parameters
@@ -81,11 +81,11 @@ def pair_kinds(
     start, end = 0.0, length
     if corner_contact:
         # The neighbours of a missing tooth stay in contact for as long as they reach.
-        before, beyond = corner_reach(geometry, math.inf if broken else LARGEST_GAP)
+        before, beyond = corner_contact_range(geometry, math.inf if broken else LARGEST_GAP)
         start, end = -before, length + beyond
         stiffness = stiffness.on_knots(np.concatenate([[start], stiffness.knots, [end]]))
     return tuple(
-        PairCurves(
+        ToothPairCurves(
             _weakened(geometry, stiffness, own),
             piecewise.constant(0.0, length)
             if whole_mesh
@@ -95,7 +95,7 @@ def pair_kinds(
     )
 
 
-def behind_shared(curves: PairCurves, shared: float) -> PairCurves:
+def without_shared_compliance(curves: ToothPairCurves, shared: float) -> ToothPairCurves:
     """Remove from a pair's compliance the part C shared with other pairs, `shared` [m/N]: ``1/k' = 1/k - C``."""
     if shared == 0.0:
         return curves
@@ -109,7 +109,7 @@ def behind_shared(curves: PairCurves, shared: float) -> PairCurves:
     return replace(curves, stiffness=piecewise.fitted(without, alone.knots, _STIFFNESS_TOLERANCE * largest))
 
 
-def corners_of(curve: PiecewiseCubic) -> FloatArray:
+def slope_jumps(curve: PiecewiseCubic) -> FloatArray:
     """Inner knots where the slope of a curve jumps by more than the error of the fit."""
     widths = np.diff(curve.knots)
     after = curve.coefficients[1:, 1] / widths[1:]
@@ -132,7 +132,7 @@ def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Pai
     pitch_roll = math.tan(geometry.working_pressure_angle)
 
     def weakened(position: FloatArray) -> FloatArray:
-        places = flank_places(geometry, np.clip(position, 0.0, geometry.contact_ratio))
+        places = flank_contact_points(geometry, np.clip(position, 0.0, geometry.contact_ratio))
         compliance = 1.0 / stiffness(position)
         for (gear, _, own), roll in zip(sides, (places.driver_roll_angle, places.driven_roll_angle), strict=True):
             for fault in own:

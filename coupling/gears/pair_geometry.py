@@ -22,7 +22,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.centre_distance import closing_pressure_angle
+from coupling.gears.centre_distance import backlash_free_pressure_angle
 from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError
 from coupling.gears.geometry import Gear
 from coupling.gears.involute import involute
@@ -92,12 +92,12 @@ class GearPairGeometry:
         return min(self.driver.face_width, self.driven.face_width)
 
     @cached_property
-    def close_pressure_angle(self) -> float:
+    def backlash_free_pressure_angle(self) -> float:
         """Transverse pressure angle [rad] of the mesh without backlash, thinning included.
 
         ``inv(w) = inv(alpha_t) + 2 tan(alpha_n) (x_k + x_i) / (z_k + z_i)``, x the generating shifts.
         """
-        return closing_pressure_angle(self.driver, self.driven, thinned=True)
+        return backlash_free_pressure_angle(self.driver, self.driven, thinned=True)
 
     @cached_property
     def working_centre_distance(self) -> float:
@@ -110,7 +110,7 @@ class GearPairGeometry:
     def working_pressure_angle(self) -> float:
         """Transverse working pressure angle, of the line of action to the common tangent of the pitch circles [rad]."""
         if self.centre_distance is None:
-            return closing_pressure_angle(self.driver, self.driven)
+            return backlash_free_pressure_angle(self.driver, self.driven)
         return math.acos(self.base_radii_sum / self.centre_distance)
 
     @property
@@ -131,7 +131,11 @@ class GearPairGeometry:
         From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
         teeth would jam.
         """
-        return 2.0 * self.base_radii_sum * (involute(self.working_pressure_angle) - involute(self.close_pressure_angle))
+        return (
+            2.0
+            * self.base_radii_sum
+            * (involute(self.working_pressure_angle) - involute(self.backlash_free_pressure_angle))
+        )
 
     @property
     def designed_backlash(self) -> float | None:
@@ -194,12 +198,12 @@ class GearPairGeometry:
         """
         return self._back_flank_shift % 1.0
 
-    def meeting_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
+    def mating_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
         """Mating teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
         n = np.asarray(number, dtype=np.int64)
         return n % self.driver.teeth, n % self.driven.teeth
 
-    def meeting_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
+    def mating_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
         """Mating teeth of the idle flanks in the pairs that enter at whole phases `number` of the idle flanks.
 
         With B the offset before its whole periods are dropped, the idle flank of driver tooth n is at
@@ -329,7 +333,7 @@ def _check_distance(pair: GearPairGeometry) -> None:
             f"{pair.base_radii_sum * 1e3:.6g} mm, got {distance * 1e3:.6g} mm"
         )
     if pair.normal_backlash < -_ALLOWED_JAM * pair.driver.module:
-        close = pair.base_radii_sum / math.cos(pair.close_pressure_angle)
+        close = pair.base_radii_sum / math.cos(pair.backlash_free_pressure_angle)
         raise InterferenceError(
             f"{pair.label}: the teeth jam at a centre distance of {distance * 1e3:.6g} mm; "
             f"they mesh without backlash at {close * 1e3:.6g} mm"

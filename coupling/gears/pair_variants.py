@@ -50,8 +50,8 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
         return found
 
     numbers = hunting_numbers(geometry)
-    of_pair = kinds_of(*geometry.meeting_teeth(numbers))
-    of_back_pair = kinds_of(*geometry.meeting_back_teeth(numbers))
+    of_pair = kinds_of(*geometry.mating_teeth(numbers))
+    of_back_pair = kinds_of(*geometry.mating_back_teeth(numbers))
     return PairVariants(tuple(faults), of_pair, of_back_pair)
 
 

@@ -7,7 +7,7 @@ tooth m and the driven gear's tooth n the pair's gap is
     d(s) + f_pair,    f_pair = -(f_k[m] + f_i[n]) cos(w),
 
 constant while the pair is in contact.  The idle flanks of the same teeth are behind where the working ones are
-ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.meeting_back_teeth`).
+ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.mating_back_teeth`).
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
         f_pair of the pair that enters at phase n, at n mod h [m].  h is the least common multiple of the numbers
         of teeth; of one gear's alone where the other's teeth are all alike; 0 where the teeth of both are alike.
     """
-    return -_lead(geometry, *geometry.meeting_teeth(hunting_numbers(geometry)))
+    return -_lead(geometry, *geometry.mating_teeth(hunting_numbers(geometry)))
 
 
 def back_flank_pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
     """Return the gap of each pair of idle flanks [m], by its phase of entering, ``back_flank_offset - p``."""
-    return _lead(geometry, *geometry.meeting_back_teeth(hunting_numbers(geometry)))
+    return _lead(geometry, *geometry.mating_back_teeth(hunting_numbers(geometry)))
 
 
 def hunting_numbers(geometry: GearPairGeometry) -> IntArray:

@@ -29,7 +29,7 @@ import numpy.typing as npt
 
 from coupling.gears.errors import GearError
 from coupling.gears.pair_geometry import GearPairGeometry
-from coupling.gears.static import StaticMesh
+from coupling.gears.static import LoadedMesh
 from coupling.gears.tooth_contact import ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -88,7 +88,7 @@ def contact_pressure(pair: GearPairGeometry, position: npt.ArrayLike, line_load:
     return np.where(load > 0.0, pressure, 0.0)
 
 
-def mesh_pressure(pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> FloatArray:
+def mesh_pressure(pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> FloatArray:
     """Largest pressure across the contact line of every pair of a loaded mesh [Pa].
 
     Parameters

@@ -42,7 +42,7 @@ CrossCompliance = Callable[[FloatArray, FloatArray], FloatArray]
 """From radii of the loaded points of two teeth [m] to the motion of one by a unit load on the other [m/N]."""
 
 
-def solved_ring(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
+def ring_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
     """Compliance of a body of the teeth's full width, solved once for loads at any radius.
 
     Parameters
@@ -53,8 +53,8 @@ def solved_ring(gear: Gear, state: PlaneState = "plane-stress") -> BodyComplianc
     return _solved(gear, (Annulus(_hold(gear), 1.0, gear.face_width),), state, twists=held_radius(gear) is not None)
 
 
-def solved_rim(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
-    """Additional compliance of a rim on a thinner web over `solved_ring`, solved once for loads at any radius.
+def rim_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
+    """Additional compliance of a rim on a thinner web over `ring_compliance`, solved once for loads at any radius.
 
     Zero for a gear without a rim or with a rim alone.
 

@@ -29,7 +29,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import GearError, require_finite
-from coupling.gears.face_table import Weight, face_table
+from coupling.gears.face_table import Weight, face_force_table
 from coupling.gears.law_table import law_table
 from coupling.gears.pair_geometry import GearPairGeometry
 from coupling.gears.tooth_contact import ToothContact
@@ -97,7 +97,7 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
     return replace(friction, shares=_shares(contact, friction)) if _reverses_by_slices(contact) else friction
 
 
-def turned_share(
+def sliding_direction_means(
     place: npt.ArrayLike, half: float, pitch_point: float, path_end: float
 ) -> tuple[FloatArray, FloatArray]:
     """Means of sgn(x - s_C) and of x sgn(x - s_C) over the part of ``place - half <= x <= place + half`` on the path.
@@ -132,9 +132,11 @@ def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
     assert faces is not None
 
     def share(which: int) -> Weight:
-        return lambda place: turned_share(place, faces.half_span, friction.pitch_point, friction.path_end)[which]
+        return lambda place: sliding_direction_means(place, faces.half_span, friction.pitch_point, friction.path_end)[
+            which
+        ]
 
     weights = (np.ones_like, share(0), share(1))
-    table = face_table(faces, contact.kinds, contact.module, weights, breaks=(friction.pitch_point,))
+    table = face_force_table(faces, contact.kinds, contact.module, weights, breaks=(friction.pitch_point,))
     entering = contact.entering * [1.0, len(weights)]
     return law_table(table, entering, 0.0, 0.0, contact.shared_compliance)

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import ContactAccuracyError, GearError
-from coupling.gears.face_slices import FaceSlices, balance_faces, load_faces
-from coupling.gears.faults import NEVER
+from coupling.gears.face_slices import FaceSlices, face_equilibrium, face_loads
+from coupling.gears.faults import NO_CONTACT_GAP
 from coupling.gears.tooth_contact import PairStates, ToothContact
 
 FloatArray = npt.NDArray[np.float64]
@@ -29,7 +29,7 @@ _EVENT_DISTANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class StaticMesh:
+class LoadedMesh:
     """A loaded mesh at n phases, up to m pairs.
 
     Attributes
@@ -77,7 +77,7 @@ class StaticMesh:
         return float(np.ptp(self.transmission_error))
 
     @property
-    def mean_stiffness(self) -> float:
+    def mean_mesh_stiffness(self) -> float:
         """Mean mesh stiffness under the load: mean tangent stiffness over the whole periods of `phases` [N/m]."""
         return period_mean(self.phases, self.tangent_stiffness)
 
@@ -105,9 +105,9 @@ def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 
     return np.asarray((np.arange(periods)[:, None] + period).ravel(), dtype=np.float64)
 
 
-def static_transmission_error(
+def loaded_transmission_error(
     contact: ToothContact, force: float, phases: npt.ArrayLike | None = None, *, states: PairStates | None = None
-) -> StaticMesh:
+) -> LoadedMesh:
     """Equilibrium of the mesh under a load, phase by phase.
 
     Parameters
@@ -168,12 +168,12 @@ def static_transmission_error(
     tangent = tangent / (1.0 + contact.shared_compliance * tangent)
     beyond = compression - first[:, 0]
     secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
-    return StaticMesh(force, at, compression, states.position, forces, tangent, secant)
+    return LoadedMesh(force, at, compression, states.position, forces, tangent, secant)
 
 
 def _require_teeth(states: PairStates, at: FloatArray) -> None:
     """Raise `GearError` at a phase where every pair that could touch lacks a tooth."""
-    apart = states.deviation.min(axis=1) > 0.5 * NEVER
+    apart = states.deviation.min(axis=1) > 0.5 * NO_CONTACT_GAP
     if np.any(apart):
         raise GearError(
             f"static mesh: no teeth meet at phase {at[apart][0]:.4g}, counted in mesh periods; so many neighbours are "
@@ -181,18 +181,18 @@ def _require_teeth(states: PairStates, at: FloatArray) -> None:
         )
 
 
-def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArray, states: PairStates) -> StaticMesh:
+def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArray, states: PairStates) -> LoadedMesh:
     """Solve the static mesh with an uneven load across the face."""
     assert states.faces is not None
     rows, columns = np.nonzero(states.present)
     base, meeting = states.faces.base, states.faces.meeting
     gap = states.faces.gap + states.pitch_gap[rows, columns][:, None]
     if force > 0.0:
-        compression, loads = balance_faces(faces, base, gap, meeting, rows, np.full(at.size, force))
+        compression, loads = face_equilibrium(faces, base, gap, meeting, rows, np.full(at.size, force))
     else:
         # Without load the first slice just touches; the stiffness is that at a small compression.
         compression = states.deviation.min(axis=1)
-        loads = load_faces(faces, base, gap, meeting, compression[rows] + _HAIR)
+        loads = face_loads(faces, base, gap, meeting, compression[rows] + _HAIR)
         loads = replace(loads, force=0.0 * loads.force, line_load=0.0 * loads.line_load)
     forces, tangents = np.zeros(states.position.shape), np.zeros(states.position.shape)
     line_loads = np.zeros((*states.position.shape, faces.z.size))
@@ -203,7 +203,7 @@ def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArr
     tangent = tangents.sum(axis=1)
     tangent = tangent / (1.0 + shared * tangent)
     secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
-    return StaticMesh(force, at, compression, states.position, forces, tangent, secant, line_loads)
+    return LoadedMesh(force, at, compression, states.position, forces, tangent, secant, line_loads)
 
 
 def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:

@@ -17,7 +17,7 @@ from coupling.gears.beam_compliance import beam_compliance
 from coupling.gears.compliant_teeth import CompliantTeeth, ContactModel, SharedBody, SolvedTooth, ToothCompliance
 from coupling.gears.foundation import RootSection, foundation_compliance
 from coupling.gears.geometry import Gear
-from coupling.gears.rim import solved_rim
+from coupling.gears.rim import rim_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class PotentialEnergyStiffness(CompliantTeeth):
 
     def solve_tooth(self, gear: Gear) -> SolvedTooth:
         """See `CompliantTeeth`."""
-        rim = solved_rim(gear)
+        rim = rim_compliance(gear)
 
         def tooth(radius: FloatArray) -> ToothCompliance:
             foundation = foundation_compliance(gear, radius, self.root_section)

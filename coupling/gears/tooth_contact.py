@@ -48,9 +48,9 @@ import numpy.typing as npt
 
 from coupling.gears.errors import GearError
 from coupling.gears.face_slices import FaceSlices
-from coupling.gears.face_table import FaceState, face_state, face_table
+from coupling.gears.face_table import FaceSliceStates, face_force_table, face_slice_states
 from coupling.gears.law_table import law_table
-from coupling.gears.pair_curves import PairCurves, behind_shared, corners_of
+from coupling.gears.pair_curves import ToothPairCurves, slope_jumps, without_shared_compliance
 from coupling.gears.pair_geometry import IntArray
 from coupling.gears.piecewise import PiecewiseCubic
 
@@ -63,7 +63,7 @@ _MEAN_PHASES = 256
 
 
 @dataclass(frozen=True, eq=False)
-class PairPlaces:
+class PairPositions:
     """Positions of the pairs of teeth at n phases, at most m pairs at once.
 
     Attributes
@@ -85,7 +85,7 @@ class PairPlaces:
 
 
 @dataclass(frozen=True, eq=False)
-class PairStates(PairPlaces):
+class PairStates(PairPositions):
     """Positions, stiffness and deviation of the pairs of teeth.
 
     Attributes
@@ -103,7 +103,7 @@ class PairStates(PairPlaces):
     stiffness: FloatArray
     deviation: FloatArray
     pitch_gap: FloatArray
-    faces: FaceState | None = None
+    faces: FaceSliceStates | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +148,7 @@ class ToothContact:
     pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
     back_pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
     damping_depth: float = 0.0
-    variants: tuple[PairCurves, ...] = ()
+    variants: tuple[ToothPairCurves, ...] = ()
     pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     back_pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     faces: FaceSlices | None = None
@@ -174,7 +174,7 @@ class ToothContact:
             if numbers.size and not (numbers.min() >= 0 and numbers.max() <= len(self.variants)):
                 raise GearError(f"tooth contact: {name} must be 0 to {len(self.variants)}, got {numbers.max()}")
 
-    def _check_curves(self, curves: PairCurves) -> None:
+    def _check_curves(self, curves: ToothPairCurves) -> None:
         start, end = self._slice_range
         if not (start <= 1e-12 and end >= self.contact_ratio * (1.0 - 1e-12)):
             raise GearError(
@@ -209,7 +209,7 @@ class ToothContact:
 
     @cached_property
     def _law(self) -> FloatArray:
-        curves = self.kinds if self.faces is None else face_table(self.faces, self.kinds, self.module)
+        curves = self.kinds if self.faces is None else face_force_table(self.faces, self.kinds, self.module)
         return law_table(curves, self.entering, self.damping, self.damping_depth, self.shared_compliance)
 
     @property
@@ -223,24 +223,24 @@ class ToothContact:
         return entering
 
     @cached_property
-    def kinds(self) -> tuple[PairCurves, ...]:
+    def kinds(self) -> tuple[ToothPairCurves, ...]:
         """Curves of every kind of pair without the shared compliance, that of sound teeth first."""
-        return tuple(behind_shared(curves, self.shared_compliance) for curves in self._alone)
+        return tuple(without_shared_compliance(curves, self.shared_compliance) for curves in self._alone)
 
     @property
-    def _alone(self) -> tuple[PairCurves, ...]:
+    def _alone(self) -> tuple[ToothPairCurves, ...]:
         """Curves of every kind of pair that carries alone."""
-        return (PairCurves(self.stiffness, self.deviation), *self.variants)
+        return (ToothPairCurves(self.stiffness, self.deviation), *self.variants)
 
     @property
-    def touching_range(self) -> tuple[float, float]:
+    def contact_range(self) -> tuple[float, float]:
         """Range of contact of a pair [base pitches]: from 0 to the contact ratio, or wider with corner contact."""
         start, end = self._slice_range
         reach = 0.0 if self.faces is None else float(np.abs(self.faces.shift).max())
         return start - reach, end + reach
 
     @property
-    def has_corners(self) -> bool:
+    def has_corner_contact(self) -> bool:
         """Whether pairs touch beyond their path of contact."""
         return self._slice_range[0] < 0.0
 
@@ -259,7 +259,7 @@ class ToothContact:
         return max(1, self.hunting_numbers)
 
     @cached_property
-    def mean_stiffness(self) -> float:
+    def mean_mesh_stiffness(self) -> float:
         """Mean mesh stiffness over a mesh period, with all pairs on the path in contact [N/m]."""
         inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]
         if self.shared_compliance == 0.0:
@@ -338,7 +338,7 @@ class ToothContact:
         found: set[float] = set()
         for curves in self.kinds:
             for curve in (curves.deviation, curves.stiffness):
-                found.update((corners_of(curve) % 1.0).tolist())
+                found.update((slope_jumps(curve) % 1.0).tolist())
         return tuple(sorted(found))
 
     @property
@@ -362,20 +362,20 @@ class ToothContact:
         """Return the same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
         return replace(self, damping=damping, damping_depth=depth)
 
-    def pair_positions(self, phases: npt.ArrayLike) -> PairPlaces:
+    def pair_positions(self, phases: npt.ArrayLike) -> PairPositions:
         """Positions of the pairs at `phases` (n,)."""
         phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
         number = np.floor(phase)
         fraction = phase - number
         number = np.where(fraction >= 1.0, number + 1.0, number)
         fraction = np.where(fraction >= 1.0, 0.0, fraction)
-        start, end = self.touching_range
+        start, end = self.contact_range
         behind = np.arange(math.floor(start), math.ceil(end))
         position = fraction[:, None] + behind
         present = (position >= start) & (position < end)
         entered = number.astype(np.int64)[:, None] - behind
         kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
-        return PairPlaces(position, present, kind, entered)
+        return PairPositions(position, present, kind, entered)
 
     def pairs(self, phases: npt.ArrayLike) -> PairStates:
         """Positions, stiffness and deviation of the pairs at `phases` (n,)."""
@@ -389,7 +389,7 @@ class ToothContact:
                 stiffness[these] = curves.stiffness(position[these])
                 deviation[these] = curves.deviation(position[these])
         else:
-            state = face_state(self.faces, self.kinds, position[present], kind[present])
+            state = face_slice_states(self.faces, self.kinds, position[present], kind[present])
             deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
         return PairStates(position, present, kind, entered, stiffness, deviation + gap, gap, state)

@@ -31,7 +31,7 @@ from coupling.gears.beam_compliance import ROOT_CIRCLE, axis_crossing, beam_comp
 from coupling.gears.compliant_teeth import CompliantTeeth, SharedBody, SolvedTooth, ToothCompliance
 from coupling.gears.geometry import Gear
 from coupling.gears.profile import fillet_points, load_angle
-from coupling.gears.rim import solved_rim
+from coupling.gears.rim import rim_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class WeberBanaschekStiffness(CompliantTeeth):
         section = fillet_points(gear, np.array(ROOT_CIRCLE))
         nu = gear.poisson_ratio
         coupling = 2.0 * (1.0 - 2.0 * nu) / (1.0 - nu)
-        rim = solved_rim(gear, "plane-strain")
+        rim = rim_compliance(gear, "plane-strain")
 
         def tooth(radius: FloatArray) -> ToothCompliance:
             beta = load_angle(gear, radius)

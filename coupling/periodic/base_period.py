@@ -89,7 +89,7 @@ def _varies(contact: ToothContact) -> bool:
     """Whether a contact law depends on the phase: a mesh with one constant spring does not."""
     if contact.faces is not None or contact.hunting_numbers or contact.variants:
         return True
-    start, end = contact.touching_range
+    start, end = contact.contact_range
     curves = (contact.stiffness.coefficients, contact.deviation.coefficients)
     uneven = any(bool(np.any(curve[:, 1:])) or np.ptp(curve[:, 0]) > 0.0 for curve in curves)
     return uneven or abs(end - start - round(end - start)) > 1e-12

@@ -13,7 +13,7 @@ from coupling.periodic.collocation import MONOMIALS, ORDER, weights_to
 from coupling.periodic.element_work import element_work
 from coupling.periodic.floquet import FloquetMultipliers
 from coupling.periodic.linear_part import LinearPart
-from coupling.settings import Recorded, TransientOutputs
+from coupling.settings import MotionRecord, TransientOutputs
 from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -98,7 +98,7 @@ class PeriodicResponse:
         _, force = self._contacts(times, self._amplitudes(times))
         return np.asarray(np.maximum(force.max(axis=0, initial=0.0), trace.force.max(axis=(0, 1))))
 
-    def record(self, outputs: TransientOutputs, samples: int) -> Recorded:
+    def record(self, outputs: TransientOutputs, samples: int) -> MotionRecord:
         """Rows of coordinates, rates and accelerations over the period, and the contacts.
 
         Parameters
@@ -119,7 +119,7 @@ class PeriodicResponse:
         a = system.load - q @ system.stiffness.T - v @ system.damping.T - force @ system.contact_directions.T
         for load in system.harmonic_loads:
             a = a + (np.exp(1j * load.frequency * times)[:, None] * load.amplitude).real
-        return Recorded(
+        return MotionRecord(
             times=times,
             displacement=q @ (outputs.displacement @ self.recovery).T,
             velocity=v @ (outputs.velocity @ self.recovery).T,

@@ -2,7 +2,7 @@
 
 - :mod:`coupling.signature.levels` -- peak, rms and decibels, by one convention.
 - :func:`power_density`, :func:`spectrogram` -- Welch's average over a long record, and spectra along it.
-- :func:`order_resampled`, :func:`order_map` -- signals of a run-up by rotation angle, and their orders over speed.
+- :func:`resample_by_angle`, :func:`order_map` -- signals of a run-up by rotation angle, and their orders over speed.
 - :func:`sidebands` -- amplitude and phase modulation of mesh harmonics by a shaft.
 - :func:`line_names` -- harmonic, order, sideband or mode of a spectral line.
 - :func:`housing_paths` -- contributions of bearings and housing modes to a sensor's lines.
@@ -11,12 +11,13 @@
 from coupling.signature.averages import PowerDensity, Spectrogram, power_density, spectrogram
 from coupling.signature.levels import ACCELERATION_REFERENCE, decibels, from_decibels, peak_of_rms, rms_of_peak
 from coupling.signature.line_names import LineName, line_names
-from coupling.signature.order_tracking import OrderMap, TurnedSignal, order_map, order_resampled, order_spectrum
+from coupling.signature.order_tracking import AngleSignal, OrderMap, order_map, order_spectrum, resample_by_angle
 from coupling.signature.sidebands import Sideband, sidebands
 from coupling.signature.transfer_paths import HousingPaths, SensorPaths, housing_paths, mode_parts
 
 __all__ = [
     "ACCELERATION_REFERENCE",
+    "AngleSignal",
     "HousingPaths",
     "LineName",
     "OrderMap",
@@ -24,17 +25,16 @@ __all__ = [
     "SensorPaths",
     "Sideband",
     "Spectrogram",
-    "TurnedSignal",
     "decibels",
     "from_decibels",
     "housing_paths",
     "line_names",
     "mode_parts",
     "order_map",
-    "order_resampled",
     "order_spectrum",
     "peak_of_rms",
     "power_density",
+    "resample_by_angle",
     "rms_of_peak",
     "sidebands",
     "spectrogram",

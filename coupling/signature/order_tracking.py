@@ -2,7 +2,7 @@
 
 A component that repeats with every revolution is a line at its order, whatever the speed; over time such a line is
 smeared across all frequencies that it passes. A tachometer would have to be interpolated for this (Potter 1990); here
-:class:`coupling.Turning` gives the angle exactly. Only the signal is interpolated, by splines of the fifth degree,
+:class:`coupling.SpeedProfile` gives the angle exactly. Only the signal is interpolated, by splines of the fifth degree,
 whose error falls with the sixth power of the sampling interval.
 """
 
@@ -15,7 +15,7 @@ from scipy.interpolate import make_interp_spline
 
 from coupling.errors import CouplingError
 from coupling.spectrum import Spectrum, Window, amplitude_spectrum, lines_at
-from coupling.turning import Turning
+from coupling.turning import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,7 +24,7 @@ _DEGREE = 5
 
 
 @dataclass(frozen=True)
-class TurnedSignal:
+class AngleSignal:
     """A signal at even spacing in revolutions of the machine's leading shaft, s samples.
 
     Attributes
@@ -47,14 +47,14 @@ class TurnedSignal:
     per_turn: int
 
 
-def order_resampled(
+def resample_by_angle(
     signal: FloatArray,
     times: FloatArray,
-    turning: Turning,
+    turning: SpeedProfile,
     turns_per_second: float,
     *,
     per_turn: int | None = None,
-) -> TurnedSignal:
+) -> AngleSignal:
     """Resample a signal by rotation angle, over the whole revolutions in its record.
 
     Parameters
@@ -108,10 +108,10 @@ def order_resampled(
     at = turning.times_of(turns / turns_per_second)
     values = make_interp_spline(times, np.moveaxis(signal, -1, 0), k=_DEGREE)(at)
     speeds = turns_per_second * turning.at(at)[1]
-    return TurnedSignal(turns, at, speeds, np.moveaxis(np.asarray(values), 0, -1), needed)
+    return AngleSignal(turns, at, speeds, np.moveaxis(np.asarray(values), 0, -1), needed)
 
 
-def order_spectrum(turned: TurnedSignal, window: Window = "uniform") -> Spectrum:
+def order_spectrum(turned: AngleSignal, window: Window = "uniform") -> Spectrum:
     """Amplitude spectrum by order, over all revolutions: ``frequencies`` are cycles per revolution."""
     return amplitude_spectrum(turned.values, 1.0 / turned.per_turn, window)
 
@@ -163,7 +163,7 @@ class OrderMap:
 
 
 def order_map(
-    turned: TurnedSignal, *, turns: int, step: int = 1, window: Window = "hann", follow: Sequence[float] = ()
+    turned: AngleSignal, *, turns: int, step: int = 1, window: Window = "hann", follow: Sequence[float] = ()
 ) -> OrderMap:
     """Order spectra of windows along a signal of shape (s,).
 

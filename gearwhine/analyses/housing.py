@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
-from gearwhine.comparison_files import draw_comparison_figures, write_comparison, write_likeness
+from gearwhine.comparison_files import draw_comparison_figures, write_comparison, write_response_correlation
 from gearwhine.doubtful import warning
 from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
@@ -18,7 +18,7 @@ from gearwhine.stages import geometry as geometry_stage
 from gearwhine.stages import housing as housing_stage
 from gearwhine.stages import mesh_health, survey_plan
 from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.response_comparison import ResponseLikeness, responses_beside
+from gearwhine.stages.response_comparison import ResponseCorrelation, compare_responses_document
 from housing import Comparison
 from meshes import Mesh
 
@@ -48,8 +48,8 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     progress("meshing the housing")
     remarks: list[str] = []
     made = geometry_stage.build_mesh(case, remarks.append)
-    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.examine(case, made)
-    warnings += mesh_health.doubt_resolution(case, made, case.housing.frequency_limit if case.housing else None)
+    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.require_meshable(case, made)
+    warnings += mesh_health.resolution_warnings(case, made, case.housing.frequency_limit if case.housing else None)
 
     def files(place: Path, *, pictures: bool) -> None:
         write_mesh(made, place / f"mesh.{suffix}")
@@ -134,14 +134,14 @@ def compare(
     if survey is not None:
         document["survey"] = survey_document(survey)
         progress("comparing responses")
-        likeness = responses_beside(case, solved, survey)
+        likeness = compare_responses_document(case, solved, survey)
         document |= {} if likeness is None else {"responses": responses_document(likeness)}
     geometry = None if survey is None else survey.geometry
 
     def files(place: Path, *, pictures: bool) -> None:
         write_comparison(place, comparison, geometry)
-        if isinstance(likeness, ResponseLikeness):
-            write_likeness(place, likeness)
+        if isinstance(likeness, ResponseCorrelation):
+            write_response_correlation(place, likeness)
 
     return Result(
         "compare",

@@ -97,7 +97,7 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
     """
     loaded = gear_stage.solve_gears(case, progress)
     aims = relief_aims.relief_aims(case, loaded, progress, folder=folder)
-    pairs = gear_torques.over_torques(gear_analysis.analyse_pairs(case, loaded), progress, aims)
+    pairs = gear_torques.solve_over_torques(gear_analysis.analyse_pairs(case, loaded), progress, aims)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_gear_pairs
@@ -292,8 +292,8 @@ def sweep(
 
     points = sweeping.sweep_points(*source, keys)
     count = workers or sweeping.default_workers()
-    swept = sweeping.conduct_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
-    dataset = sweeping.gathered(case, keys, swept)
+    swept = sweeping.run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    dataset = sweeping.collected_sweep(case, keys, swept)
     document = {"title": case.title} | sweeping.sweep_document(keys, swept)
     document["workers"] = count if scheduler is None else None
     document["seconds"] = {"total": time.perf_counter() - start}

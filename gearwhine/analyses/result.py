@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from gearwhine.analyses.results_folder import kept_in
+from gearwhine.analyses.results_folder import store_results
 from gearwhine.case import Case
 from gearwhine.doubtful import add_warnings
 from gearwhine.output import COMMANDS, finite, json_text, staging
@@ -169,7 +169,7 @@ class Result(Generic[Solved]):
                 self.document["seconds"] |= {"writing": now - begin, "total": now - self._started}
 
         if self.command in COMMANDS:
-            kept_in(self.command, self.document, self.case, Path(folder), write, self._housing)
+            store_results(self.command, self.document, self.case, Path(folder), write, self._housing)
         else:
             with staging(Path(folder)) as place:
                 write(place)

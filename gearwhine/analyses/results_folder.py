@@ -14,14 +14,14 @@ from typing import Any
 from gearwhine.case import Case, dump_case
 from gearwhine.output import COMMANDS, SUMMARY, finite, json_text, listed_files, read_summary, staging
 from gearwhine.stages.contents import file_contents
-from gearwhine.stages.housing import SolvedHousing, keep_modes
-from gearwhine.stages.kept_modes import MODES_FILE
+from gearwhine.stages.housing import SolvedHousing, write_mode_cache
+from gearwhine.stages.kept_modes import MODE_CACHE_FILE
 
 _FOREMOST = "run"
 _ADDING = "render"  # draws what it is asked for, beside what it drew before
 
 
-def kept_in(
+def store_results(
     command: str,
     document: dict[str, Any],
     case: Case,
@@ -51,11 +51,11 @@ def kept_in(
         own = _place_of(folder, command)
         (place / own).mkdir(exist_ok=True)
         for path in sorted(place.iterdir()):
-            if path.is_file() and path.name != MODES_FILE:
+            if path.is_file() and path.name != MODE_CACHE_FILE:
                 path.rename(place / own / path.name)
         names = {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
         if housing is not None and housing.source is not None:
-            names.add(MODES_FILE)
+            names.add(MODE_CACHE_FILE)
         files = [*sorted(names), (own / SUMMARY).as_posix()]
         document.update(
             command=command, made_at=_now(), input_files=_input_files(case), folder=str(folder), files=files
@@ -67,10 +67,10 @@ def kept_in(
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
         write(place)
         if housing is not None:
-            keep_modes(place, housing)
+            write_mode_cache(place, housing)
 
 
-def results_in(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
+def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     """The results that a folder holds: the place of each, relative to the folder, and its document; newest first."""
     places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
     found = [(own, summary) for own in places if (summary := read_summary(folder / own)) is not None]
@@ -95,8 +95,8 @@ def _give_way(folder: Path, owner: str) -> None:
     """Move the results of a command from the folder itself to its sub-folder."""
     (folder / owner).mkdir(exist_ok=True)
     document = dict(read_summary(folder) or {})
-    shared = [MODES_FILE] if (folder / MODES_FILE).is_file() else []
-    names = [one.name for one in listed_files(folder, Path()) if one.name not in (MODES_FILE, SUMMARY)]
+    shared = [MODE_CACHE_FILE] if (folder / MODE_CACHE_FILE).is_file() else []
+    names = [one.name for one in listed_files(folder, Path()) if one.name not in (MODE_CACHE_FILE, SUMMARY)]
     document["files"] = [*shared, *(f"{owner}/{name}" for name in [*names, SUMMARY])]
     for name in names:
         os.replace(folder / name, folder / owner / name)

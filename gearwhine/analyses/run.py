@@ -15,7 +15,7 @@ from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.comparison_files import draw_comparison_figures, write_comparison
 from gearwhine.doubtful import add_warnings, joined
 from gearwhine.drawings import draw_modes
-from gearwhine.march_files import kept_march
+from gearwhine.march_files import stored_record
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.progress import Progress, silent
@@ -42,9 +42,9 @@ from gearwhine.stages import signature as signature_stage
 from gearwhine.stages import system as system_stage
 from gearwhine.stages import transient as transient_stage
 from gearwhine.stages.bearing_loads import bearing_load_warnings
-from gearwhine.stages.housing import keep_modes
+from gearwhine.stages.housing import write_mode_cache
 from gearwhine.stages.instability import unstable_modes_warnings
-from gearwhine.stages.kept_modes import MODES_FILE
+from gearwhine.stages.kept_modes import MODE_CACHE_FILE
 from gearwhine.stages.machine import require_machine
 from gearwhine.stages.uncertainty import add_uncertainty
 
@@ -132,7 +132,7 @@ def run(
     transient, system, signature, run_signature = None, None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
-        part = None if housing is None else machine_stage.housing_in_machine(case, housing, progress)
+        part = None if housing is None else machine_stage.reduce_housing(case, housing, progress)
         machine = machine_stage.build_machine(case, part, pairs, progress)
         basis = machine_stage.basis_error(case, machine, part, pairs, progress)
         system = system_stage.solve_system(case, machine, housing, progress)
@@ -144,8 +144,8 @@ def run(
             if folder is not None and housing is not None and not housing.source_holds:
                 # Now, not with the results: who goes on with a long march need not solve them again.
                 with staging(folder) as place:
-                    keep_modes(place, housing)
-                housing = replace(housing, source=folder / MODES_FILE, source_holds=True)
+                    write_mode_cache(place, housing)
+                housing = replace(housing, source=folder / MODE_CACHE_FILE, source_holds=True)
             begin = time.perf_counter()
             keep = None
             if folder is not None and until_written is not None:
@@ -153,7 +153,7 @@ def run(
             transient = transient_stage.solve_transient(
                 case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep
             )
-            if transient_stage.is_traced(case):
+            if transient_stage.has_traced_lines(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = signature_stage.solve_signature(transient, system.modes, frequencies)
             document = joined(document, transient_document(transient, signature))
@@ -255,7 +255,7 @@ def _require_renderer() -> None:
 
 
 def _kept(folder: Path, until_written: ExitStack, key: str, *, fresh: bool) -> Any:
-    return until_written.enter_context(kept_march(folder, key, fresh=fresh))
+    return until_written.enter_context(stored_record(folder, key, fresh=fresh))
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
     )
 
 
-def box_misfits(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding]:
+def box_findings(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding]:
     """Yield what does not fit among the parts of a box.
 
     Parameters

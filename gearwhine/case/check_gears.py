@@ -51,7 +51,7 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
             f'pairs in a loop that can turn; "{wrong.shaft}" would turn at {float(wrong.ratio):.6g} of the first '
             f"driver's speed by the other pairs, and at {float(wrong.other):.6g} by this one"
         )
-        yield Finding(("gear_pair", draft.known_pairs[wrong.pair][0]), expected, UNSAID)
+        yield Finding(("gear_pair", draft.readable_pairs[wrong.pair][0]), expected, UNSAID)
 
 
 def _check_pair(

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from gearwhine.case.box import Box
-from gearwhine.case.box_shape import box_misfits
+from gearwhine.case.box_shape import box_findings
 from gearwhine.case.check_shafts import millimetres
 from gearwhine.case.draft import Draft
 from gearwhine.case.patches import Patch
@@ -40,7 +40,7 @@ def check_box(draft: Draft) -> Iterator[Finding]:
     box = draft.box
     if box is None:
         return
-    yield from box_misfits(box, draft.seats)
+    yield from box_findings(box, draft.seats)
     yield from _check_surfaces(draft, box)
     boss = max((seat.boss.length for _, seat in draft.seats if seat.boss is not None), default=0.0)
     for location, patch in _patches(draft):

@@ -20,7 +20,7 @@ from gearwhine.case.problems import look_up
 from gearwhine.case.rotors import Rotor
 from gearwhine.case.running import Operation, Sweep, Transient
 from gearwhine.case.shafts import Bearing
-from gearwhine.case.train import known_pairs, train_of_pairs
+from gearwhine.case.train import readable_pairs, train_of_pairs
 
 if TYPE_CHECKING:
     from coupling.gear_train import GearTrain
@@ -63,14 +63,14 @@ class Draft:
     analysis: RotorAnalysis | None
 
     @cached_property
-    def known_pairs(self) -> list[tuple[int, Gear, Gear]]:
+    def readable_pairs(self) -> list[tuple[int, Gear, Gear]]:
         """Driver and driven gear of each pair on two shafts, with its place in the list."""
-        return known_pairs([gear for _, gear in self.gears], self.gear_pairs)
+        return readable_pairs([gear for _, gear in self.gears], self.gear_pairs)
 
     @cached_property
     def train(self) -> GearTrain | None:
         """The gear train of these pairs; None where there are none."""
-        return train_of_pairs(self.known_pairs) if self.known_pairs else None
+        return train_of_pairs(self.readable_pairs) if self.readable_pairs else None
 
     def rotor(self, name: str | None) -> Rotor | None:
         """Return the rotor of this name, if it could be read."""

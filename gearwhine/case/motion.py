@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from gearwhine.case.gears import Gear
 from gearwhine.case.model import Case
 from gearwhine.case.require import require
-from gearwhine.case.train import known_pairs, shaft_of, train_of_pairs
+from gearwhine.case.train import readable_pairs, shaft_of, train_of_pairs
 
 if TYPE_CHECKING:
     from coupling.gear_train import GearTrain
@@ -35,9 +35,9 @@ class AppliedTorque:
     torque: float
 
 
-def train_of(case: Case) -> GearTrain:
+def gear_train_of(case: Case) -> GearTrain:
     """Return the gear train of a case."""
-    return train_of_pairs(known_pairs(case.gear, enumerate(case.gear_pair)))
+    return train_of_pairs(readable_pairs(case.gear, enumerate(case.gear_pair)))
 
 
 def speed_ratios(case: Case) -> dict[str, Fraction]:
@@ -47,7 +47,7 @@ def speed_ratios(case: Case) -> dict[str, Fraction]:
     """
     if not case.gear_pair:
         return {name: Fraction(1) for name in _shafts(case)}
-    return dict(train_of(case).ratios)
+    return dict(gear_train_of(case).ratios)
 
 
 def rotor_speeds(case: Case, speed: float | None = None) -> dict[str, float]:
@@ -111,7 +111,7 @@ def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTor
     first = next(iter(ratios)) if case.gear_pair else operation.output[0].rotor
     turning = math.copysign(1.0, operation.speed)
     applied = [AppliedTorque(first, _station(case, first, operation.at, 0.0), turning * entering)]
-    train = train_of(case) if case.gear_pair else GearTrain((), ratios, ())
+    train = gear_train_of(case) if case.gear_pair else GearTrain((), ratios, ())
     outputs = [Output(output.rotor, output.torque, output.at) for output in operation.output]
     speeds = {shaft: float(ratio) for shaft, ratio in ratios.items()}
     for output, taken in shared_torques(train, speeds, entering, outputs):
@@ -131,7 +131,7 @@ def pair_torques(case: Case) -> tuple[float, ...]:
     CaseError
         When the case has no `[operation]`.
     """
-    train = train_of(case)
+    train = gear_train_of(case)
     turning = 1.0 if case.operation is None else math.copysign(1.0, case.operation.speed)
     torques = dict.fromkeys(train.ratios, 0.0)
     for applied in applied_torques(case):

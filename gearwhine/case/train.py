@@ -16,7 +16,7 @@ def shaft_of(gear: Gear) -> str:
     return gear.rotor if gear.rotor is not None else gear.name
 
 
-def known_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]]) -> list[tuple[int, Gear, Gear]]:
+def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]]) -> list[tuple[int, Gear, Gear]]:
     """Return driver and driven gear of each pair with its place in the list.
 
     Pairs whose gears are missing or on one shaft are passed over.
@@ -32,7 +32,7 @@ def known_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]]) ->
 
 
 def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]]) -> GearTrain:
-    """Return the gear train of pairs, see :func:`known_pairs`."""
+    """Return the gear train of pairs, see :func:`readable_pairs`."""
     # The package brings numpy and scipy: only a case with gear pairs waits for them.
     from coupling.gear_train import GearedShafts, gear_train
 

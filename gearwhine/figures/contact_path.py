@@ -5,7 +5,7 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coupling.gears import GearPairGeometry, StaticMesh, ToothContact, path_of_contact, specific_sliding
+from coupling.gears import GearPairGeometry, LoadedMesh, ToothContact, path_of_contact, specific_sliding
 from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, LABEL, MEGA, SERIES, legend, panel, sheet
 
 FloatArray = npt.NDArray[np.float64]
@@ -16,7 +16,7 @@ _STEEPEST = 4.0  # specific sliding beyond this is cut off: it has no bound towa
 
 
 def draw_contact_path(
-    title: str, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh, pressure: FloatArray | None = None
+    title: str, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh, pressure: FloatArray | None = None
 ) -> Figure:
     """Draw share of the load, Hertzian pressure and specific sliding over the driver's roll angle.
 
@@ -38,7 +38,7 @@ def draw_contact_path(
     note = (
         "A, E: the driver's active profile starts and ends; B: the pair before leaves; C: pitch point; D: the next one"
     )
-    if contact.touching_range[0] < 0.0:
+    if contact.contact_range[0] < 0.0:
         note += "; beyond A and E " + ("the face's other parts" if contact.faces is not None else "corners touch")
     figure = sheet(HEAD + _LETTERS + _SHARE + _BETWEEN + middle + _SLIDING + FOOT, title, note)
     share = panel(figure, below + middle, _SHARE)

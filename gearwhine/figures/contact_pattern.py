@@ -6,7 +6,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coupling.gears import GearPairGeometry, StaticMesh, ToothContact, mesh_pressure, path_of_contact
+from coupling.gears import GearPairGeometry, LoadedMesh, ToothContact, mesh_pressure, path_of_contact
 from gearwhine.figures.contact_path import mark_points
 from gearwhine.figures.style import FOOT, HEAD, INK, LABEL, MEGA, MILLI, MM_PER_INCH, PANEL_WIDTH, TICK, panel, sheet
 
@@ -18,7 +18,7 @@ _PLACES = 240  # along the path of contact
 _N_PER_MM = 1e-3
 
 
-def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> Figure:
+def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> Figure:
     """Draw load per width and contact pressure over the driver's roll angle and the face.
 
     Parameters
@@ -85,7 +85,7 @@ def _reach(contact: ToothContact) -> tuple[float, float]:
     """Range of the path on which slices can touch."""
     assert contact.faces is not None
     reach = float(np.abs(contact.faces.shift).max())
-    return contact.touching_range[0] + reach, contact.touching_range[1] - reach
+    return contact.contact_range[0] + reach, contact.contact_range[1] - reach
 
 
 def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArray, what: str) -> None:
@@ -105,7 +105,7 @@ def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArr
     bar.set_label(what, size=LABEL, color=INK)
 
 
-def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: StaticMesh) -> None:
+def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> None:
     """Contact lines at one time, the middle of the mesh period."""
     assert contact.faces is not None
     row = int(np.abs(mesh.phases - 0.5).argmin())

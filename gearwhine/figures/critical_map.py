@@ -113,7 +113,7 @@ def draw_critical_map(
     marked = []
     for curve in curves:
         axes.plot(curve.own, RPM * curve.turning, color=curve.color, ls=curve.line, lw=1.0, zorder=2, label=curve.name)
-        for stiffness, speed in meetings(springs, speeds, curve.turning, curve.own):
+        for stiffness, speed in map_intersections(springs, speeds, curve.turning, curve.own):
             axes.plot(
                 stiffness, RPM * speed, marker="o", ms=4.0, color=curve.color, mfc="white", zorder=4, label="meeting"
             )
@@ -129,7 +129,7 @@ def draw_critical_map(
     return figure
 
 
-def meetings(
+def map_intersections(
     stiffnesses: FloatArray, critical_speeds: FloatArray, turning: FloatArray, own: FloatArray
 ) -> list[tuple[float, float]]:
     """Intersections of a bearing's stiffness with the critical speeds: stiffness (N/m) and speed (rad/s) of each.

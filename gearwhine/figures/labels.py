@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Affine2D
 from scipy.optimize import isotonic_regression
 
-from gearwhine.figures.style import GREY, INK, MM_PER_INCH, NOTE, panel_size, shortened, unknown_letters_drawn_as_boxes
+from gearwhine.figures.style import GREY, INK, MM_PER_INCH, NOTE, missing_glyphs_as_boxes, panel_size, shortened
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -154,6 +154,6 @@ def _size(text: str) -> tuple[float, float]:
     """Width and height of a label that lies, mm."""
     figure = Figure(dpi=_MEASURING_DPI)
     FigureCanvasAgg(figure)
-    with unknown_letters_drawn_as_boxes():
+    with missing_glyphs_as_boxes():
         extent = figure.text(0.0, 0.0, shortened(text), fontsize=NOTE, parse_math=False).get_window_extent()
     return extent.width / _MEASURING_DPI * MM_PER_INCH, extent.height / _MEASURING_DPI * MM_PER_INCH

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from coupling.gears import StaticMesh, ToothContact, mesh_stiffness
+from coupling.gears import LoadedMesh, ToothContact, mesh_stiffness
 from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, MEGA, NOTE, SERIES, legend, panel, sheet
 
 FloatArray = npt.NDArray[np.float64]
@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 _STIFFNESS, _SHARES, _BETWEEN = 66.0, 42.0, 5.0  # heights of the panels and the room between them [mm of paper]
 
 
-def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: StaticMesh, *, shared: bool = True) -> Figure:
+def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: LoadedMesh, *, shared: bool = True) -> Figure:
     """Draw the stiffness of all pairs on the path and of those that touch, and the share of each below.
 
     Parameters
@@ -29,9 +29,9 @@ def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: StaticMesh, *, 
     loaded = mesh.force > 0.0
     below = _SHARES + _BETWEEN if shared and loaded else 0.0
     note = f"mesh force {mesh.force:.5g} N; " if loaded else "without load; "
-    note += f"mean stiffness of all pairs on the path of contact {MEGA * contact.mean_stiffness:.2f} N/µm"
+    note += f"mean stiffness of all pairs on the path of contact {MEGA * contact.mean_mesh_stiffness:.2f} N/µm"
     if loaded:
-        note += f", of those that touch {MEGA * mesh.mean_stiffness:.2f} N/µm"
+        note += f", of those that touch {MEGA * mesh.mean_mesh_stiffness:.2f} N/µm"
     figure = sheet(HEAD + _STIFFNESS + below + FOOT, title, note)
     upper = panel(figure, FOOT + below, _STIFFNESS)
     on_path = mesh_stiffness(contact, mesh.phases)
@@ -58,7 +58,7 @@ def mark_events(axes: Axes, contact: ToothContact) -> None:
         axes.axvline(phase, color=GREY, lw=0.7, ls=(0, (2, 2)), zorder=1, label="_event")
 
 
-def _draw_shares(axes: Axes, contact: ToothContact, mesh: StaticMesh) -> None:
+def _draw_shares(axes: Axes, contact: ToothContact, mesh: LoadedMesh) -> None:
     present = contact.pairs(mesh.phases).present
     for column in np.flatnonzero(present.any(axis=0)):
         before = round(float(mesh.positions[0, column] - mesh.phases[0] % 1.0))

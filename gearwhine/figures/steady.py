@@ -52,10 +52,10 @@ def draw_steady(case: Case, solved: SolvedSteady) -> Iterator[tuple[str, Figure]
 
 def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve) -> Figure:
     """Draw a branch: vibration in the teeth, largest force, contact loss and sensors over speed; unstable dashed."""
-    drives = [solved.machine.system.contacts[number].name for number in solved.machine.pressed_contacts]
+    drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
     quantities: list[tuple[str, dict[str, FloatArray]]] = []
     if drives:
-        table = dict(zip(drives, solved.machine.pressed_contacts, strict=True))
+        table = dict(zip(drives, solved.machine.loaded_contacts, strict=True))
         quantities += [
             ("compression, a.c. rms [µm]", {name: 1e6 * curve.rms_compression[:, i] for name, i in table.items()}),
             ("largest mesh force [N]", {name: curve.peak_force[:, i] for name, i in table.items()}),
@@ -136,7 +136,7 @@ def _draw_branch(axes: Axes, speeds: FloatArray, lines: dict[str, FloatArray], c
 
 
 def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
-    drives = [solved.machine.system.contacts[number].name for number in solved.machine.pressed_contacts]
+    drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
     figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(drives)), layout="constrained")
     rows = figure.subplots(len(drives), 2, squeeze=False)
     stable = [motion for motion in solved.motions if motion.response.stable]

@@ -106,7 +106,7 @@ def shortened(text: str, most: int = 28) -> str:
 
 
 @contextmanager
-def unknown_letters_drawn_as_boxes() -> Iterator[None]:
+def missing_glyphs_as_boxes() -> Iterator[None]:
     """Draw a letter that no font here has as a box, which says as much as a warning would."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
@@ -115,7 +115,7 @@ def unknown_letters_drawn_as_boxes() -> Iterator[None]:
 
 def save(figure: Figure, path: Path) -> str:
     """Write a figure as PNG and return the file's name; sheets for print are finer than figures for the screen."""
-    with unknown_letters_drawn_as_boxes():
+    with missing_glyphs_as_boxes():
         figure.savefig(path, dpi=max(_SCREEN_DPI, int(figure.dpi)))
     return path.name
 

@@ -71,7 +71,7 @@ def draw_transient(
 
 
 def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) -> Figure:
-    drives = [solved.machine.system.contacts[number].name for number in solved.machine.pressed_contacts]
+    drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
     figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(drives)), layout="constrained")
     rows = figure.subplots(len(drives), 2, squeeze=False)
     times, speed = solved.histories.times, _speed(case, solved)

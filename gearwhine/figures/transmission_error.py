@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from coupling.gears import StaticMesh
+from coupling.gears import LoadedMesh
 from coupling.gears.static import period_mean
 from gearwhine.figures.style import BLUE, FOOT, GREY, HEAD, INK, MICRO, NOTE, legend, panel, sheet
 
@@ -23,8 +23,8 @@ def draw_transmission_error(
     unloaded: FloatArray,
     harmonics: dict[str, FloatArray],
     *,
-    loaded: StaticMesh | None = None,
-    hunting: StaticMesh | None = None,
+    loaded: LoadedMesh | None = None,
+    hunting: LoadedMesh | None = None,
 ) -> Figure:
     """Draw the transmission error about its mean over a mesh period, over the hunting period, and its harmonics.
 

@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from gearwhine.locks import alone_in, held, in_use
+from gearwhine.locks import exclusive_lock, held_lock, is_locked
 
 SUMMARY = "summary.json"
 COMMANDS = ("run", "modes", "rotors", "gears", "system", "steady", "sweep", "compare", "survey", "update", "render")
@@ -41,15 +41,15 @@ def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -
     """
     made = not folder.exists()
     with ExitStack() as stack:
-        with alone_in(folder):
+        with exclusive_lock(folder):
             for stale in folder.glob(f"{_STAGING}*"):
-                if stale.is_dir() and not stale.is_symlink() and not in_use(stale):
+                if stale.is_dir() and not stale.is_symlink() and not is_locked(stale):
                     shutil.rmtree(stale, ignore_errors=True)
             place = Path(tempfile.mkdtemp(prefix=_STAGING, dir=folder))
-            stack.enter_context(held(place))
+            stack.enter_context(held_lock(place))
         try:
             yield place
-            with alone_in(folder):
+            with exclusive_lock(folder):
                 replaced = None if settle is None else settle(place)
                 _move_out(place, folder, replaced)
         except OSError as error:

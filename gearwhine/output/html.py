@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine import __version__
-from gearwhine.analyses.results_folder import results_in
+from gearwhine.analyses.results_folder import stored_results
 from gearwhine.case import Case, CaseError, Problem, dump_case
 from gearwhine.output.files import SUMMARY
 from gearwhine.output.sections import NOTHING, Document, Section, Table, is_number
@@ -153,7 +153,7 @@ def _changed_files(files: object) -> list[str]:
 
 def _results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     expected = f"a results folder with {SUMMARY}: run a command on the case with -o first"
-    found = results_in(folder)
+    found = stored_results(folder)
     if (folder / SUMMARY).exists() and not any(own == Path() for own, _ in found):
         raise CaseError([Problem("report", str(folder / SUMMARY), f"{expected}; this one is damaged")])
     if not found:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from gearwhine.stages.housing import SolvedHousing
-    from gearwhine.stages.response_comparison import ResponseLikeness
+    from gearwhine.stages.response_comparison import ResponseCorrelation
     from housing import Comparison
     from housing.measured import MappedSurvey
 
@@ -220,7 +220,7 @@ def survey_document(survey: "MappedSurvey") -> dict[str, Any]:
     return document_of(SURVEY, survey)
 
 
-def responses_document(likeness: "ResponseLikeness | str") -> dict[str, Any]:
+def responses_document(likeness: "ResponseCorrelation | str") -> dict[str, Any]:
     """The likeness of responses as the command's JSON, or why there is none."""
     return {"missing_because": likeness} if isinstance(likeness, str) else document_of(RESPONSES, likeness)
 

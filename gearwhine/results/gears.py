@@ -11,8 +11,8 @@ import numpy as np
 import coupling.gears
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
-from gearwhine.stages.gear_shapes import doubts
-from gearwhine.stages.gears import backlash_doubts
+from gearwhine.stages.gear_shapes import geometry_warnings
+from gearwhine.stages.gears import backlash_warnings
 
 if TYPE_CHECKING:
     from gearwhine.stages.gear_analysis import PairAnalysis
@@ -278,10 +278,10 @@ HARRIS_MAP = (
 """The transmission error over the mesh period for a range of torques."""
 
 STIFFNESS = (
-    Quantity("mean", lambda pair: pair.solved.contact.mean_stiffness),
+    Quantity("mean", lambda pair: pair.solved.contact.mean_mesh_stiffness),
     Quantity("min", lambda pair: pair.stiffness.min()),
     Quantity("max", lambda pair: pair.stiffness.max()),
-    Quantity("loaded_mean", lambda pair: pair.solved.static.mean_stiffness),
+    Quantity("loaded_mean", lambda pair: pair.solved.static.mean_mesh_stiffness),
 )
 TRANSMISSION_ERROR = (
     Quantity("mean", lambda pair: pair.solved.static.mean_transmission_error),
@@ -426,8 +426,8 @@ def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
 def _doubts(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
     """Doubts of the shape and the clearance, and what the mesh at rest does not show, or cannot bear."""
     solved, geometry = pair.solved, pair.solved.geometry
-    yield from doubts(geometry)
-    yield from backlash_doubts(pair.given, geometry)
+    yield from geometry_warnings(geometry)
+    yield from backlash_warnings(pair.given, geometry)
     for gear in (geometry.driver, geometry.driven):
         if gear.eccentricity > 0.0:
             message = (

@@ -105,8 +105,8 @@ MESH_SIZE = (
 _MOTIONS = ["x", "y", "z", "rotation_x", "rotation_y"]  # of a bearing
 STATIC_ERROR = (
     Quantity("without_attachments", lambda solved: solved.missing_compliance.max()),
-    Quantity("with_attachments", lambda solved: solved.modes.attachments.proof.error),
-    Quantity("attachments", lambda solved: len(solved.modes.attachments.frequencies)),
+    Quantity("with_attachments", lambda solved: solved.modes.residual_modes.proof.error),
+    Quantity("attachments", lambda solved: len(solved.modes.residual_modes.frequencies)),
     Quantity(
         "without_attachments_at",
         lambda solved: dict(zip(solved.loaded, solved.missing_compliance.max(axis=1), strict=True)),
@@ -147,7 +147,7 @@ ORIGIN = (
 
 def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
     """The housing, where it has residual attachments whose static error is known."""
-    return None if solved is None or solved.modes.attachments is None else solved
+    return None if solved is None or solved.modes.residual_modes is None else solved
 
 
 HOUSING: Fields = (

@@ -354,7 +354,7 @@ TRANSIENT: Fields = (
     Rows("sensors", lambda row: [(*row, name) for name in row[0].sensor_spectra], SENSOR),
     Rows(
         "gear_pairs",
-        lambda row: [(*row, pressed, number) for number, pressed in enumerate(row[0].machine.pressed_contacts)],
+        lambda row: [(*row, pressed, number) for number, pressed in enumerate(row[0].machine.loaded_contacts)],
         PAIR,
     ),
     *_spectra(lambda solved: solved.sensor_spectra, "sensor_spectrum", "sensor", "m/s2", "acceleration"),

@@ -48,7 +48,7 @@ def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[Any]:
     figures = solved.superposed if motion is None else motion.response
     motions = solved.motions if motion is None else (motion,)
     rows = []
-    for number, mesh in zip(solved.machine.pressed_contacts, solved.machine.meshes, strict=True):
+    for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True):
         name = solved.machine.system.contacts[number].name
         lines = _lines(motions, [one.histories.mesh_force[name] for one in motions], "amplitude_n")
         rows.append((mesh, figures, number, lines, motion is None))
@@ -236,7 +236,7 @@ CURVE = (
         "gear_pairs",
         lambda solved: [
             (mesh, solved.curve, number)
-            for number, mesh in zip(solved.machine.pressed_contacts, solved.machine.meshes, strict=True)
+            for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True)
         ],
         (
             Quantity("driver", lambda row: row[0].driver.name),

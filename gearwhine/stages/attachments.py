@@ -22,7 +22,7 @@ def build_supports(case: Case) -> list[room.Support]:
     return [entry.build() for entry in case.housing.support]
 
 
-def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Attachment]]:
+def build_attachments(case: Case) -> Iterator[tuple[str, str, room.Fixture]]:
     """All that is fastened, each with its key and label."""
     given = case.housing
     assert given is not None

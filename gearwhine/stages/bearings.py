@@ -101,7 +101,7 @@ def _stiffness(case: Case, index: int) -> FloatArray:
     state = rolling_state(case, index)
     assert state is not None
     try:
-        return rolling.bearing_from(state, given.name, given.at).stiffness
+        return rolling.linearised_bearing(state, given.name, given.at).stiffness
     except rotors.EquilibriumError as error:
         raise _refused(given, index, error) from error
 

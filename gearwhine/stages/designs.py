@@ -17,7 +17,7 @@ from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.regions import materials_of
 from gearwhine.stages.update_keys import FittedCase
 from housing.material import element_constants
-from housing.updating import ModalState, ModelRate, Parameter, Surrogate, modal_rates, values_at
+from housing.updating import ModalState, ModelSensitivity, Parameter, Surrogate, modal_sensitivities, values_at
 from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, MorphError, mesh_quality
 
 FloatArray = npt.NDArray[np.float64]
@@ -27,7 +27,7 @@ _WORST_SHAPE = 0.12  # shape number below which a moved mesh is given up for a n
 
 
 @dataclass(frozen=True)
-class HousingDesigns:
+class ParametricHousing:
     """Solves the housing of a case at coordinates z of its parameters.
 
     Attributes
@@ -71,7 +71,7 @@ class HousingDesigns:
             values = [number.as_written(value) for number, value in zip(self.case.numbers, values, strict=True)]
         return self.case.at(values)
 
-    def solve(self, coordinates: FloatArray, near: "HousingDesign | None" = None) -> "HousingDesign":
+    def solve(self, coordinates: FloatArray, near: "HousingAtParameters | None" = None) -> "HousingAtParameters":
         """Solve at coordinates, on the mesh of a neighbour where that can follow, else on a new one.
 
         Raises
@@ -91,7 +91,7 @@ class HousingDesigns:
         except (CaseError, GeometryError) as error:
             raise room.HousingError(str(error)) from error
 
-    def _solved(self, coordinates: FloatArray, case: Case, mesh: Mesh) -> "HousingDesign":
+    def _solved(self, coordinates: FloatArray, case: Case, mesh: Mesh) -> "HousingAtParameters":
         """The case on a mesh of its housing."""
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, room.assemble(parted, material, materials, threads=self.threads))
@@ -108,11 +108,11 @@ class HousingDesigns:
         skin = room.survey_grid(mesh, bounds).normal_motion(solved.shapes)
         measured = None if self.measured is None else solved.project(self.measured(mesh))
         state = ModalState(solved.frequencies, seats, skin, measured)
-        return HousingDesign(self, np.asarray(coordinates), case, mesh, state, solved.shapes)
+        return HousingAtParameters(self, np.asarray(coordinates), case, mesh, state, solved.shapes)
 
 
 @dataclass(frozen=True)
-class HousingDesign:
+class HousingAtParameters:
     """A housing solved at coordinates z.
 
     Attributes
@@ -129,7 +129,7 @@ class HousingDesign:
         Its neighbourhood where that was worked out before.
     """
 
-    designs: HousingDesigns
+    designs: ParametricHousing
     coordinates: FloatArray
     case: Case
     mesh: Mesh
@@ -141,7 +141,7 @@ class HousingDesign:
         """Its neighbourhood, by the exact rates of stiffness and mass."""
         return self._surrogate if self.known is None else self.known
 
-    def light(self) -> "HousingDesign":
+    def light(self) -> "HousingAtParameters":
         """The same with its neighbourhood and without its shapes, a twentieth of the size, for another process."""
         return replace(self, shapes=None, known=self.surrogate())
 
@@ -150,14 +150,14 @@ class HousingDesign:
         assert self.shapes is not None
         parted, material, materials = materials_of(self.case, self.mesh)
         constants = element_constants(parted, material, materials)
-        rates = modal_rates(self.mesh, constants, self.shapes, self.rates())
+        rates = modal_sensitivities(self.mesh, constants, self.shapes, self.rates())
         return Surrogate.about(self.coordinates, self.state, rates)
 
-    def rates(self) -> list[ModelRate]:
+    def rates(self) -> list[ModelSensitivity]:
         """Derivatives of the model by each coordinate, by central differences of quantities linear in small steps."""
         return [self._rate(number) for number in range(len(self.coordinates))]
 
-    def _rate(self, number: int) -> ModelRate:
+    def _rate(self, number: int) -> ModelSensitivity:
         either = []
         for way in (1.0, -1.0):
             beside = self.coordinates.copy()
@@ -169,7 +169,9 @@ class HousingDesign:
             either.append(self.designs.case.at(values.tolist()))
         above, below = either
         velocity = self._velocity(above, below)
-        return ModelRate(velocity, self._constants_rate(above, below), *self._attached_rates(above, below, velocity))
+        return ModelSensitivity(
+            velocity, self._constants_rate(above, below), *self._attached_rates(above, below, velocity)
+        )
 
     def _velocity(self, above: Case, below: Case) -> FloatArray | None:
         geometries = [_geometry(case) for case in (above, below)]
@@ -223,7 +225,7 @@ def _geometry(case: Case) -> BoxGeometry | None:
     return None if given.box is None else box_geometry(given.box, given.seat)
 
 
-def _followed(near: HousingDesign, case: Case) -> Mesh | None:
+def _followed(near: HousingAtParameters, case: Case) -> Mesh | None:
     """The neighbour's mesh, moved to a case's geometry; None where it cannot or should not be."""
     geometry, before = _geometry(case), _geometry(near.case)
     if geometry is None or geometry == before:

@@ -25,7 +25,7 @@ class CaseDriving(room.Driving):
         Speed over time; None where it is the nominal one all along.
     """
 
-    turning: room.Turning | None = None
+    turning: room.SpeedProfile | None = None
 
 
 def driving(case: Case, rotors: Sequence[room.RotorComponent]) -> CaseDriving:
@@ -55,7 +55,7 @@ def driving(case: Case, rotors: Sequence[room.RotorComponent]) -> CaseDriving:
         )
     elif run is not None:
         times, speeds = (np.array(part) for part in run.line)
-        turning = room.Turning(times, speeds / nominal)
+        turning = room.SpeedProfile(times, speeds / nominal)
     torques: list[room.AnyTorque] = []
     if turning is not None and run is not None and run.free and operation.load is not None:
         values = np.array([_torque(operation.load, rate * nominal) for rate in turning.rates])

@@ -20,7 +20,7 @@ _PLACES = 200  # along a flank
 
 
 @dataclass(frozen=True, eq=False)
-class PairCurves:
+class ToothPairCurves:
     """A gear pair at even phases of its mesh period, (n,), with every pair of teeth (n, m); NaN where one is absent.
 
     Attributes
@@ -44,7 +44,7 @@ class PairCurves:
     """
 
     phases: FloatArray
-    mesh: room.StaticMesh
+    mesh: room.LoadedMesh
     stiffness: FloatArray
     unloaded: FloatArray
     position: FloatArray
@@ -135,18 +135,18 @@ class PairAnalysis:
         place = np.unravel_index(int(known.argmax()), known.shape)
         return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
 
-    def curves(self) -> PairCurves:
+    def curves(self) -> ToothPairCurves:
         """The pair at even phases of the mesh period."""
         phases = np.arange(_PHASES) / _PHASES
         contact, faces = self.solved.contact, self.solved.contact.faces
-        mesh = room.static_transmission_error(contact, self.solved.static.force, phases)
+        mesh = room.loaded_transmission_error(contact, self.solved.static.force, phases)
         absent = ~contact.pairs(phases).present
         pressure = np.full(mesh.positions.shape, np.nan)
         if self.pressure is not None:
             whole = room.mesh_pressure(self.solved.geometry, contact, mesh)
             # Over the face the largest; what lies off the path has none.
             pressure = whole if whole.ndim == 2 else np.fmax.reduce(whole, axis=2)
-        return PairCurves(
+        return ToothPairCurves(
             phases=phases,
             mesh=mesh,
             stiffness=room.mesh_stiffness(contact, phases),
@@ -236,7 +236,7 @@ def _pitch_pressure(pair: LoadedGearPair) -> float | None:
     if not 0.0 <= pitch < pair.geometry.contact_ratio:
         return None
     shift = np.zeros(1) if faces is None else faces.shift
-    mesh = room.static_transmission_error(pair.contact, pair.static.force, np.unique((pitch - shift) % 1.0))
+    mesh = room.loaded_transmission_error(pair.contact, pair.static.force, np.unique((pitch - shift) % 1.0))
     pressure = room.mesh_pressure(pair.geometry, pair.contact, mesh).reshape(*mesh.positions.shape, -1)
     passing = np.isclose(mesh.positions[..., None] + shift, pitch, rtol=0.0, atol=1e-9)
     return float(pressure[passing].max())

@@ -3,7 +3,7 @@
 import coupling.gears as room
 
 
-def doubts(geometry: room.GearPairGeometry) -> list[dict[str, str]]:
+def geometry_warnings(geometry: room.GearPairGeometry) -> list[dict[str, str]]:
     """Warnings of what runs but is not as it should be."""
     found = []
     for gear in (geometry.driver, geometry.driven):

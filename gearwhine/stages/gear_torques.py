@@ -17,7 +17,7 @@ _SEARCHED_SLICES = 21  # of a face, while the best relief is sought
 _LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
 
 
-def over_torques(
+def solve_over_torques(
     pairs: Sequence[PairAnalysis], progress: Progress = silent, aims: Sequence[room.ReliefAim] = ()
 ) -> tuple[PairAnalysis, ...]:
     """The same pairs with their Harris maps and optimal reliefs, where the case has a torque.
@@ -40,7 +40,7 @@ def _harris_map(pair: LoadedGearPair) -> room.HarrisMap:
     contact = pair.contact
     if contact.hunting_period > 1:
         contact = room.tooth_contact(
-            _alike(pair.geometry), pair.model, corner_contact=contact.has_corners, faces=contact.faces
+            _alike(pair.geometry), pair.model, corner_contact=contact.has_corner_contact, faces=contact.faces
         )
     return room.harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
 
@@ -48,7 +48,7 @@ def _harris_map(pair: LoadedGearPair) -> room.HarrisMap:
 def _best_relief(pair: LoadedGearPair, aim: room.ReliefAim) -> room.ReliefOptimum:
     given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
     geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.contact.faces
-    corners = pair.contact.has_corners
+    corners = pair.contact.has_corner_contact
     return room.optimal_tip_relief(
         geometry,
         pair.model,
@@ -56,12 +56,12 @@ def _best_relief(pair: LoadedGearPair, aim: room.ReliefAim) -> room.ReliefOptimu
         shape="linear" if given is None else given.shape,
         corner_contact=corners,
         faces=faces,
-        searched_faces=None if faces is None else coarser_faces(faces, _SEARCHED_SLICES),
+        searched_faces=None if faces is None else with_coarser_slices(faces, _SEARCHED_SLICES),
         aim=aim,
     )
 
 
-def coarser_faces(faces: room.FaceSlices, count: int) -> room.FaceSlices:
+def with_coarser_slices(faces: room.FaceSlices, count: int) -> room.FaceSlices:
     """The same face in at most `count` slices: quick enough to search with, and as good for finding a place."""
     if faces.z.size <= count:
         return faces

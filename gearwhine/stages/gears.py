@@ -66,7 +66,7 @@ def build_pair(given: GivenPair, number: int = 0) -> GearPair:
     )
 
 
-def backlash_doubts(pair: GivenPair, geometry: room.GearPairGeometry) -> list[dict[str, str]]:
+def backlash_warnings(pair: GivenPair, geometry: room.GearPairGeometry) -> list[dict[str, str]]:
     """A warning where the given backlash is not the one that thicknesses and distance of the shafts say."""
     made = geometry.designed_backlash
     if pair.backlash is None or made is None:

@@ -24,11 +24,11 @@ from meshes import (
 )
 
 
-def unheard(warning: str) -> None:
+def ignore_warning(warning: str) -> None:
     """Ignore a warning."""
 
 
-def build_mesh(case: Case, warn: Callable[[str], None] = unheard, *, order: int = 2) -> Mesh:
+def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, order: int = 2) -> Mesh:
     """The housing's finite-element mesh.
 
     Parameters

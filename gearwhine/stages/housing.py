@@ -18,8 +18,8 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import attach_all, build_attachments, check_places
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.housing_checks import bearing_places, housing_checks
-from gearwhine.stages.kept_modes import MODES_FILE, find_modes, solution_inputs
-from gearwhine.stages.mesh_health import doubt_resolution, examine, told_on_failure
+from gearwhine.stages.kept_modes import MODE_CACHE_FILE, mode_cache_inputs, read_mode_cache
+from gearwhine.stages.mesh_health import noted_on_failure, require_meshable, resolution_warnings
 from gearwhine.stages.regions import materials_of
 from housing.measured import MeasuredModes
 from meshes import Mesh
@@ -120,9 +120,9 @@ class SolvedHousing:
         ValueError
             Where there are no attachments.
         """
-        if self.modes.attachments is None:
+        if self.modes.residual_modes is None:
             raise ValueError("static compliance of a housing without attachments")
-        return self.modes.attachments.proof.missing_parts.reshape(len(self.loaded), -1)
+        return self.modes.residual_modes.proof.missing_parts.reshape(len(self.loaded), -1)
 
     @cached_property
     def selection(self) -> room.Selection | None:
@@ -173,18 +173,18 @@ def solve_housing(
     begin = time.perf_counter()
     remarks: list[str] = []
     mesh = build_mesh(case, remarks.append) if given.mesh is not None else None
-    inputs = solution_inputs(case, mesh)
-    kept, spoilt = find_modes(folder, inputs) if folder is not None and not fresh else (None, None)
+    inputs = mode_cache_inputs(case, mesh)
+    kept, spoilt = read_mode_cache(folder, inputs) if folder is not None and not fresh else (None, None)
     if kept is not None and folder is not None:
         mesh, warnings = kept.mesh, list(kept.notes["warnings"])
-        progress(f"modes read from {folder / MODES_FILE} (unchanged housing)")
+        progress(f"modes read from {folder / MODE_CACHE_FILE} (unchanged housing)")
     else:
         if mesh is None:
             progress("meshing the housing")
             mesh = build_mesh(case, remarks.append)
-        warnings = [warning("geometry", remark) for remark in remarks] + examine(case, mesh)
+        warnings = [warning("geometry", remark) for remark in remarks] + require_meshable(case, mesh)
     meshed = time.perf_counter() - begin
-    with told_on_failure(warnings):
+    with noted_on_failure(warnings):
         # Places and ports before modes: what is wrong with them is found out before the long work.
         check_places(case, mesh)
         described = describe_housing(case, mesh)
@@ -196,7 +196,7 @@ def solve_housing(
         if kept is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
-            warnings += doubt_resolution(case, mesh, modes.certificate.limit / _HERTZ)
+            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _HERTZ)
         else:
             modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
             damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
@@ -234,7 +234,7 @@ def solve_housing(
         checks=checks,
         seconds=seconds,
         record=record,
-        source=None if kept is None or folder is None else folder / MODES_FILE,
+        source=None if kept is None or folder is None else folder / MODE_CACHE_FILE,
         source_holds=kept is not None and kept.sensors == record.sensors,
         warnings=warnings + ([] if spoilt is None else [warning("modes file", spoilt)]),
     )
@@ -295,10 +295,10 @@ def describe_housing(case: Case, mesh: Mesh) -> room.Housing:
     return room.Housing(parted, material, materials, fixtures, seats, sensors)
 
 
-def keep_modes(place: Path, solved: SolvedHousing) -> None:
+def write_mode_cache(place: Path, solved: SolvedHousing) -> None:
     """Write a solved housing's modes, unless the file that they were read from holds them, sensors and all."""
     if not solved.source_holds:
-        room.write_modes(place / MODES_FILE, solved.record)
+        room.write_modes(place / MODE_CACHE_FILE, solved.record)
 
 
 def base_participation(case: Case, mesh: Mesh, modes: room.ModeSet) -> FloatArray:

@@ -17,14 +17,14 @@ from gearwhine.case import Case
 from gearwhine.stages.contents import file_contents, installed, source_digest, texts_in, with_contents
 from gearwhine.stages.housing_checks import bearing_places
 
-MODES_FILE = "modes.nc"
+MODE_CACHE_FILE = "modes.nc"
 
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the kept mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab", "pypardiso")
 
 
-def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, Any]:
+def mode_cache_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, Any]:
     """Inputs of a case's housing modes; their content key is that of the modes.
 
     Parameters
@@ -53,9 +53,9 @@ def solution_inputs(case: Case, mesh: meshes.Mesh | None = None) -> dict[str, An
     }
 
 
-def find_modes(folder: Path, inputs: Mapping[str, Any]) -> tuple[room.ModeRecord | None, str | None]:
+def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[room.ModeRecord | None, str | None]:
     """Cached modes of these inputs, or None; and a warning where the file cannot be used."""
-    path = folder / MODES_FILE
+    path = folder / MODE_CACHE_FILE
     if not path.exists():
         return None, None
     try:

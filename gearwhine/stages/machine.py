@@ -18,7 +18,7 @@ from gearwhine.stages.build import build_gear, gear_inertia
 from gearwhine.stages.driving import driving
 from gearwhine.stages.gears import build_pair, solve_gears
 from gearwhine.stages.housing import SolvedHousing, base_participation, solve_housing
-from housing import RESPONSE_ORDERS, ModeSet, leading_attachments
+from housing import RESPONSE_ORDERS, ModeSet, leading_residual_modes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class SensorPlace:
 
 
 @dataclass(frozen=True)
-class HousingInMachine:
+class ReducedHousing:
     """Solved housing reduced to the quantities that a machine needs: kilobytes, without mesh and shapes.
 
     Attributes
@@ -65,10 +65,10 @@ class HousingInMachine:
     coarser: room.HousingComponent | None = None
 
 
-def housing_in_machine(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingInMachine:
+def reduce_housing(case: Case, solved: SolvedHousing, progress: Progress = silent) -> ReducedHousing:
     """Reduce a solved housing to the quantities that a machine needs."""
     component, coarser = _housing_components(case, solved, progress)
-    return HousingInMachine(
+    return ReducedHousing(
         component,
         solved.modes.frequencies_hz,
         solved.trusted_limit_hz,
@@ -80,7 +80,7 @@ def housing_in_machine(case: Case, solved: SolvedHousing, progress: Progress = s
 
 def build_machine(
     case: Case,
-    housing: SolvedHousing | HousingInMachine | None,
+    housing: SolvedHousing | ReducedHousing | None,
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
     *,
@@ -98,7 +98,7 @@ def build_machine(
         Where a free speed cannot start or stalls.
     """
     if isinstance(housing, SolvedHousing):
-        housing = housing_in_machine(case, housing, progress)
+        housing = reduce_housing(case, housing, progress)
     machine = describe_machine(case, None if housing is None else housing.component)
     components = machine.rotor_components(reach=reach, progress=progress)
     return machine.assemble(pairs, components, driving(case, components))
@@ -217,7 +217,7 @@ def base_motion(case: Case) -> room.BaseMotion | None:
 def basis_error(
     case: Case,
     machine: room.CoupledMachine,
-    housing: SolvedHousing | HousingInMachine | None,
+    housing: SolvedHousing | ReducedHousing | None,
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
 ) -> room.BasisError | None:
@@ -226,7 +226,7 @@ def basis_error(
     None where there is no housing, and so no sensor.
     """
     if isinstance(housing, SolvedHousing):
-        housing = housing_in_machine(case, housing, progress)
+        housing = reduce_housing(case, housing, progress)
     if housing is None or housing.coarser is None or not housing.component.sensors:
         return None
     progress("comparing with another modal basis")
@@ -244,16 +244,16 @@ def _housing_components(
         progress("taking the housing's mass for the motion of its base and its weight")
         participation = base_participation(case, solved.mesh, solved.modes)
     component = _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
-    attached = solved.modes.attachments
+    attached = solved.modes.residual_modes
     if attached is None or not solved.loaded:
         return component, None
     ports = sparse.csr_array(sparse.vstack(list(solved.loaded.values()), format="csr"))
-    fewer, mixture = leading_attachments(attached, ports, solved.modes.certificate.limit**2, RESPONSE_ORDERS - 1)
+    fewer, mixture = leading_residual_modes(attached, ports, solved.modes.certificate.limit**2, RESPONSE_ORDERS - 1)
     taken = linalg.block_diag(np.eye(len(solved.modes.frequencies)), mixture)
     return component, _housing_component(
         case,
         solved,
-        replace(solved.modes, attachments=fewer),
+        replace(solved.modes, residual_modes=fewer),
         None if solved.damping_matrix is None else taken.T @ solved.damping_matrix @ taken,
         None if participation is None else taken.T @ participation,
     )

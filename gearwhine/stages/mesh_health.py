@@ -18,7 +18,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages.attachments import check_places
 from gearwhine.stages.geometry import build_mesh, cover_joints
 from gearwhine.stages.regions import materials_of
-from meshes import UNITS, Ailment, Mesh, WaveCarrier, diagnose, expected_elements, resolution_ailments
+from meshes import UNITS, Mesh, MeshDefect, WaveCarrier, diagnose, expected_elements, resolution_defects
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ _UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bul
 _MANY_UNKNOWNS = 1.5e6
 
 
-def examine(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
+def require_meshable(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
     """Warnings about the mesh of a case.
 
     Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
@@ -53,15 +53,15 @@ def examine(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
     return _warnings(found)
 
 
-def _of_loose_bodies(one: Ailment) -> bool:
+def _of_loose_bodies(one: MeshDefect) -> bool:
     """Whether a defect lies between bodies; elements of one body that do not match are an error."""
     return one.name == "disconnected" or (one.name == "non-conforming" and one.severity == "warning")
 
 
-def doubt_resolution(case: Case, mesh: Mesh, limit_hz: float | None) -> list[dict[str, Any]]:
+def resolution_warnings(case: Case, mesh: Mesh, limit_hz: float | None) -> list[dict[str, Any]]:
     """Warnings about element size for modes up to a frequency; without one, about the kind of element alone."""
     # Without a limit, one so low that no element is too large for it.
-    return _warnings(resolution_ailments(mesh, _wave(case, limit_hz if limit_hz else 1e-6)))
+    return _warnings(resolution_defects(mesh, _wave(case, limit_hz if limit_hz else 1e-6)))
 
 
 def _wave(case: Case, limit_hz: float) -> WaveCarrier:
@@ -92,7 +92,7 @@ class ForeseenMesh:
     mesh: Mesh | None = None
 
 
-def foresee(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh, list[dict[str, Any]]]:
+def preview_mesh(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh, list[dict[str, Any]]]:
     """Size of the mesh and warnings about it, before anything is solved.
 
     A CAD or mesh file is read and checked whole; for a box the element size is compared with the shortest wave.
@@ -111,14 +111,14 @@ def foresee(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh, list
     remarks: list[str] = []
     progress("meshing the drawing" if given.mesh is None else "reading the mesh")
     mesh = build_mesh(case, remarks.append, order=1)
-    warnings = [warning("geometry", remark) for remark in remarks] + examine(case, mesh)
-    with told_on_failure(warnings):
+    warnings = [warning("geometry", remark) for remark in remarks] + require_meshable(case, mesh)
+    with noted_on_failure(warnings):
         materials_of(case, mesh)
         check_places(case, mesh)
     foreseen = ForeseenMesh(np.ptp(mesh.bounds, axis=0), None if given.cad is None else given.cad.mesh_size, mesh=mesh)
     if given.cad is not None:
         return foreseen, warnings + _foresee_load(mesh.n_elements)
-    return foreseen, warnings + doubt_resolution(case, mesh, given.frequency_limit)
+    return foreseen, warnings + resolution_warnings(case, mesh, given.frequency_limit)
 
 
 def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
@@ -152,7 +152,7 @@ def _foresee_load(elements: float) -> list[dict[str, Any]]:
 
 
 @contextmanager
-def told_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
+def noted_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
     """Add the warnings so far to an exception as notes: one of them may be its cause."""
     try:
         yield
@@ -162,6 +162,6 @@ def told_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
         raise
 
 
-def _warnings(ailments: tuple[Ailment, ...]) -> list[dict[str, Any]]:
+def _warnings(defects: tuple[MeshDefect, ...]) -> list[dict[str, Any]]:
     """Mesh defects as warnings of the command's JSON."""
-    return [warning(one.name, one.message, count=one.count, place_m=one.place.tolist()) for one in ailments]
+    return [warning(one.name, one.message, count=one.count, place_m=one.place.tolist()) for one in defects]

@@ -43,7 +43,7 @@ class RunLine:
         return self.shape.frequency / _HERTZ
 
 
-def read_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
+def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
     """The lines nearest to frequencies [Hz] in a results folder, each once, ascending.
 
     Raises
@@ -85,7 +85,7 @@ def read_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> l
     ]
 
 
-def drawn_line(line: RunLine, solved: SolvedHousing, housing: DrawnHousing) -> DrawnShape:
+def operating_shape_of_line(line: RunLine, solved: SolvedHousing, housing: DrawnHousing) -> DrawnShape:
     """A line's shape in micrometres, with the modes that have most of its kinetic energy."""
     try:
         motion = line.shape.displacement(solved.modes, housing.nodes)

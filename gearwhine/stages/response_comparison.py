@@ -17,7 +17,7 @@ _HERTZ = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
-class ResponseLikeness:
+class ResponseCorrelation:
     """FRAC of every measured response; see :func:`housing.correlation.frac`.
 
     Attributes
@@ -53,7 +53,7 @@ class ResponseLikeness:
 
 def compare_responses(
     case: Case, solved: SolvedHousing, survey: MappedSurvey, responses: MeasuredResponses
-) -> ResponseLikeness:
+) -> ResponseCorrelation:
     """The model's responses with its own damping beside the measured ones, up to where its modes are all known.
 
     Parameters
@@ -86,7 +86,7 @@ def compare_responses(
     model = synthesised_responses(
         solved.modes, solved.total_damping_ratios, driven.matrix, survey.matrix, frequencies, responses.motion
     )
-    return ResponseLikeness(
+    return ResponseCorrelation(
         geometry=responses.geometry,
         references=forces,
         band=(float(frequencies[0]), float(frequencies[-1])),
@@ -95,7 +95,9 @@ def compare_responses(
     )
 
 
-def responses_beside(case: Case, solved: SolvedHousing, survey: MappedSurvey) -> ResponseLikeness | str | None:
+def compare_responses_document(
+    case: Case, solved: SolvedHousing, survey: MappedSurvey
+) -> ResponseCorrelation | str | None:
     """Correlation of a case's frequency responses, or the reason why there is none; None without measured responses."""
     given = case.measured
     responses = None if given is None or given.survey is None else given.survey.responses

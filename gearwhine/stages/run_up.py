@@ -115,12 +115,12 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
     length = 2 * len(times) // (_ROWS + 1)
     units, spectra, orders = {}, {}, {}
     signals = {name: (signal, "m/s²") for name, signal in solved.histories.sensor_acceleration.items()}
-    for number in solved.machine.pressed_contacts:
+    for number in solved.machine.loaded_contacts:
         name = solved.machine.system.contacts[number].name
         signals[name] = solved.histories.mesh_force[name], "N"
     for name, (signal, unit) in signals.items():
         found = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
-        turned = signature.order_resampled(signal[span], times, turning, turns_per_second, per_turn=per_turn)
+        turned = signature.resample_by_angle(signal[span], times, turning, turns_per_second, per_turn=per_turn)
         units[name], spectra[name] = unit, _up_to(found, solved.trusted_limit)
         mapped = signature.order_map(
             turned, turns=cut.turns, step=max(cut.turns // 2, 1), follow=sorted(set(named.values()))

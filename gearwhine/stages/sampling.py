@@ -64,7 +64,7 @@ class Sampling:
 
 def sampling(
     case: Case,
-    turning: room.Turning | None,
+    turning: room.SpeedProfile | None,
     limit: float,
     signals: int,
     rows: int,
@@ -141,7 +141,7 @@ def transient_duration(case: Case) -> float:
     return case.transient.revolutions * (_HERTZ / abs(case.operation.speed))
 
 
-def _record_from(case: Case, period: float, turning: room.Turning | None) -> float:
+def _record_from(case: Case, period: float, turning: room.SpeedProfile | None) -> float:
     """When the discarded revolutions are done [s].
 
     Raises

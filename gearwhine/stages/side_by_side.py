@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from gearwhine.interruption import aside, each_aside
-from housing.updating import Each, one_by_one
+from gearwhine.interruption import each_from_thread, in_thread
+from housing.updating import Each, serial_map
 
 
 def default_workers() -> int:
@@ -19,7 +19,7 @@ def default_workers() -> int:
 
 
 @contextmanager
-def side_by_side(workers: int) -> Iterator[Each]:
+def in_parallel(workers: int) -> Iterator[Each]:
     """Pool of single-thread processes, which end with the block; one worker is this process.
 
     Raises
@@ -28,7 +28,7 @@ def side_by_side(workers: int) -> Iterator[Each]:
         Where the processes do not start.
     """
     if workers < 2:
-        yield one_by_one
+        yield serial_map
         return
     from gearwhine.sweep.workers import await_workers, connected
 
@@ -39,7 +39,7 @@ def side_by_side(workers: int) -> Iterator[Each]:
             with warnings.catch_warnings():
                 # Dask would rather have large tasks scattered first; ours are few and long.
                 warnings.filterwarnings("ignore", message="Sending large graph")
-                futures = aside(lambda: [client.submit(work, task, pure=False) for task in tasks])
-            return each_aside(future.result() for future in futures)
+                futures = in_thread(lambda: [client.submit(work, task, pure=False) for task in tasks])
+            return each_from_thread(future.result() for future in futures)
 
         yield each

@@ -164,7 +164,7 @@ class SolvedSignature:
         found = {}
         for name, spectrum in self.bearing_spectra.items():
             found[name] = np.zeros((5, len(spectrum.frequencies)))
-            found[name][list(solved.histories.tie_axes[name])] = spectrum.amplitude
+            found[name][list(solved.histories.bearing_axes[name])] = spectrum.amplitude
         return found
 
     def housing_lines(self, limit: float) -> tuple[FloatArray, ComplexArray, str] | None:
@@ -215,7 +215,7 @@ def solve_signature(
     window, limit = solved.record.sampling.window, solved.trusted_limit
     ties = {
         name: solved.record.spectrum(np.ascontiguousarray(force.T), limit)
-        for name, force in histories.tie_force.items()
+        for name, force in histories.bearing_reaction.items()
     }
     frequencies = np.zeros(0) if housing_frequencies is None else housing_frequencies
     modal, lines = None, {}

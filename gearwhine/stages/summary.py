@@ -11,8 +11,8 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages import mesh_health
 from gearwhine.stages.bearings import build_bearings
 from gearwhine.stages.build import build_rotor
-from gearwhine.stages.gear_shapes import doubts
-from gearwhine.stages.gears import backlash_doubts, build_pair, pair_geometries
+from gearwhine.stages.gear_shapes import geometry_warnings
+from gearwhine.stages.gears import backlash_warnings, build_pair, pair_geometries
 from gearwhine.stages.geometry import material_of
 from gearwhine.stages.machine import require_machine
 from gearwhine.stages.mesh_health import ForeseenMesh
@@ -104,12 +104,12 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     if case.housing is not None:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
             material_of(case, name)
-        mesh, warnings = mesh_health.foresee(case, progress)
+        mesh, warnings = mesh_health.preview_mesh(case, progress)
     speeds = rotor_speeds(case) if case.operation is not None else {}
     rotors = tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
     pairs = tuple(_checked_pairs(case))
     for pair in pairs:
-        warnings += [*doubts(pair.geometry), *backlash_doubts(pair.given, pair.geometry)]
+        warnings += [*geometry_warnings(pair.geometry), *backlash_warnings(pair.given, pair.geometry)]
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     return CheckedCase(case, mesh, rotors, pairs, warnings)

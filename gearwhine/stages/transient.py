@@ -15,7 +15,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.stages.contents import installed, source_digest
 from gearwhine.stages.driving import driving
 from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.machine import HousingInMachine, base_motion
+from gearwhine.stages.machine import ReducedHousing, base_motion
 from gearwhine.stages.march_record import MarchRecord, Signals, block_arrays, record_spectra
 from gearwhine.stages.sampling import RECORD_BYTES, Sampling, sampling
 from housing.labelled import content_key
@@ -55,7 +55,7 @@ class SolvedTransient:
     machine: room.CoupledMachine
     speed: float
     method: str
-    turning: room.Turning | None
+    turning: room.SpeedProfile | None
     result: room.TransientFigures
     record: MarchRecord
     signals: Signals
@@ -126,7 +126,7 @@ class SolvedTransient:
         return list(named), self.record.spectrum(np.array(list(named.values())), self.trusted_limit)
 
 
-def is_traced(case: Case) -> bool:
+def has_traced_lines(case: Case) -> bool:
     """Whether lines of the sensors are traced to their origin.
 
     Lines have names, and parts that add up, where speeds are steady and the ground is at rest.
@@ -142,7 +142,7 @@ def solve_transient(
     mesh_frequencies: tuple[float, ...],
     progress: Progress = silent,
     *,
-    housing: SolvedHousing | HousingInMachine | None = None,
+    housing: SolvedHousing | ReducedHousing | None = None,
     keep: Callable[[str], Blocks] | None = None,
     record_bytes: int = RECORD_BYTES,
     samples_per_block: int | None = None,
@@ -173,14 +173,14 @@ def solve_transient(
     turning = driving(case, machine.rotors).turning
     fastest = 1.0 if turning is None else max(1.0, float(turning.rates.max()))
     limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
-    modal, traced = case.transient.modal_coordinates, is_traced(case)
+    modal, traced = case.transient.modal_coordinates, has_traced_lines(case)
     outputs = room.with_modal_rows(machine, room.transient_outputs(machine), modal, housing=traced)
 
-    def named(result: room.Recorded) -> Signals:
+    def named(result: room.MotionRecord) -> Signals:
         histories = _in_space(case, housing, room.histories(machine, result, turning))
         return Signals(histories, room.modal_record(machine, result, modal, housing=traced))
 
-    nothing = named(room.nothing_recorded(machine, outputs))
+    nothing = named(room.empty_record(machine, outputs))
     rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
     rows += 2 * len(machine.system.contacts)
     signals = nothing.columns.shape[1]
@@ -188,13 +188,13 @@ def solve_transient(
     progress("compiling the time stepper (the first time takes longer)")
     march = (machine.system, chosen.settings, outputs)
     start = starting_state(case, machine)
-    key = room.march_key(*march, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
+    key = room.integration_key(*march, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
     blocks: Blocks = _InMemory()
     if keep is not None:
         blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
     last = blocks[len(blocks) - 1] if len(blocks) else None
     held = nothing.columns if last is None else last["held"]
-    marched = room.march_blocks(
+    marched = room.integrate_blocks(
         *march,
         turning=turning,
         initial=start,
@@ -209,13 +209,13 @@ def solve_transient(
     figures = room.transient_figures(chosen.settings, record.end)
     stretch = record.last_stretch()
     of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
-    method = room.march_method(machine.system, chosen.settings, turning or room.Turning.steady())
+    method = room.integration_method(machine.system, chosen.settings, turning or room.SpeedProfile.steady())
     return SolvedTransient(
         machine, case.operation.speed, method, turning, figures, record, stretch, of_sensors, of_meshes, limit
     )
 
 
-def _in_space(case: Case, housing: SolvedHousing | HousingInMachine | None, named: room.Histories) -> room.Histories:
+def _in_space(case: Case, housing: SolvedHousing | ReducedHousing | None, named: room.Histories) -> room.Histories:
     """Histories as accelerometers show them: their motion in space, not beside a base that moves."""
     base = base_motion(case)
     if base is None or housing is None:
@@ -262,7 +262,7 @@ def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
     return {name: load[:, :3].mean(axis=0) for name, load in solved.histories.bearing_load.items()}
 
 
-def _trusted_limit(housing: SolvedHousing | HousingInMachine | None, mesh_frequencies: tuple[float, ...]) -> float:
+def _trusted_limit(housing: SolvedHousing | ReducedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
     """Up to where the housing's modes are complete [Hz]; without a housing, what the gears excite."""
     if housing is not None:
         return housing.trusted_limit_hz

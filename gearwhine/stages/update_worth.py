@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from statistics import median
 
 from gearwhine.progress import Progress
-from gearwhine.stages.designs import HousingDesign
-from housing.updating import Each, Effort, HeldBack, NullFit, Procedure, Target, hold_back, null_fits
+from gearwhine.stages.designs import HousingAtParameters
+from housing.updating import Each, Effort, LeftOutMode, NullFit, Procedure, Target, leave_one_out, null_fits
 
 _CLEAR = 0.1  # gap of dominance from which the choice of modes is a clear one
 
@@ -54,7 +54,7 @@ class NullTest:
         return sum(met) / len(self.fits)
 
 
-def whole_search(start: HousingDesign, effort: Effort, count: int) -> Procedure[HousingDesign]:
+def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -> Procedure[HousingAtParameters]:
     """The update's search as it is made on the mesh of one design alone, by one thread, from there.
 
     Parameters
@@ -69,16 +69,16 @@ def whole_search(start: HousingDesign, effort: Effort, count: int) -> Procedure[
     return Procedure(designs.solve, designs.parameters, start.light(), effort, count)
 
 
-def held_back_modes(
-    procedure: Procedure[HousingDesign], target: Target, each: Each, progress: Progress
-) -> list[HeldBack]:
-    """Each mode predicted by a fit to the others; see :func:`housing.updating.hold_back`."""
+def leave_one_out_modes(
+    procedure: Procedure[HousingAtParameters], target: Target, each: Each, progress: Progress
+) -> list[LeftOutMode]:
+    """Each mode predicted by a fit to the others; see :func:`housing.updating.leave_one_out`."""
     progress(f"holding back {len(target.noise)} modes, one at a time")
-    return hold_back(procedure, target, each, progress)
+    return leave_one_out(procedure, target, each, progress)
 
 
-def random_sets(
-    procedure: Procedure[HousingDesign], target: Target, count: int, each: Each, progress: Progress
+def random_frequency_sets(
+    procedure: Procedure[HousingAtParameters], target: Target, count: int, each: Each, progress: Progress
 ) -> NullTest:
     """Random sets fitted, and the measured one; see :func:`housing.updating.null_fits`."""
     progress(f"fitting the measured and {count} random sets of {len(target.noise)} frequencies")

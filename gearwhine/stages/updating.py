@@ -14,27 +14,27 @@ import numpy as np
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.progress import Progress, silent
-from gearwhine.stages.designs import HousingDesign, HousingDesigns
-from gearwhine.stages.side_by_side import default_workers, side_by_side
+from gearwhine.stages.designs import HousingAtParameters, ParametricHousing
+from gearwhine.stages.side_by_side import default_workers, in_parallel
 from gearwhine.stages.update_keys import FittedCase, FittedNumber, fitted_case, unit_in_si
 from gearwhine.stages.update_target import measurement_of
-from gearwhine.stages.update_worth import NullTest, held_back_modes, random_sets, whole_search
+from gearwhine.stages.update_worth import NullTest, full_update_search, leave_one_out_modes, random_frequency_sets
 from housing.updating import (
     UNPAIRED,
     Each,
     Effort,
-    HeldBack,
+    LeftOutMode,
     Meshes,
     Misfit,
+    MultistartResult,
     Parameter,
     Posterior,
-    Raced,
     Step,
     Target,
     measure,
+    multistart_search,
     polish,
     posterior,
-    race,
 )
 
 _AT_END = 1e-3  # part of a range that counts as its end
@@ -153,16 +153,16 @@ class SolvedUpdate:
     """
 
     fitted: FittedCase
-    before: HousingDesign
-    after: HousingDesign
+    before: HousingAtParameters
+    after: HousingAtParameters
     misfit_before: Misfit
     misfit_after: Misfit
-    start: HousingDesign
+    start: HousingAtParameters
     target: Target
     left_out: int
     posterior: Posterior
     steps: tuple[Step, ...]
-    held_back: list[HeldBack]
+    held_back: list[LeftOutMode]
     null: NullTest | None
     seconds: dict[str, float]
 
@@ -241,7 +241,7 @@ def update_housing(
         expected = "0 where shapes were measured: random frequencies have none"
         raise CaseError([Problem("--null", null, expected)])
     begin = time.perf_counter()
-    fine = HousingDesigns(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
+    fine = ParametricHousing(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
     coarse = replace(fine, case=fitted_case(case, given.mesh_size))
     effort, count = Effort(solves=given.solves, seed=given.seed), 1 + given.explore
     before, start, raced = _raced(fine, coarse, target, effort, count, threads, progress)
@@ -252,17 +252,17 @@ def update_housing(
     # On the way modes were not counted; those that are reported are certified.
     after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
     seconds["own_mesh"] = time.perf_counter() - begin
-    rows: list[HeldBack] = []
+    rows: list[LeftOutMode] = []
     null_test: NullTest | None = None
     with _sharing(threads, len(target.noise) * held_back + null) as each:
-        procedure = whole_search(start, effort, count)
+        procedure = full_update_search(start, effort, count)
         if held_back:
             begin = time.perf_counter()
-            rows = held_back_modes(procedure, target, each, progress)
+            rows = leave_one_out_modes(procedure, target, each, progress)
             seconds["held_back"] = time.perf_counter() - begin
         if null:
             begin = time.perf_counter()
-            null_test = random_sets(procedure, target, null, each, progress)
+            null_test = random_frequency_sets(procedure, target, null, each, progress)
             seconds["null"] = time.perf_counter() - begin
     return SolvedUpdate(
         fitted=fine.case,
@@ -283,18 +283,18 @@ def update_housing(
 
 def _sharing(threads: int, tasks: int) -> AbstractContextManager[Each]:
     """Pool for single-thread tasks; one task is done in this process."""
-    return side_by_side(min(threads, tasks, default_workers()))
+    return in_parallel(min(threads, tasks, default_workers()))
 
 
 def _raced(
-    fine: HousingDesigns,
-    coarse: HousingDesigns,
+    fine: ParametricHousing,
+    coarse: ParametricHousing,
     target: Target,
     effort: Effort,
     count: int,
     threads: int,
     progress: Progress,
-) -> tuple[HousingDesign, HousingDesign, Raced[HousingDesign]]:
+) -> tuple[HousingAtParameters, HousingAtParameters, MultistartResult[HousingAtParameters]]:
     """The housing as it stands on both meshes, and the search from there and from other starts.
 
     Where there are several starts all is done by one thread each, from the first solution on: with other numbers of
@@ -306,16 +306,16 @@ def _raced(
     same = coarse.case_at(coarse.start) == fine.case_at(fine.start)
     with _sharing(threads, count) as each:
         tasks = [(fine, True)] if same else [(fine, False), (coarse, True)]
-        solved: list[HousingDesign] = list(each(_as_it_stands, tasks))
+        solved: list[HousingAtParameters] = list(each(_as_it_stands, tasks))
         before, start = solved[0], solved[-1]
         own = None if same else replace(fine, draft=True).solve
-        meshes = Meshes(replace(coarse, draft=True).solve, own, HousingDesign.light)
+        meshes = Meshes(replace(coarse, draft=True).solve, own, HousingAtParameters.light)
         judged = None if same else before.state
-        raced = race(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
+        raced = multistart_search(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
     return before, start, raced
 
 
-def _as_it_stands(task: tuple[HousingDesigns, bool]) -> HousingDesign:
+def _as_it_stands(task: tuple[ParametricHousing, bool]) -> HousingAtParameters:
     """Solved where the case begins, and with its neighbourhood where that is wanted."""
     designs, wanted = task
     design = designs.solve(designs.start)

@@ -1,17 +1,17 @@
 """Sweeps: a case at many speeds, or over any of its keys, by many processes.
 
 - :func:`sweep_points` -- the case at every point of the grid, checked, each with the key of its content.
-- :func:`conduct_sweep` -- what is on file already is read, the rest goes to the workers, each point is written as it
+- :func:`run_sweep` -- what is on file already is read, the rest goes to the workers, each point is written as it
   ends.
-- :func:`gathered`, :func:`sweep_document` -- all points in one labelled dataset, and as JSON.
+- :func:`collected_sweep`, :func:`sweep_document` -- all points in one labelled dataset, and as JSON.
 
 A point is known again by its content (:mod:`gearwhine.sweep.points`), is solved by :mod:`gearwhine.sweep.solution`
 wherever a worker is (:mod:`gearwhine.sweep.workers`), and lives in a file of its own
 (:mod:`gearwhine.sweep.point_files`).
 """
 
-from gearwhine.sweep.conduct import SweptPoint, conduct_sweep
-from gearwhine.sweep.gather import gathered, sweep_document
+from gearwhine.sweep.conduct import SweptPoint, run_sweep
+from gearwhine.sweep.gather import collected_sweep, sweep_document
 from gearwhine.sweep.points import Point, axis_name, sweep_points
 from gearwhine.sweep.solution import PointFailure, PointResult
 from gearwhine.sweep.workers import default_workers
@@ -22,9 +22,9 @@ __all__ = [
     "PointResult",
     "SweptPoint",
     "axis_name",
-    "conduct_sweep",
+    "collected_sweep",
     "default_workers",
-    "gathered",
+    "run_sweep",
     "sweep_document",
     "sweep_points",
 ]

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.failures import WorkersError
-from gearwhine.interruption import aside, each_aside
+from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.output import staging
 from gearwhine.progress import Progress
-from gearwhine.stages.housing import SolvedHousing, keep_modes, solve_housing
-from gearwhine.stages.machine import HousingInMachine, housing_in_machine
-from gearwhine.sweep.point_files import read_point, stale_points, write_point
+from gearwhine.stages.housing import SolvedHousing, solve_housing, write_mode_cache
+from gearwhine.stages.machine import ReducedHousing, reduce_housing
+from gearwhine.sweep.point_files import outdated_points, read_point, write_point
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.solution import PointFailure, PointResult, solve_point, solve_point_housing
 from gearwhine.sweep.workers import await_workers, connected
@@ -34,7 +34,7 @@ class SweptPoint:
     resumed: bool
 
 
-def conduct_sweep(
+def run_sweep(
     points: Sequence[Point],
     folder: Path,
     progress: Progress,
@@ -71,12 +71,12 @@ def conduct_sweep(
     resumed = frozenset(outcomes)
     todo = [number for number in range(len(points)) if number not in resumed]
     if todo:
-        from gearwhine.sweep.rehearsal import Rehearsal
+        from gearwhine.sweep.rehearsal import WarmUp
 
         workers = min(workers, len(todo))
         with staging(folder) as place:
             progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
-            with connected(workers, scheduler, place, [Rehearsal()]) as client:
+            with connected(workers, scheduler, place, [WarmUp()]) as client:
                 # What takes long goes first, lest all wait for it at the end.
                 todo.sort(key=lambda number: -points[number].duration)
                 shared, unkept = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
@@ -84,27 +84,27 @@ def conduct_sweep(
                     await_workers(client, workers)
                 told = _teller(len(points), len(resumed), progress)
                 told(0)
-                futures = aside(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
+                futures = in_thread(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
                 # Now, not before: the points need not wait for this.
                 _keep(unkept, folder)
                 _read_what_writes()
-                for count, (number, outcome) in enumerate(each_aside(_as_they_end(client, futures)), start=1):
+                for count, (number, outcome) in enumerate(each_from_thread(_as_they_end(client, futures)), start=1):
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
                     told(count)
-    for path in stale_points(folder, tuple(points)):
+    for path in outdated_points(folder, tuple(points)):
         path.unlink(missing_ok=True)
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
 
 
 def _shared_housings(
     points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
-) -> tuple[dict[str | None, HousingInMachine], SolvedHousing | None]:
+) -> tuple[dict[str | None, ReducedHousing], SolvedHousing | None]:
     """By its key, each housing of the points where all have the same modes; nothing where they differ or are none.
 
     Beside it the solution that is still to be kept.
     """
-    found: dict[str | None, HousingInMachine] = {}
+    found: dict[str | None, ReducedHousing] = {}
     solved = None
     if len({point.modes_key for point in points}) > 1 or points[0].modes_key is None:
         return found, solved
@@ -114,14 +114,14 @@ def _shared_housings(
         # The next one reads the modes that this one keeps.
         _keep(solved, folder)
         solved = solve_housing(point.case, progress, command="sweep", folder=folder, fresh=fresh and not found)
-        found[point.housing_key] = housing_in_machine(point.case, solved)
+        found[point.housing_key] = reduce_housing(point.case, solved)
     return found, solved
 
 
 def _keep(solved: SolvedHousing | None, folder: Path) -> None:
     if solved is not None:
         with staging(folder) as place:
-            keep_modes(place, solved)
+            write_mode_cache(place, solved)
 
 
 def _read_what_writes() -> None:
@@ -132,7 +132,7 @@ def _read_what_writes() -> None:
 
 
 def _submitted(
-    client: Client, points: dict[int, Point], shared: dict[str | None, HousingInMachine]
+    client: Client, points: dict[int, Point], shared: dict[str | None, ReducedHousing]
 ) -> dict[Future[Any], int]:
     """Hand every point to the workers, and before it its housing where that is not shared."""
     code = code_digest()

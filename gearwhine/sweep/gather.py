@@ -24,7 +24,7 @@ _PEAKS = 10  # of each sensor, the highest
 _SAME_ORDER = 9  # decimals to which two lines are one
 
 
-def gathered(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> xr.Dataset:
+def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> xr.Dataset:
     """Every point of a sweep over its swept keys; NaN where a point failed or has no such line.
 
     Spectra stand over *order*, cycles for each turn of the first driver: records hold a number of its turns, so the

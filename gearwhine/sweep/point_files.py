@@ -16,7 +16,7 @@ from gearwhine.output import finite, json_text
 from gearwhine.sweep.points import Point
 from gearwhine.sweep.solution import PointFailure, PointResult
 from housing.netcdf import Variables, read_netcdf, write_netcdf
-from housing.seals import seal, seal_holds
+from housing.seals import checksum_holds, write_checksum
 
 POINTS = "points"
 """Folder of the points within the results folder."""
@@ -59,7 +59,7 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
         arrays = _arrays(result)
     staged = place / point.file
     write_netcdf(staged, arrays, attributes)
-    seal(staged)
+    write_checksum(staged)
     (folder / POINTS).mkdir(exist_ok=True)
     os.replace(staged, folder / POINTS / point.file)
 
@@ -69,7 +69,7 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
     file = folder / POINTS / point.file
     try:
         # Before HDF5 sees it, which may read a damaged file for ever.
-        if not seal_holds(file):
+        if not checksum_holds(file):
             return None
         arrays, attributes = read_netcdf(file)
         if attributes.get("key") != point.key:
@@ -81,7 +81,7 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
         return None
 
 
-def stale_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
+def outdated_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
     """Files of points that are not of this sweep: those of the case as it was."""
     names = {point.file for point in points}
     return [path for path in sorted((folder / POINTS).glob("*.nc")) if path.name not in names]

@@ -15,7 +15,7 @@ import rotors
 from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_document, load_case, require
 from gearwhine.output import file_stems
 from gearwhine.stages.contents import file_contents, installed, source_digest, with_contents
-from gearwhine.stages.kept_modes import solution_inputs
+from gearwhine.stages.kept_modes import mode_cache_inputs
 from gearwhine.stages.sampling import transient_duration
 
 # Tables that no transient depends on.
@@ -116,7 +116,7 @@ def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str
     )
     modes_key = housing_key = None
     if case.housing is not None:
-        inputs = solution_inputs(case)
+        inputs = mode_cache_inputs(case)
         modes_key = housing.content_key(inputs)
         whole: dict[str, Any] = {"modes": modes_key, "housing": case.housing.model_dump(mode="json")}
         housing_key = housing.content_key(whole)

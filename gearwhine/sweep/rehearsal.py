@@ -14,7 +14,7 @@ from gearwhine.sweep.points import code_digest
 _BRIEF = ("transient.revolutions=1", "transient.discard=0", "transient.tolerance=1e-2")
 
 
-class Rehearsal(WorkerPlugin):
+class WarmUp(WorkerPlugin):
     """Lets a worker march a pair of gears for a moment before its first point."""
 
     name = "rehearsal"

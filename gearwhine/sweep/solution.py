@@ -18,7 +18,7 @@ from gearwhine.stages.bearing_loads import bearing_load_warnings
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.instability import machine_warnings
-from gearwhine.stages.machine import HousingInMachine, basis_error, build_machine, housing_in_machine
+from gearwhine.stages.machine import ReducedHousing, basis_error, build_machine, reduce_housing
 from gearwhine.stages.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.stages.uncertainty import add_uncertainty
 from gearwhine.sweep.points import code_digest
@@ -77,7 +77,7 @@ class PointFailure:
     traceback: str = ""
 
 
-def solve_point(case: Case, housing: HousingInMachine | PointFailure | None, code: str) -> PointResult | PointFailure:
+def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code: str) -> PointResult | PointFailure:
     """Run the transient of a case whose housing is solved; what goes wrong is the answer, not an error.
 
     Parameters
@@ -107,11 +107,11 @@ def solve_point(case: Case, housing: HousingInMachine | PointFailure | None, cod
         return _failure(error)
 
 
-def solve_point_housing(case: Case, code: str) -> HousingInMachine | PointFailure:
+def solve_point_housing(case: Case, code: str) -> ReducedHousing | PointFailure:
     """Solve the housing of a point, for its machine."""
     try:
         _require_same_code(code)
-        return housing_in_machine(case, solve_housing(case, command="sweep"))
+        return reduce_housing(case, solve_housing(case, command="sweep"))
     except Exception as error:
         return _failure(error)
 
@@ -134,7 +134,7 @@ def _failure(error: Exception) -> PointFailure:
     return PointFailure(message or str(error))
 
 
-def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | None, seconds: float) -> PointResult:
+def _reduced(case: Case, solved: SolvedTransient, housing: ReducedHousing | None, seconds: float) -> PointResult:
     assert case.operation is not None
     turning_hz = abs(case.operation.speed) / _HERTZ
     spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
@@ -142,7 +142,7 @@ def _reduced(case: Case, solved: SolvedTransient, housing: HousingInMachine | No
     kept = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))
     contacts = solved.machine.system.contacts
     # Under the drive flanks' name at every point, whichever are pressed there.
-    pressed = {contacts[i].name: contacts[number].name for i, number in enumerate(solved.machine.pressed_contacts)}
+    pressed = {contacts[i].name: contacts[number].name for i, number in enumerate(solved.machine.loaded_contacts)}
     document = transient_document(solved)
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
     add_warnings(document, () if housing is None else housing.warnings)

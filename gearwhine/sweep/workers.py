@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from gearwhine.case import CaseError, Problem
 from gearwhine.failures import WorkersError
-from gearwhine.interruption import aside, uninterrupted
+from gearwhine.interruption import in_thread, uninterrupted
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster, WorkerPlugin
@@ -97,7 +97,7 @@ def await_workers(client: Client, workers: int) -> None:
         Where the processes do not start.
     """
     try:
-        aside(lambda: client.wait_for_workers(workers, timeout=_WORKERS_COME))
+        in_thread(lambda: client.wait_for_workers(workers, timeout=_WORKERS_COME))
     except TimeoutError as error:
         raise WorkersError(f"the workers did not start: {error}") from error
 
@@ -156,7 +156,7 @@ def _cluster_at(address: str) -> Iterator[Client]:
     from distributed import Client
 
     try:
-        client = aside(lambda: Client(address, timeout=_FIND_SCHEDULER, set_as_default=False))
+        client = in_thread(lambda: Client(address, timeout=_FIND_SCHEDULER, set_as_default=False))
     except (OSError, ValueError, RuntimeError, TimeoutError) as error:
         expected = f"the address of a running Dask scheduler, such as tcp://host:8786 ({error})"
         raise CaseError([Problem("--scheduler", address, expected)]) from error

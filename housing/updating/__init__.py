@@ -1,14 +1,14 @@
 """Model updating: named parameters of a housing's model fitted to its measured modes, and validation of the fit.
 
 - :class:`Parameter` -- a number of the model with its range and prior.
-- :class:`ModelRate`, :func:`modal_rates` -- exact sensitivities of the modes.
+- :class:`ModelSensitivity`, :func:`modal_sensitivities` -- exact sensitivities of the modes.
 - :class:`Surrogate` -- the modes of neighbouring designs.
 - :class:`Target`, :func:`measure` -- measured modes, and the misfit of a design (:class:`Misfit`).
 - :func:`search` -- the fit from one start by full solutions (:data:`Solve`).
 - :class:`MeshBias` -- correction of a coarse mesh by a fine one.
-- :func:`race` -- many starts on a coarse mesh, judged on the fine one; :func:`polish` -- its final steps.
+- :func:`multistart_search` -- many starts on a coarse mesh, judged on the fine one; :func:`polish` -- its final steps.
 - :func:`posterior` -- uncertainty of the parameters (:class:`Posterior`).
-- :class:`Procedure` -- the whole search on one mesh; :func:`hold_back` -- leave-one-out cross-validation;
+- :class:`Procedure` -- the whole search on one mesh; :func:`leave_one_out` -- leave-one-out cross-validation;
   :func:`null_fits` -- fits to random frequencies.
 """
 
@@ -24,21 +24,21 @@ from housing.updating.posterior import Posterior as Posterior
 from housing.updating.posterior import posterior as posterior
 from housing.updating.race import Each as Each
 from housing.updating.race import Meshes as Meshes
-from housing.updating.race import Raced as Raced
-from housing.updating.race import one_by_one as one_by_one
+from housing.updating.race import MultistartResult as MultistartResult
+from housing.updating.race import multistart_search as multistart_search
 from housing.updating.race import polish as polish
-from housing.updating.race import race as race
-from housing.updating.rates import ModelRate as ModelRate
-from housing.updating.rates import modal_rates as modal_rates
+from housing.updating.race import serial_map as serial_map
+from housing.updating.rates import ModelSensitivity as ModelSensitivity
+from housing.updating.rates import modal_sensitivities as modal_sensitivities
 from housing.updating.search import Effort as Effort
-from housing.updating.search import Found as Found
+from housing.updating.search import SearchResult as SearchResult
 from housing.updating.search import Solve as Solve
 from housing.updating.search import Step as Step
 from housing.updating.search import search as search
 from housing.updating.surrogate import ModalState as ModalState
 from housing.updating.surrogate import Surrogate as Surrogate
-from housing.updating.worth import HeldBack as HeldBack
+from housing.updating.worth import LeftOutMode as LeftOutMode
 from housing.updating.worth import NullFit as NullFit
 from housing.updating.worth import Procedure as Procedure
-from housing.updating.worth import hold_back as hold_back
+from housing.updating.worth import leave_one_out as leave_one_out
 from housing.updating.worth import null_fits as null_fits

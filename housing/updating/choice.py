@@ -38,7 +38,7 @@ _FAINT = 1e-300  # strength of modes that have none
 
 
 @dataclass(frozen=True)
-class Lacking:
+class ChoiceShortfall:
     """Shortfalls of a choice of modes from a clear one, in units of the penalties' scales.
 
     Attributes
@@ -132,14 +132,14 @@ def _strengths(
     )
 
 
-def lacking(
+def choice_shortfall(
     chosen: IntArray,
     strengths: Dominance,
     band: tuple[float, float],
     gap: float,
     margin: float = -np.inf,
     firmness: float = 1.0,
-) -> Lacking:
+) -> ChoiceShortfall:
     """Shortfalls of a choice of modes, with the thresholds of least cost.
 
     Parameters
@@ -167,10 +167,10 @@ def lacking(
     (modes,) = np.nonzero(edge)
     same = np.ones(len(modes))
     parts.append((np.full(len(modes), -1), modes, -known.upward[modes], edge[modes], known.end_scale * same))
-    return Lacking(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    return ChoiceShortfall(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
-def choose(
+def choose_modes(
     logarithms: FloatArray,
     noise: FloatArray,
     strengths: Dominance,
@@ -190,7 +190,7 @@ def choose(
     strengths : Dominance
         Of all modes, of which more than ``n`` are in the band.
     band, gap, margin, firmness
-        See :func:`lacking`.
+        See :func:`choice_shortfall`.
 
     Returns
     -------

@@ -21,7 +21,7 @@ from scipy.optimize import linear_sum_assignment
 
 from housing.correlation import modal_assurance_criterion
 from housing.errors import HousingError
-from housing.updating.choice import Lacking, choose, lacking
+from housing.updating.choice import ChoiceShortfall, choice_shortfall, choose_modes
 from housing.updating.surrogate import ModalState, Neighbour
 
 FloatArray = npt.NDArray[np.float64]
@@ -136,7 +136,7 @@ class Misfit:
     margin: float
     count: int
     mac: FloatArray | None = None
-    lacking: Lacking | None = None
+    choice_shortfall: ChoiceShortfall | None = None
 
     @property
     def measures_agree(self) -> bool:
@@ -190,9 +190,9 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
             return Misfit(hopeless + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
         if not strict:
             asked = (target.gap, target.margin, target.firmness)
-            pairs = choose(target.logarithms, target.noise, strengths, target.band, *asked)
+            pairs = choose_modes(target.logarithms, target.noise, strengths, target.band, *asked)
         gap, margin = strengths.gaps(pairs, target.band)
-        clear = lacking(pairs, strengths, target.band, target.gap, target.margin, target.firmness)
+        clear = choice_shortfall(pairs, strengths, target.band, target.gap, target.margin, target.firmness)
         penalty += clear.cost
     else:
         pairs, mac = pair_by_shape(target, state)
@@ -204,7 +204,7 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
     count = 0
     if target.count is not None:
         count = int(np.count_nonzero(state.frequencies < target.count.limit))
-        beyond = target.firmness * strays(target.count, state)[1]
+        beyond = target.firmness * misplaced_modes(target.count, state)[1]
         penalty += float(beyond @ beyond)
     errors = np.where(pairs == UNPAIRED, np.nan, np.log(state.frequencies[pairs]) - target.logarithms)
     value = float(np.nansum((errors / target.noise) ** 2) + penalty)
@@ -227,7 +227,7 @@ def is_met(target: Target, misfit: Misfit) -> bool:
     return counted and misfit.gap >= target.gap and (misfit.margin > 0.0 or not np.isfinite(target.margin))
 
 
-def strays(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
+def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
     """The modes that violate a known number of modes below a limit, or nearly do.
 
     Returns
@@ -284,12 +284,12 @@ def residuals(
     missed = [misfit.errors[told] / target.noise[told]]
     rows = [near.slopes[:, modes].T / target.noise[told, None]]
     if target.count is not None and penalties:
-        lost, beyond = strays(target.count, near.state)
+        lost, beyond = misplaced_modes(target.count, near.state)
         missed.append(target.firmness * beyond)
         rows.append(target.firmness * near.slopes[:, lost].T / _COUNT_SCALE)
-    if misfit.lacking is not None and penalties:
-        missed.append(misfit.lacking.values)
-        rows.append(_lacking_slopes(misfit.lacking, near))
+    if misfit.choice_shortfall is not None and penalties:
+        missed.append(misfit.choice_shortfall.values)
+        rows.append(_lacking_slopes(misfit.choice_shortfall, near))
     if target.shapes is not None and np.isfinite(target.shape_noise) and near.state.measured is not None:
         scale = np.sqrt(target.shapes.shape[1]) / target.shape_noise
         model, turning = near.state.measured[modes], near.measured_slopes(modes)
@@ -306,7 +306,7 @@ def residuals(
     return np.concatenate(missed), np.concatenate(rows)
 
 
-def _lacking_slopes(lacks: Lacking, near: Neighbour) -> FloatArray:
+def _lacking_slopes(lacks: ChoiceShortfall, near: Neighbour) -> FloatArray:
     """Slopes of the shortfalls of a choice of modes, its thresholds following, shape (n, n_parameters)."""
     weight = lacks.sign / lacks.scale
     modes, place = np.unique(lacks.modes, return_inverse=True)

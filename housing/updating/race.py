@@ -19,7 +19,7 @@ from housing.errors import HousingError
 from housing.updating.bias import Debiased, MeshBias, debiased
 from housing.updating.misfit import Misfit, Target, is_met, measure
 from housing.updating.parameters import Parameter, coordinate_bounds
-from housing.updating.search import AnyDesign, Effort, Found, Solve, Step, descend, search
+from housing.updating.search import AnyDesign, Effort, SearchResult, Solve, Step, descend, search
 from housing.updating.surrogate import ModalState, Surrogate
 
 FloatArray = npt.NDArray[np.float64]
@@ -43,7 +43,7 @@ class Each(Protocol):
         """The results."""
 
 
-def one_by_one(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
+def serial_map(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
     """Serial :class:`Each`."""
     return map(work, tasks)
 
@@ -92,7 +92,7 @@ class Runner(Generic[AnyDesign]):
 
 
 @dataclass(frozen=True)
-class Raced(Generic[AnyDesign]):
+class MultistartResult(Generic[AnyDesign]):
     """Result of a multistart search.
 
     Attributes
@@ -148,7 +148,7 @@ class _Run(Generic[AnyDesign]):
         return ended, found.misfit.value, found.steps
 
 
-def race(
+def multistart_search(
     meshes: Meshes[AnyDesign],
     target: Target,
     parameters: Sequence[Parameter],
@@ -156,9 +156,9 @@ def race(
     judged: ModalState | None,
     effort: Effort,
     count: int,
-    each: Each = one_by_one,
+    each: Each = serial_map,
     progress: Callable[[str], None] = lambda message: None,
-) -> Raced[AnyDesign]:
+) -> MultistartResult[AnyDesign]:
     """Search from a start and from the best of some draws of the prior.
 
     Parameters
@@ -213,12 +213,12 @@ def race(
 
 def polish(
     solve: Solve[AnyDesign],
-    raced: Raced[AnyDesign],
+    raced: MultistartResult[AnyDesign],
     target: Target,
     parameters: Sequence[Parameter],
     effort: Effort,
     progress: Callable[[str], None] = lambda message: None,
-) -> Found[AnyDesign]:
+) -> SearchResult[AnyDesign]:
     """Continue from the best design of a multistart search with firm penalties until the target is met.
 
     Where the search has met the target already, its design is the result.
@@ -228,7 +228,7 @@ def polish(
     solve : callable
         On the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the result.
     raced, target, parameters, effort, progress
-        See :func:`race`.
+        See :func:`multistart_search`.
     """
     firm = replace(target, firmness=FIRMNESS[-1])
     own = replace(effort, solves=0 if raced.is_met else _POLISHED, trust=_REFINED)
@@ -241,8 +241,11 @@ def polish(
 
 
 def _best(
-    best: Raced[AnyDesign], target: Target, runners: Sequence[Runner[AnyDesign]], progress: Callable[[str], None]
-) -> Raced[AnyDesign]:
+    best: MultistartResult[AnyDesign],
+    target: Target,
+    runners: Sequence[Runner[AnyDesign]],
+    progress: Callable[[str], None],
+) -> MultistartResult[AnyDesign]:
     """The best of the previous best and of searches solved on the fine mesh."""
     for runner in runners:
         best = _better(best, target, runner, progress)
@@ -250,8 +253,8 @@ def _best(
 
 
 def _better(
-    best: Raced[AnyDesign] | None, target: Target, runner: Runner[AnyDesign], progress: Callable[[str], None]
-) -> Raced[AnyDesign]:
+    best: MultistartResult[AnyDesign] | None, target: Target, runner: Runner[AnyDesign], progress: Callable[[str], None]
+) -> MultistartResult[AnyDesign]:
     """The better of the previous best and of a search solved on the fine mesh, by the penalties of the last round."""
     assert runner.judged is not None
     misfit = measure(replace(target, firmness=FIRMNESS[-1]), runner.judged, runner.coordinates, strict=True)
@@ -263,7 +266,7 @@ def _better(
     )
     seen = (*(() if best is None else best.seen), runner.coordinates)
     if best is None or (met, -misfit.value) > (best.is_met, -best.misfit.value):
-        return Raced(runner.coordinates, misfit, met, (), seen, runner.design)
+        return MultistartResult(runner.coordinates, misfit, met, (), seen, runner.design)
     return replace(best, seen=seen)
 
 

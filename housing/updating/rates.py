@@ -26,7 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class ModelRate:
+class ModelSensitivity:
     """Derivatives of a model by a parameter; None where it has no influence.
 
     Attributes
@@ -46,7 +46,7 @@ class ModelRate:
 
 
 @dataclass(frozen=True)
-class ModalRates:
+class ModalSensitivities:
     """Derivatives of modal stiffness and mass by each of some parameters.
 
     Attributes
@@ -79,7 +79,9 @@ class ModalRates:
         return np.asarray(mixed)
 
 
-def modal_rates(mesh: Mesh, constants: FloatArray, shapes: FloatArray, rates: Sequence[ModelRate]) -> ModalRates:
+def modal_sensitivities(
+    mesh: Mesh, constants: FloatArray, shapes: FloatArray, rates: Sequence[ModelSensitivity]
+) -> ModalSensitivities:
     """Compute the derivatives of modal stiffness and mass by each parameter.
 
     Parameters
@@ -115,7 +117,7 @@ def modal_rates(mesh: Mesh, constants: FloatArray, shapes: FloatArray, rates: Se
     by_node = np.ascontiguousarray(shapes.transpose(1, 2, 0))
     for part in parts(mesh, n, changes):
         add_part(mesh, part, constants, by_node, changes, stiffness, mass)
-    return ModalRates(0.5 * (stiffness + stiffness.transpose(0, 2, 1)), 0.5 * (mass + mass.transpose(0, 2, 1)))
+    return ModalSensitivities(0.5 * (stiffness + stiffness.transpose(0, 2, 1)), 0.5 * (mass + mass.transpose(0, 2, 1)))
 
 
 def _seen(rate: sparse.csr_array, flat: FloatArray) -> FloatArray:

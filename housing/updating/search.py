@@ -86,7 +86,7 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Found(Generic[AnyDesign]):
+class SearchResult(Generic[AnyDesign]):
     """Result of a search."""
 
     design: AnyDesign
@@ -102,7 +102,7 @@ def search(
     effort: Effort = Effort(),
     progress: Callable[[str], None] = lambda message: None,
     until: Callable[[AnyDesign], bool] = lambda design: False,
-) -> Found[AnyDesign]:
+) -> SearchResult[AnyDesign]:
     """Fit the parameters, from a design that has been solved.
 
     Parameters
@@ -160,7 +160,7 @@ def search(
         if enough:
             break
         trust = min(trust * 1.4, 0.4) if kept > 0.6 else trust if kept > 0.25 else trust * 0.5
-    return Found(design, misfit, tuple(steps))
+    return SearchResult(design, misfit, tuple(steps))
 
 
 def search_surrogate(

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scipy import linalg
 
 from housing.dominance import Dominance, dominance
-from housing.updating.rates import ModalRates
+from housing.updating.rates import ModalSensitivities
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -144,7 +144,7 @@ class Surrogate:
     mass: FloatArray
 
     @classmethod
-    def about(cls, center: FloatArray, state: ModalState, rates: ModalRates) -> "Surrogate":
+    def about(cls, center: FloatArray, state: ModalState, rates: ModalSensitivities) -> "Surrogate":
         """The surrogate about a design; rigid modes, which no parameter moves, are left out."""
         own, kept = elastic(state)
         eigenvalues = own.frequencies**2

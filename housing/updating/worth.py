@@ -15,7 +15,7 @@ import numpy.typing as npt
 from housing.updating.misfit import UNPAIRED, Misfit, Target, is_met, measure
 from housing.updating.parameters import Parameter
 from housing.updating.posterior import Posterior, posterior
-from housing.updating.race import Each, Meshes, one_by_one, polish, race
+from housing.updating.race import Each, Meshes, multistart_search, polish, serial_map
 from housing.updating.search import AnyDesign, Effort, Solve
 
 FloatArray = npt.NDArray[np.float64]
@@ -24,7 +24,7 @@ _APART = 0.01  # least relative distance of two random frequencies, which a surv
 
 
 @dataclass(frozen=True)
-class HeldBack:
+class LeftOutMode:
     """A mode that was left out of the fit, and predicted by it.
 
     Attributes
@@ -114,7 +114,7 @@ class Procedure(Generic[AnyDesign]):
     def __call__(self, target: Target) -> tuple[Misfit, Posterior]:
         """Misfit of the result, by dominant modes, and posterior of the parameters."""
         meshes = Meshes(self.solve, None)
-        raced = race(meshes, target, self.parameters, self.start, None, self.effort, self.count)
+        raced = multistart_search(meshes, target, self.parameters, self.start, None, self.effort, self.count)
         found = polish(self.solve, raced, target, self.parameters, self.effort)
         design, coordinates = found.design, found.design.coordinates
         near = design.surrogate().at(coordinates)
@@ -122,12 +122,12 @@ class Procedure(Generic[AnyDesign]):
         return judged, posterior(target, found.misfit, coordinates, near)
 
 
-def hold_back(
+def leave_one_out(
     procedure: Procedure[AnyDesign],
     target: Target,
-    each: Each = one_by_one,
+    each: Each = serial_map,
     progress: Callable[[str], None] = lambda message: None,
-) -> list[HeldBack]:
+) -> list[LeftOutMode]:
     """Leave-one-out: fit to all measured modes but one, from the start, and predict that one; for each of them.
 
     The number of dominant modes stays known, so that the pairing is the same as when all are fitted.
@@ -148,7 +148,7 @@ def hold_back(
     rows = []
     for mode, (misfit, after) in enumerate(each(procedure, held)):
         rows.append(
-            HeldBack(
+            LeftOutMode(
                 mode=mode,
                 measured=float(target.frequencies[mode]),
                 predicted=float(target.frequencies[mode] * np.exp(misfit.errors[mode])),
@@ -173,7 +173,7 @@ def null_fits(
     target: Target,
     count: int,
     seed: int = 0,
-    each: Each = one_by_one,
+    each: Each = serial_map,
     progress: Callable[[str], None] = lambda message: None,
 ) -> tuple[NullFit, list[NullFit]]:
     """Fit the measured frequencies, and random sets of as many between the first and the last measured one.
@@ -187,7 +187,7 @@ def null_fits(
     seed : int
         Of their frequencies.
     each, progress
-        See :func:`hold_back`.
+        See :func:`leave_one_out`.
 
     Returns
     -------

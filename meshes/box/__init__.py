@@ -3,7 +3,7 @@
 from meshes.box.geometry import BoxGeometry as BoxGeometry
 from meshes.box.geometry import BoxMisfitError as BoxMisfitError
 from meshes.box.meshing import mesh_box as mesh_box
-from meshes.box.misfit import Misfit as Misfit
+from meshes.box.misfit import BoxMisfit as BoxMisfit
 from meshes.box.morph import BoxMorph as BoxMorph
 from meshes.box.parts import Bolt as Bolt
 from meshes.box.parts import Bore as Bore

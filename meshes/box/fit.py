@@ -8,13 +8,13 @@ from collections.abc import Iterator
 from meshes.box import layout
 from meshes.box.fit_cover import cover_misfits
 from meshes.box.layout import Block
-from meshes.box.misfit import SLACK, Misfit, mm
+from meshes.box.misfit import SLACK, BoxMisfit, mm
 from meshes.box.parts import FACES, OPPOSITE_FACES, Bore, Box, Rib
 
 _LEAST_CORNER = 0.25  # of the thinner wall must be left where an edge is rounded
 
 
-def misfits(box: Box) -> Iterator[Misfit]:
+def misfits(box: Box) -> Iterator[BoxMisfit]:
     """Yield everything that does not fit; checks that depend on an unsound part are left out.
 
     Ribs, cover and fillets are checked only where walls, feet and bores fit each other.
@@ -42,15 +42,15 @@ def misfits(box: Box) -> Iterator[Misfit]:
             yield from _bore_clashes(box, index, bore)
 
 
-def _wall_misfits(box: Box) -> Iterator[Misfit]:
+def _wall_misfits(box: Box) -> Iterator[BoxMisfit]:
     """Walls that meet."""
     for axis, size, (low, high) in zip("xyz", box.size, OPPOSITE_FACES, strict=True):
         if box.wall.of(low) + box.wall.of(high) >= size:
             expected = f"{low} and {high} walls that leave room inside the {mm(size)} of the box along {axis}"
-            yield Misfit(("wall",), expected)
+            yield BoxMisfit(("wall",), expected)
 
 
-def _foot_sizes(box: Box) -> Iterator[Misfit]:
+def _foot_sizes(box: Box) -> Iterator[BoxMisfit]:
     """Feet that touch would melt into one, and their undersides with them."""
     if box.feet is None:
         return
@@ -58,10 +58,10 @@ def _foot_sizes(box: Box) -> Iterator[Misfit]:
     for axis in (0, 2):
         if 2.0 * box.feet.size[axis] >= base[axis]:
             expected = f"feet of less than half the base along {'xyz'[axis]}, {mm(base[axis] / 2)}"
-            yield Misfit(("feet", "size", axis), expected)
+            yield BoxMisfit(("feet", "size", axis), expected)
 
 
-def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
+def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
     """A bore in no end wall, or one that leaves it, with its boss or without."""
     half, location = box.size[2] / 2.0, ("bores", index)
     if layout.end_wall(box, bore) is None:
@@ -69,7 +69,7 @@ def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
             f"z in the back wall, {mm(-half)} to {mm(-half + box.wall.back)}, "
             f"or in the front wall, {mm(half - box.wall.front)} to {mm(half)}"
         )
-        yield Misfit((*location, "center", 2), expected)
+        yield BoxMisfit((*location, "center", 2), expected)
     x, y, _ = bore.center
     for what, diameter in (("bore", bore.diameter), ("boss", bore.boss.diameter if bore.boss else 0.0)):
         over = max(abs(x) + diameter / 2.0 - box.size[0] / 2.0, diameter / 2.0 - y, y + diameter / 2.0 - box.size[1])
@@ -78,11 +78,11 @@ def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
                 f"a {what} within its wall of {mm(box.size[0])} by {mm(box.size[1])}; around "
                 f"x = {mm(x)}, y = {mm(y)} it reaches {mm(over)} beyond the edge"
             )
-            yield Misfit((*location, "diameter") if what == "bore" else (*location, "boss", "diameter"), expected)
+            yield BoxMisfit((*location, "diameter") if what == "bore" else (*location, "boss", "diameter"), expected)
             return
 
 
-def _bores_apart(box: Box) -> Iterator[Misfit]:
+def _bores_apart(box: Box) -> Iterator[BoxMisfit]:
     """Bores that touch another bore or its boss, which would break the cylinder of either."""
     for index, bore in enumerate(box.bores):
         for other in box.bores[:index]:
@@ -97,21 +97,23 @@ def _bores_apart(box: Box) -> Iterator[Misfit]:
                     f'a bore clear of seat "{other.name}" and its boss (they overlap by {mm(needed - apart)}: centres '
                     f"{mm(apart)} apart, {mm(needed)} needed)"
                 )
-                yield Misfit(("bores", index, "diameter"), expected)
+                yield BoxMisfit(("bores", index, "diameter"), expected)
 
 
-def _feet_misfits(box: Box) -> Iterator[Misfit]:
+def _feet_misfits(box: Box) -> Iterator[BoxMisfit]:
     if box.feet is None:
         return
     width, _, depth = box.feet.size
     patch = box.feet.bolt_patch
     if patch is not None and not 0.0 < patch < min(width, depth):
-        yield Misfit(("feet", "bolt_patch"), f"a diameter above 0 and below that of the feet, {mm(min(width, depth))}")
+        yield BoxMisfit(
+            ("feet", "bolt_patch"), f"a diameter above 0 and below that of the feet, {mm(min(width, depth))}"
+        )
     if box.fillets.outside >= min(width, depth):
-        yield Misfit(("feet", "size"), f"feet larger than the rounding above them, {mm(box.fillets.outside)}")
+        yield BoxMisfit(("feet", "size"), f"feet larger than the rounding above them, {mm(box.fillets.outside)}")
 
 
-def _fillet_sizes(box: Box) -> Iterator[Misfit]:
+def _fillet_sizes(box: Box) -> Iterator[BoxMisfit]:
     """Radii that a box's own edges do not leave room for."""
     for key, radius, block in (
         ("inside", box.fillets.inside, layout.cavity_block(box)),
@@ -119,10 +121,12 @@ def _fillet_sizes(box: Box) -> Iterator[Misfit]:
     ):
         if radius < 0.0 or (radius > 0.0 and 2.0 * radius >= min(block.size)):
             where = "cavity" if key == "inside" else "box"
-            yield Misfit(("fillets", key), f"a radius from 0 to less than half the {where}, {mm(min(block.size) / 2)}")
+            yield BoxMisfit(
+                ("fillets", key), f"a radius from 0 to less than half the {where}, {mm(min(block.size) / 2)}"
+            )
 
 
-def _corner_misfits(box: Box) -> Iterator[Misfit]:
+def _corner_misfits(box: Box) -> Iterator[BoxMisfit]:
     """Yield an outer fillet that leaves too little wall at a sharper corner inside."""
     if box.fillets.outside == 0.0:
         return
@@ -136,7 +140,7 @@ def _corner_misfits(box: Box) -> Iterator[Misfit]:
                 thinnest = min(thinnest, left / min(walls))
     if thinnest < _LEAST_CORNER:
         expected = f"a radius that leaves a quarter of the wall at each edge; this one leaves {max(thinnest, 0.0):.0%}"
-        yield Misfit(("fillets", "outside"), f"{expected} (round the inside as well, or less outside)")
+        yield BoxMisfit(("fillets", "outside"), f"{expected} (round the inside as well, or less outside)")
 
 
 def _corner_thickness(walls: tuple[float, float], outside: float, inside: float) -> float:
@@ -151,58 +155,60 @@ def _corner_thickness(walls: tuple[float, float], outside: float, inside: float)
     return least
 
 
-def _rib_misfits(box: Box, index: int) -> Iterator[Misfit]:
+def _rib_misfits(box: Box, index: int) -> Iterator[BoxMisfit]:
     """Yield the dimensions of a rib that do not fit its wall."""
     rib, location = box.ribs[index], ("ribs", index)
     normal, _ = FACES[rib.face]
     if "xyz".index(rib.along) == normal:
         others = " or ".join(repr(axis) for axis in "xyz" if axis != "xyz"[normal])
-        yield Misfit((*location, "along"), f"{others}, which lie in the {rib.face} wall")
+        yield BoxMisfit((*location, "along"), f"{others}, which lie in the {rib.face} wall")
         return
     for key in ("height", "thickness"):
         if getattr(rib, key) <= 0.0:
-            yield Misfit((*location, key), "a length above 0")
+            yield BoxMisfit((*location, key), "a length above 0")
             return
     limits = layout.rib_range(box, rib)
     across = 3 - normal - "xyz".index(rib.along)
     low, high = limits.low[across] + rib.thickness / 2, limits.high[across] - rib.thickness / 2
     if not low - SLACK <= rib.at <= high + SLACK:
         expected = f"a place on the wall, from {mm(low)} to {mm(high)} for a rib {mm(rib.thickness)} thick"
-        yield Misfit((*location, "at"), expected)
+        yield BoxMisfit((*location, "at"), expected)
     yield from _rib_ends(rib, limits, location)
     room = layout.cavity_block(box).size[normal]
     if rib.side == "inside" and rib.height > room + SLACK:
-        yield Misfit((*location, "height"), f"at most the {mm(room)} inside the box")
+        yield BoxMisfit((*location, "height"), f"at most the {mm(room)} inside the box")
 
 
-def _rib_ends(rib: Rib, limits: Block, location: tuple[str | int, ...]) -> Iterator[Misfit]:
+def _rib_ends(rib: Rib, limits: Block, location: tuple[str | int, ...]) -> Iterator[BoxMisfit]:
     along = "xyz".index(rib.along)
     low, high = limits.low[along], limits.high[along]
     for key, end in (("start", rib.start), ("end", rib.end)):
         if end is not None and not low - SLACK <= end <= high + SLACK:
             expected = f"a place on the wall, which spans {rib.along} = {mm(low)} to {mm(high)} on its {rib.side}"
-            yield Misfit((*location, key), expected)
+            yield BoxMisfit((*location, key), expected)
             return
     start, end = low if rib.start is None else rib.start, high if rib.end is None else rib.end
     if start >= end:
-        yield Misfit((*location, "end" if rib.end is not None else "start"), f"an end beyond the start at {mm(start)}")
+        yield BoxMisfit(
+            (*location, "end" if rib.end is not None else "start"), f"an end beyond the start at {mm(start)}"
+        )
 
 
-def _rib_clashes(box: Box) -> Iterator[Misfit]:
+def _rib_clashes(box: Box) -> Iterator[BoxMisfit]:
     """Ribs that run into feet, or across the joint of the cover into other ribs."""
     feet = layout.foot_blocks(box)
     blocks = [layout.rib_block(box, rib) for rib in box.ribs]
     for index, (rib, block) in enumerate(zip(box.ribs, blocks, strict=True)):
         if any(block.overlaps(foot) for foot in feet):
-            yield Misfit(("ribs", index), f"a rib clear of the feet on the {rib.face} wall")
+            yield BoxMisfit(("ribs", index), f"a rib clear of the feet on the {rib.face} wall")
         if not layout.on_cover(box, rib):
             continue
         for other, (its, its_block) in enumerate(zip(box.ribs, blocks, strict=True)):
             if not layout.on_cover(box, its) and block.overlaps(its_block):
-                yield Misfit(("ribs", index), f"a rib of the cover clear of the body's, ribs[{other}]")
+                yield BoxMisfit(("ribs", index), f"a rib of the cover clear of the body's, ribs[{other}]")
 
 
-def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
+def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
     """Yield a bore that a part obstructs, or that crosses the joint of the cover."""
     start, end = box.bore_span(bore)
     radius = bore.diameter / 2
@@ -217,10 +223,10 @@ def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
 
     for number, rib in enumerate(box.ribs):
         if stands_in(layout.rib_block(box, rib)):
-            yield Misfit(location, f"a bore clear of ribs; ribs[{number}] on the {rib.face} wall stands in it")
+            yield BoxMisfit(location, f"a bore clear of ribs; ribs[{number}] on the {rib.face} wall stands in it")
     if box.cover is not None:
         if any(stands_in(side) for side in layout.flange_sides(box, box.cover)):
-            yield Misfit(location, "a bore clear of the cover's flange")
+            yield BoxMisfit(location, "a bore clear of the cover's flange")
         yield from _joint_clashes(box, index, bore)
     if box.fillets.inside > 0.0:
         cavity = layout.cavity_block(box).widened((0, 1), -box.fillets.inside)
@@ -228,10 +234,10 @@ def _bore_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
             value - radius < cavity.low[axis] - SLACK or value + radius > cavity.high[axis] + SLACK
             for axis, value in enumerate((x, y))
         ):
-            yield Misfit(location, f"a bore clear of the cavity's edges, rounded by {mm(box.fillets.inside)}")
+            yield BoxMisfit(location, f"a bore clear of the cavity's edges, rounded by {mm(box.fillets.inside)}")
 
 
-def _joint_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
+def _joint_clashes(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
     assert box.cover is not None
     normal, way = FACES[box.cover.face]
     radius = (bore.boss.diameter if bore.boss else bore.diameter) / 2
@@ -239,10 +245,10 @@ def _joint_clashes(box: Box, index: int, bore: Bore) -> Iterator[Misfit]:
         for bolt in box.bolts if layout.end_wall(box, bore) == box.cover.face else ():
             apart = math.hypot(bolt.position[0] - bore.center[0], bolt.position[1] - bore.center[1])
             if apart < bore.diameter / 2 + bolt.patch_diameter / 2:
-                yield Misfit(("bores", index, "center"), f"a bore clear of the cover's {bolt.name}")
+                yield BoxMisfit(("bores", index, "center"), f"a bore clear of the cover's {bolt.name}")
         return
     plane = layout.parting_plane(box, box.cover.face)
     if way * (plane - bore.center[normal]) < radius - SLACK:
         what = "boss" if bore.boss else "bore"
         expected = f"a {what} clear of the joint under the {box.cover.face} cover, at {'xyz'[normal]} = {mm(plane)}"
-        yield Misfit(("bores", index, "center"), expected)
+        yield BoxMisfit(("bores", index, "center"), expected)

@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterator
 
 from meshes.box import layout
-from meshes.box.misfit import SLACK, Misfit, mm
+from meshes.box.misfit import SLACK, BoxMisfit, mm
 from meshes.box.parts import FACES, Bolt, Box, Cover, Flange, plane_axes
 
 _MOST_PER_EDGE = 200
 
 
-def cover_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
+def cover_misfits(box: Box, cover: Cover) -> Iterator[BoxMisfit]:
     """Yield the misfits of a cover; bolts are checked only where the rim under them is sound."""
     sound = True
     for misfit in (*_flange_misfits(box, cover), *_bolt_sizes(cover)):
@@ -20,21 +20,23 @@ def cover_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
         yield misfit
     if box.feet is not None and cover.face == "bottom":
         sound = False
-        yield Misfit(("cover", "face"), "another face than the bottom, under which the feet stand")
+        yield BoxMisfit(("cover", "face"), "another face than the bottom, under which the feet stand")
     if sound and not cover.bonded:
         yield from _patch_misfits(box, cover)
 
 
-def _flange_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
+def _flange_misfits(box: Box, cover: Cover) -> Iterator[BoxMisfit]:
     if cover.flange is None:
         return
     flange, normal = cover.flange, FACES[cover.face][0]
     depth = layout.cavity_block(box).size[normal]
     if not 0.0 < flange.thickness < depth:
-        yield Misfit(("cover", "flange", "thickness"), f"a thickness above 0 and below the {mm(depth)} under the cover")
+        yield BoxMisfit(
+            ("cover", "flange", "thickness"), f"a thickness above 0 and below the {mm(depth)} under the cover"
+        )
     most = _widest_flange(box, cover, flange)
     if not 0.0 < flange.width < most:
-        yield Misfit(("cover", "flange", "width"), f"a width above 0 and below {mm(most)}")
+        yield BoxMisfit(("cover", "flange", "width"), f"a width above 0 and below {mm(most)}")
 
 
 def _widest_flange(box: Box, cover: Cover, flange: Flange) -> float:
@@ -47,26 +49,26 @@ def _widest_flange(box: Box, cover: Cover, flange: Flange) -> float:
     return max(box.size)
 
 
-def _bolt_sizes(cover: Cover) -> Iterator[Misfit]:
+def _bolt_sizes(cover: Cover) -> Iterator[BoxMisfit]:
     location, bolts = ("cover", "bolts"), cover.bolts
     if bolts is None:
         if not cover.bonded:
-            yield Misfit(("cover",), "bolts, such as { diameter, per_edge }, or bonded = true")
+            yield BoxMisfit(("cover",), "bolts, such as { diameter, per_edge }, or bonded = true")
         return
     if bolts.diameter <= 0.0:
-        yield Misfit((*location, "diameter"), "a diameter above 0")
+        yield BoxMisfit((*location, "diameter"), "a diameter above 0")
     if (bolts.per_edge is None) == (not bolts.positions):
-        yield Misfit(location, "exactly one of 'per_edge' and 'positions'")
+        yield BoxMisfit(location, "exactly one of 'per_edge' and 'positions'")
     for place, count in enumerate(bolts.per_edge or ()):
         if not 2 <= count <= _MOST_PER_EDGE:
-            yield Misfit((*location, "per_edge", place), f"from 2 to {_MOST_PER_EDGE} bolts, corners included")
+            yield BoxMisfit((*location, "per_edge", place), f"from 2 to {_MOST_PER_EDGE} bolts, corners included")
     if bolts.patch_diameter is not None and bolts.patch_diameter <= bolts.diameter:
-        yield Misfit((*location, "patch_diameter"), f"a circle wider than the bolts, {mm(bolts.diameter)}")
+        yield BoxMisfit((*location, "patch_diameter"), f"a circle wider than the bolts, {mm(bolts.diameter)}")
     if bolts.grip is not None and bolts.grip <= 0.0:
-        yield Misfit((*location, "grip"), "a length above 0")
+        yield BoxMisfit((*location, "grip"), "a length above 0")
 
 
-def _patch_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
+def _patch_misfits(box: Box, cover: Cover) -> Iterator[BoxMisfit]:
     """Bolts whose circles leave the rim or meet each other."""
     assert cover.bolts is not None
     bolts = layout.cover_bolts(box)
@@ -78,7 +80,7 @@ def _patch_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
                 f"circles of {mm(bolt.patch_diameter)} within the rim of the {cover.face} cover, which is "
                 f"{mm(layout.rim_width(box, cover))} wide where it is narrowest (a flange makes it wider)"
             )
-            yield Misfit(("cover", "bolts", *key), expected)
+            yield BoxMisfit(("cover", "bolts", *key), expected)
             if not by_place:
                 return
     for index, bolt in enumerate(bolts):
@@ -90,7 +92,7 @@ def _patch_misfits(box: Box, cover: Cover) -> Iterator[Misfit]:
                     f"bolts more than {mm(bolt.patch_diameter)} apart, the circle of each "
                     f"({bolt.name} and {other.name} are {mm(apart)} apart)"
                 )
-                yield Misfit(("cover", "bolts", *key), expected)
+                yield BoxMisfit(("cover", "bolts", *key), expected)
                 return
 
 

@@ -9,7 +9,7 @@ from typing import Literal
 
 from meshes.box import layout
 from meshes.box.fit import misfits
-from meshes.box.misfit import Misfit
+from meshes.box.misfit import BoxMisfit
 from meshes.box.parts import FACES, FOOT_NAMES, OPPOSITE_FACES, Bolt, Bore, Cover, Feet, Fillets, Rib, WallThickness
 from meshes.errors import GeometryError
 
@@ -23,7 +23,7 @@ class BoxMisfitError(GeometryError):
         Everything that does not fit.
     """
 
-    def __init__(self, found: tuple[Misfit, ...]) -> None:
+    def __init__(self, found: tuple[BoxMisfit, ...]) -> None:
         self.misfits = found
         super().__init__("\n".join(str(misfit) for misfit in found))
 

@@ -7,7 +7,7 @@ SLACK = 1e-9
 
 
 @dataclass(frozen=True)
-class Misfit:
+class BoxMisfit:
     """A part of a box that does not fit.
 
     Attributes

@@ -16,7 +16,7 @@ from .elasticity import STEEL, ContactElasticity
 from .energy import ElementLoads
 from .equilibrium import LARGEST_APPROACH, rolling_equilibrium, rolling_reaction
 from .hertz import PointContact, point_contact
-from .mounting import bearing_from, kramer_ball_stiffness, kramer_roller_stiffness
+from .mounting import kramer_ball_stiffness, kramer_roller_stiffness, linearised_bearing
 from .roller_row import RollerRow
 from .rolling_bearing import RollingBearing
 from .state import COORDINATES, RollingState
@@ -32,10 +32,10 @@ __all__ = [
     "RollerRow",
     "RollingBearing",
     "RollingState",
-    "bearing_from",
     "catalogue_row",
     "kramer_ball_stiffness",
     "kramer_roller_stiffness",
+    "linearised_bearing",
     "paired",
     "point_contact",
     "preload_offset",

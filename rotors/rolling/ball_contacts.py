@@ -43,7 +43,7 @@ def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, Flo
 
 
 @dataclass(frozen=True)
-class BallsAtRest:
+class StaticBalls:
     """Contacts of a row of balls without inertia: both contacts of every ball in series."""
 
     row: BallRow

@@ -8,7 +8,7 @@ from rotors.errors import require, require_finite
 
 from .elasticity import STEEL, ContactElasticity
 from .hertz import PointContact, in_series, point_contact
-from .room import require_room
+from .room import require_space
 
 RIGHT_ANGLE = math.pi / 2.0
 
@@ -60,7 +60,7 @@ class BallRow:
     elasticity: ContactElasticity = STEEL
 
     def __post_init__(self) -> None:
-        require_room("ball", self.count, self.ball_diameter, self.pitch_diameter)
+        require_space("ball", self.count, self.ball_diameter, self.pitch_diameter)
         within = 0.0 <= self.contact_angle < RIGHT_ANGLE
         require(within, "contact angle", self.contact_angle, "an angle from 0 to below a right angle, rad")
         for what in ("inner_groove", "outer_groove"):

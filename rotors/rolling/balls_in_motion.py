@@ -45,7 +45,7 @@ _OPEN = 1e-12
 
 
 @dataclass(frozen=True)
-class BallsInMotion:
+class CentrifugalBalls:
     """Contacts of a row of balls under a centrifugal force each, ``thrown`` (N)."""
 
     row: BallRow

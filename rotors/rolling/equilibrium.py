@@ -17,9 +17,9 @@ import numpy.typing as npt
 
 from rotors.errors import EquilibriumError, RotorError, require, require_finite
 
-from .ball_contacts import BallsAtRest
+from .ball_contacts import StaticBalls
 from .ball_row import BallRow
-from .balls_in_motion import BallsInMotion
+from .balls_in_motion import CentrifugalBalls
 from .energy import ElementLoads, RowContacts, RowEnergy
 from .roller_contacts import RollerSlices
 from .rolling_bearing import RollingBearing, Row
@@ -161,7 +161,7 @@ def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:
     azimuths = cage_angle + 2.0 * math.pi * np.arange(row.count) / row.count
     if isinstance(row, BallRow):
         thrown = row.centrifugal_force(speed)
-        return BallsInMotion(row, azimuths, thrown) if thrown > 0.0 else BallsAtRest(row, azimuths)
+        return CentrifugalBalls(row, azimuths, thrown) if thrown > 0.0 else StaticBalls(row, azimuths)
     if speed != 0.0:
         raise RotorError(f"speed is {speed!r}; expected 0 for rollers, whose centrifugal forces are left out")
     return RollerSlices(row, azimuths)

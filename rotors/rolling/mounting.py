@@ -11,7 +11,7 @@ from rotors.errors import EquilibriumError, require_count, require_finite
 from .state import RollingState
 
 
-def bearing_from(state: RollingState, name: str, at: float, *, damping: npt.ArrayLike | None = None) -> Bearing:
+def linearised_bearing(state: RollingState, name: str, at: float, *, damping: npt.ArrayLike | None = None) -> Bearing:
     """The linear bearing of a rolling bearing about its equilibrium.
 
     Parameters

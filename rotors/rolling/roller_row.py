@@ -9,7 +9,7 @@ import numpy.typing as npt
 from rotors.errors import require, require_count, require_finite
 
 from .elasticity import STEEL, ContactElasticity
-from .room import require_room
+from .room import require_space
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class RollerRow:
     elasticity: ContactElasticity = STEEL
 
     def __post_init__(self) -> None:
-        require_room("roller", self.count, self.roller_diameter, self.pitch_diameter)
+        require_space("roller", self.count, self.roller_diameter, self.pitch_diameter)
         require_finite("roller length", self.length, positive=True)
         require_count("count of slices", self.slices)
         known = self.profile in ("straight", "logarithmic")

@@ -5,7 +5,7 @@ import math
 from rotors.errors import require, require_count, require_finite
 
 
-def require_room(what: str, count: int, diameter: float, pitch_diameter: float) -> None:
+def require_space(what: str, count: int, diameter: float, pitch_diameter: float) -> None:
     """Raise `RotorError` unless three or more elements fit side by side on the pitch circle; diameters in m."""
     require_count(f"count of {what}s", count)
     require(count >= 3, f"count of {what}s", count, "three or more")

@@ -17,7 +17,7 @@ def peak_to_peak(amount: float, force: float) -> float:
     relief = gears.TipRelief(amount, start_roll_angle=RELIEF_FROM) if amount else None
     gear = gw.Gear("gear", 40, 3e-3, math.radians(20.0), face_width=20e-3, bore=40e-3, tip_relief=relief)
     contact = gears.tooth_contact(gears.GearPairGeometry(gear, gear), gears.PotentialEnergyStiffness())
-    return float(np.ptp(gears.static_transmission_error(contact, force).transmission_error))
+    return float(np.ptp(gears.loaded_transmission_error(contact, force).transmission_error))
 
 
 amounts = np.linspace(0.0, 15e-6, 31)

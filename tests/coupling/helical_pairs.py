@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from coupling import CoupledMachine, GearMesh, MountedBearing, MountedGear, Torque, couple, rotor_component
+from coupling import CoupledMachine, GearMesh, MountedBearing, MountedGear, Torque, assemble_machine, rotor_component
 from coupling.gears import Gear, GearPairGeometry, SquareStiffness, face_slices, tooth_contact
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
 
@@ -43,7 +43,7 @@ def couple_pairs(
         law = tooth_contact(pair, SquareStiffness(2e8), faces=face_slices(pair) if sliced else None)
         meshes.append(GearMesh(*places, pair, law))
     ratio = helical(1.0).ratio
-    return couple(
+    return assemble_machine(
         rotors,
         None,
         speeds={"input": speed, "output": -speed / ratio},

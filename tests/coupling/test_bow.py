@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling import BowReactions, MountedBearing, couple, rotor_component
+from coupling import BowReactions, MountedBearing, assemble_machine, rotor_component
 from rotors import Bearing, Bow, Disc, Rotor, Segment, ShaftMaterial, bow_shape, modal_rotor, unbalance_response
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
@@ -19,7 +19,7 @@ def test_bow_response_is_the_rotors_own(speed: float) -> None:
     bearings = [Bearing(name, at, stiffness, damping) for name, at in (("left", 0.0), ("right", 1.5))]
     exact = unbalance_response(SHAFT, bearings, [], [speed], bow=BOW)
     modal = modal_rotor(SHAFT, bearings, count=24, forces_at=BOW.at.tolist())
-    parts = couple(
+    parts = assemble_machine(
         [rotor_component("shaft", modal, start=0.0)],
         None,
         speeds={"shaft": speed},

@@ -18,7 +18,7 @@ from coupling import (
     RotorComponent,
     Torque,
     Unbalance,
-    couple,
+    assemble_machine,
     coupled_modes,
     mean_contact,
     rotor_component,
@@ -32,7 +32,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_modes,
@@ -63,7 +63,7 @@ def free_rotor(name: str, disc: float, *, along: bool = False) -> RotorComponent
     """
     at = GEAR_AT[name]
     shaft = Rotor(name, [Segment(0.1, 0.04, 0.0, STEEL)] * 3, [Disc(at, disc, 0.004 * disc, 0.0025 * disc)])
-    lateral = attach_loads(solve_lateral_modes(shaft, count=5), forces_at=[*BEARINGS_AT, at])
+    lateral = add_attachment_modes(solve_lateral_modes(shaft, count=5), forces_at=[*BEARINGS_AT, at])
     axial = solve_axial_modes(shaft, count=3) if along else None
     return rotor_component(name, ModalRotor(lateral, solve_torsional_modes(shaft, count=4), axial), start=START[name])
 
@@ -127,7 +127,7 @@ def machine(
             bearings.append(MountedBearing(bearing, rotor.name, name if housing else None))
     gears = [MountedGear(f"{name} gear", name, GEAR_AT[name], (axis[0], axis[1])) for name, axis in axes.items()]
     mesh = GearMesh(gears[0], gears[1], PAIR, tooth_contact(PAIR, ConstantStiffness(MESH_STIFFNESS)), backlash)
-    return couple(
+    return assemble_machine(
         rotors,
         rigid_housing(centres) if housing else None,
         speeds={"input": sense * SPEED, "output": -sense * SPEED / PAIR.ratio},
@@ -343,17 +343,19 @@ def test_wrong_names() -> None:
     bearing = Bearing.isotropic("front", 0.0, 1e7)
     speeds = {"input": 1.0, "output": -1.0}
     with pytest.raises(CouplingError, match="no rotor is named 'middle'"):
-        couple(both_rotors(), None, speeds=speeds, bearings=[MountedBearing(bearing, "middle", None)])
+        assemble_machine(both_rotors(), None, speeds=speeds, bearings=[MountedBearing(bearing, "middle", None)])
     with pytest.raises(CouplingError, match="no seat 'hole'"):
-        couple(both_rotors(), None, speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")])
+        assemble_machine(both_rotors(), None, speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")])
     with pytest.raises(CouplingError, match="no seat 'hole'"):
-        couple(both_rotors(), rigid_housing({}), speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")])
+        assemble_machine(
+            both_rotors(), rigid_housing({}), speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")]
+        )
     with pytest.raises(CouplingError, match="no rotor is named 'middle'"):
-        couple(both_rotors(), None, speeds=speeds, torques=[Torque("middle", 0.0, 1.0)])
+        assemble_machine(both_rotors(), None, speeds=speeds, torques=[Torque("middle", 0.0, 1.0)])
     with pytest.raises(CouplingError, match="no speed for output"):
-        couple(both_rotors(), None, speeds={"input": 1.0})
+        assemble_machine(both_rotors(), None, speeds={"input": 1.0})
     with pytest.raises(CouplingError, match="expected each name once"):
-        couple([both_rotors()[0], both_rotors()[0]], None, speeds=speeds)
+        assemble_machine([both_rotors()[0], both_rotors()[0]], None, speeds=speeds)
 
 
 def test_linear_analyses_stand_on_the_flanks_that_the_torque_presses() -> None:

@@ -18,14 +18,14 @@ from coupling import (
     CoupledSystem,
     CouplingError,
     HarmonicLoad,
+    SpeedProfile,
     TimedLoad,
     TransientError,
     TransientOutputs,
     TransientResult,
     TransientSettings,
-    Turning,
-    march_blocks,
-    march_method,
+    integrate_blocks,
+    integration_method,
     simulate,
     static_equilibrium,
 )
@@ -252,9 +252,9 @@ def test_goes_on_from_a_checkpoint_bit_for_bit(cut: int, phase: float, rate: flo
     system = replace(system, contacts=tuple(replace(contact, rate=rate) for contact in system.contacts))
     march = replace(SETTINGS, sample_interval=4e-4, tolerance=1e-6)
     rows = TransientOutputs(np.eye(2)[:1], np.eye(2)[:1], np.eye(2)[:1])
-    whole = list(march_blocks(system, march, rows))
+    whole = list(integrate_blocks(system, march, rows))
     assert len(whole) > 3
-    rest = list(march_blocks(system, march, rows, after=whole[cut].after))
+    rest = list(integrate_blocks(system, march, rows, after=whole[cut].after))
     assert len(rest) == len(whole) - cut - 1
     for one, other in zip(whole[cut + 1 :], rest, strict=True):
         for what in ("displacement", "velocity", "acceleration", "compression", "force"):
@@ -268,7 +268,7 @@ def test_where_it_does_not_apply() -> None:
     """A reason is given, or Newmark's method marches, bit for bit as if it had been asked for."""
     system = two_masses()
     rows = everything(2)
-    slowing = Turning(np.array([0.0, 60.0]), np.array([1.0, 0.5]))
+    slowing = SpeedProfile(np.array([0.0, 60.0]), np.array([1.0, 0.5]))
     with pytest.raises(TransientError, match="the speed varies"):
         simulate(system, SETTINGS, rows, turning=slowing)
     table = TimedLoad(np.array([0.0, 30.0]), np.array([0.0, 0.1]), np.array([1.0, 0.0]))
@@ -282,9 +282,9 @@ def test_where_it_does_not_apply() -> None:
     either = simulate(loaded, replace(coarse, method="auto"), rows)
     newmark = simulate(loaded, replace(coarse, method="newmark"), rows)
     np.testing.assert_array_equal(either.displacement, newmark.displacement)
-    assert march_method(loaded, replace(coarse, method="auto"), Turning.steady()) == "newmark"
-    assert march_method(system, replace(coarse, method="auto"), Turning.steady()) == "exact"
-    assert march_method(system, replace(coarse, method="newmark"), Turning.steady()) == "newmark"
+    assert integration_method(loaded, replace(coarse, method="auto"), SpeedProfile.steady()) == "newmark"
+    assert integration_method(system, replace(coarse, method="auto"), SpeedProfile.steady()) == "exact"
+    assert integration_method(system, replace(coarse, method="newmark"), SpeedProfile.steady()) == "newmark"
     with pytest.raises(CouplingError, match="expected one of newmark, exact, auto"):
         replace(SETTINGS, method="fast")  # type: ignore[arg-type]
 

@@ -16,7 +16,7 @@ from coupling import (
     MountedGear,
     Torque,
     TorqueHistory,
-    couple,
+    assemble_machine,
     gear_train,
     rotor_component,
 )
@@ -48,7 +48,7 @@ def built(shaft: tuple[ModalRotor, list[Bearing]], **changes: Any) -> CoupledMac
         MountedGear("pinion", "first", 0.125, (0.0, 0.0)),
         MountedGear("wheel", changes.get("rotor", "second"), 0.125, axis),
     )
-    return couple(
+    return assemble_machine(
         rotors,
         None,
         speeds=dict(zip(("first", "second"), changes.get("speeds", (500.0, -500.0 / pair.ratio)), strict=True)),

@@ -10,7 +10,7 @@ from coupling import (
     MountedBearing,
     MountedGear,
     Torque,
-    couple,
+    assemble_machine,
     rotor_component,
     static_equilibrium,
 )
@@ -48,7 +48,7 @@ def machine(hand: float, sense: int, line: float = 0.6):  # type: ignore[no-unty
         MountedGear("pinion", "one", 0.2, (0.0, 0.0)), MountedGear("wheel", "two", 0.2, axis), pair, contact
     )
     ratio = pair.ratio
-    return couple(
+    return assemble_machine(
         rotors,
         None,
         speeds={"one": sense * 100.0, "two": -sense * 100.0 / ratio},

@@ -98,7 +98,7 @@ def test_static_equilibrium_is_that_of_the_whole_model(
     np.testing.assert_allclose(housing.seats["seat"][:, :2].T @ q, ports[0][:, free] @ exact, rtol=1e-9)
     # The sensor is no port, and moves right all the same: the static field as a whole is exact.
     assert housing.sensors["side"] @ q == pytest.approx(float((ports[1][:, free] @ exact)[0]), rel=1e-7)
-    bare = component(replace(modes, attachments=None), ports)
+    bare = component(replace(modes, residual_modes=None), ports)
     without = bare.seats["seat"][:, :2].T @ static_equilibrium(on_bearing(bare))
     assert np.abs(without / (ports[0][:, free] @ exact) - 1.0).max() > 0.01
 
@@ -114,7 +114,7 @@ def test_coupled_frequencies_are_those_of_the_whole_model(
     mass = solid[1].mass[free][:, free].toarray()
     exact = np.sqrt(linalg.eigh(stiffness.toarray(), mass, eigvals_only=True, subset_by_index=[0, 1])) / (2 * np.pi)
     found = coupled_modes(on_bearing(component(modes, ports)))
-    bare = coupled_modes(on_bearing(component(replace(modes, attachments=None), ports)))
+    bare = coupled_modes(on_bearing(component(replace(modes, residual_modes=None), ports)))
     error = np.abs(found.frequencies_hz[:2] / exact - 1.0)
     assert error.max() < 2e-4
     assert np.abs(bare.frequencies_hz[:2] / exact - 1.0).max() > 10 * error.max()
@@ -127,9 +127,9 @@ def test_coordinates_in_order_with_the_highest_damping(
 ) -> None:
     housing = component(modes, ports)
     m = len(modes.frequencies)
-    assert modes.attachments is not None
-    assert housing.kinds == ("housing",) * m + ("residual",) * len(modes.attachments.frequencies)
-    omega = modes.attachments.frequencies
+    assert modes.residual_modes is not None
+    assert housing.kinds == ("housing",) * m + ("residual",) * len(modes.residual_modes.frequencies)
+    omega = modes.residual_modes.frequencies
     np.testing.assert_allclose(np.diag(housing.stiffness)[m:], omega**2)
     np.testing.assert_allclose(np.diag(housing.damping)[m:], 2 * 0.01 * omega)
     short = {"seat": modes.project_all(ports[0])[:m]}
@@ -175,7 +175,7 @@ def test_steps_are_not_refined_for_residual_coordinates(
     period = 2 * np.pi / turning
     settings = TransientSettings(300 * period, 299 * period, period / 64, period / 20, tolerance=2e-4)
     steps = []
-    for given in (modes, replace(modes, attachments=None)):
+    for given in (modes, replace(modes, residual_modes=None)):
         housing = stiffened(component(given, ports), factor)
         system = with_shaft(housing, turning)
         row = np.concatenate([np.zeros(2), housing.sensors["side"]])[None]
@@ -193,8 +193,8 @@ def test_only_what_is_stiffer_than_all_others_is_condensed(
     slow, fast = (with_shaft(stiffened(component(modes, ports), factor), 100.0) for factor in (0.2, 100.0))
     assert condensed(slow).system is slow
     less = condensed(fast)
-    assert modes.attachments is not None
-    assert less.system.size == fast.size - len(modes.attachments.frequencies)
+    assert modes.residual_modes is not None
+    assert less.system.size == fast.size - len(modes.residual_modes.frequencies)
     assert "residual" not in less.system.kinds
     # Loads on what is kept find the compliance of the whole.
     loads = np.zeros((fast.size, 2))

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import CouplingError, HousingComponent, couple, coupled_modes, housing_component
+from coupling import CouplingError, HousingComponent, assemble_machine, coupled_modes, housing_component
 from housing import Certificate, ModeSet
 
 FloatArray = npt.NDArray[np.float64]
@@ -29,7 +29,7 @@ def test_a_dashpot_between_modes_couples_them(modes: ModeSet) -> None:
     first, second = (np.array([1.0, 2 * z * w + c * v * v, w * w]) for z, w, v in zip(RATIOS, OMEGA, g, strict=True))
     across = np.array([c * g[0] * g[1], 0.0])
     roots = np.roots(np.polysub(np.polymul(first, second), np.polymul(across, across)))
-    system = couple([], component, speeds={}).system
+    system = assemble_machine([], component, speeds={}).system
     found = coupled_modes(system).eigenvalues
     expected = np.sort_complex(roots[roots.imag > 0.0])
     np.testing.assert_allclose(np.sort_complex(found), expected, rtol=1e-9)

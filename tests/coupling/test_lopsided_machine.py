@@ -26,7 +26,7 @@ from coupling import (
     Torque,
     TorqueRipple,
     Unbalance,
-    couple,
+    assemble_machine,
     mesh_error_response,
     receptance,
     rotor_component,
@@ -124,7 +124,7 @@ def machine(speed: float = SPEED, unbalanced: tuple[str, ...] = SHAFTS) -> Coupl
     speeds = {"one": speed, "two": -speed * 24 / 31, "three": speed}
     shaking = BaseHarmonic(300.0, np.array([1.0, 2.0j, 0.0, 3.0 - 1.0j, 5.0, 0.0]))
     history = BaseHistory(np.array([0.0, 0.2]), np.array([[0.0, 1.0, 0.0, 0.0, 0.0, 0.0], [2.0] + [0.0] * 5]))
-    return couple(
+    return assemble_machine(
         rotors,  # type: ignore[arg-type]
         plate,
         speeds=speeds,

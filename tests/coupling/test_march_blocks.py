@@ -14,11 +14,11 @@ from coupling import (
     CouplingError,
     HarmonicLoad,
     LinearConnector,
+    SpeedProfile,
     TransientOutputs,
     TransientSettings,
-    Turning,
-    march_blocks,
-    march_key,
+    integrate_blocks,
+    integration_key,
     simulate,
 )
 from coupling.gears import ToothContact, piecewise
@@ -48,7 +48,7 @@ def machine() -> CoupledSystem:
 SYSTEM = machine()
 ROWS = TransientOutputs(np.eye(2), np.eye(2), np.eye(2))
 SETTINGS = TransientSettings(duration=60.0, record_from=10.0, sample_interval=0.1, largest_step=0.1, tolerance=1e-4)
-RUN_UP = Turning(np.array([0.0, 60.0]), np.array([0.5, 1.5]))
+RUN_UP = SpeedProfile(np.array([0.0, 60.0]), np.array([0.5, 1.5]))
 
 
 def on_file(checkpoint: Checkpoint) -> Checkpoint:
@@ -60,13 +60,13 @@ def on_file(checkpoint: Checkpoint) -> Checkpoint:
 
 
 @pytest.mark.parametrize("turning", [None, RUN_UP])
-def test_a_march_goes_on_from_every_checkpoint_to_the_same_bits(turning: Turning | None) -> None:
-    blocks = list(march_blocks(SYSTEM, SETTINGS, ROWS, turning=turning, samples_per_block=BLOCK))
+def test_a_march_goes_on_from_every_checkpoint_to_the_same_bits(turning: SpeedProfile | None) -> None:
+    blocks = list(integrate_blocks(SYSTEM, SETTINGS, ROWS, turning=turning, samples_per_block=BLOCK))
     assert len(blocks) == blocks[0].count > 5
     assert sum(len(block.force) for block in blocks) == SETTINGS.samples
     for number in range(len(blocks) - 1):
         after = on_file(blocks[number].after)
-        rest = march_blocks(SYSTEM, SETTINGS, ROWS, turning=turning, samples_per_block=BLOCK, after=after)
+        rest = integrate_blocks(SYSTEM, SETTINGS, ROWS, turning=turning, samples_per_block=BLOCK, after=after)
         for one, other in zip(blocks[number + 1 :], rest, strict=True):
             assert one.first == other.first
             assert all(getattr(one, name).tobytes() == getattr(other, name).tobytes() for name in RECORD)
@@ -78,7 +78,7 @@ def test_blocks_change_no_more_than_the_tolerance() -> None:
     """Where time is cut elsewhere the steps differ; finer steps bring both to the same motion."""
     fine = replace(SETTINGS, tolerance=1e-5)
     whole = simulate(SYSTEM, fine, ROWS)
-    blocks = list(march_blocks(SYSTEM, fine, ROWS, samples_per_block=BLOCK))
+    blocks = list(integrate_blocks(SYSTEM, fine, ROWS, samples_per_block=BLOCK))
     assert np.concatenate([block.times for block in blocks]) == pytest.approx(whole.times)
     together = np.concatenate([block.displacement for block in blocks])
     assert together == pytest.approx(whole.displacement, abs=1e-3 * np.abs(whole.displacement).max())
@@ -93,7 +93,7 @@ def test_a_cache_that_forgets_changes_nothing(monkeypatch: pytest.MonkeyPatch) -
 
 def test_a_key_stands_for_the_very_march() -> None:
     def key(system=SYSTEM, settings=SETTINGS, rows=ROWS, turning=None, block=BLOCK):  # type: ignore[no-untyped-def]
-        return march_key(system, settings, rows, turning=turning, samples_per_block=block)
+        return integration_key(system, settings, rows, turning=turning, samples_per_block=block)
 
     nudged = SYSTEM.load * (1.0 + np.finfo(float).eps)
     other_contact = replace(SYSTEM.contacts[0], phase=0.1)
@@ -112,4 +112,4 @@ def test_a_key_stands_for_the_very_march() -> None:
 
 def test_a_block_holds_something() -> None:
     with pytest.raises(CouplingError, match="blocks of 0 samples"):
-        next(march_blocks(SYSTEM, SETTINGS, ROWS, samples_per_block=0))
+        next(integrate_blocks(SYSTEM, SETTINGS, ROWS, samples_per_block=0))

@@ -22,7 +22,7 @@ from coupling import (
     TransientResult,
     TransientSettings,
     amplitude_spectrum,
-    couple,
+    assemble_machine,
     histories,
     periodic_response,
     rotor_component,
@@ -37,7 +37,7 @@ from rotors.rolling import (
     RollerRow,
     RollingBearing,
     RollingState,
-    bearing_from,
+    linearised_bearing,
     paired,
     rolling_equilibrium,
     rolling_reaction,
@@ -225,9 +225,11 @@ def machine(speed: float = SPEED) -> CoupledMachine:
     """A shaft with a disc, its weight on two deep-groove ball bearings with play."""
     state = rolling_equilibrium(DEEP, [0.0, -LOAD, 0.0, 0.0, 0.0], held={"z": 0.0, "rx": 0.0, "ry": 0.0})
     shaft = Rotor("shaft", [Segment(0.1, 0.04, 0.0, STEEL)] * 4, [Disc(0.2, 50.0, 0.5, 0.3)])
-    bearings = [replace(bearing_from(state, f"bearing {at:g}", at), damping=3e4 * np.eye(2)) for at in (0.05, 0.35)]
+    bearings = [
+        replace(linearised_bearing(state, f"bearing {at:g}", at), damping=3e4 * np.eye(2)) for at in (0.05, 0.35)
+    ]
     modal = modal_rotor(shaft, bearings, count=3)
-    return couple(
+    return assemble_machine(
         [rotor_component("shaft", modal, start=0.0, damping_ratio=0.02)],
         None,
         speeds={"shaft": speed},

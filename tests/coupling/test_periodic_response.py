@@ -25,7 +25,7 @@ from coupling import (
     TransientOutputs,
     TransientSettings,
     Unbalance,
-    couple,
+    assemble_machine,
     histories,
     rotor_component,
     simulate,
@@ -40,7 +40,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
@@ -302,7 +302,7 @@ def geared(torque: float, *, unbalance: float = 0.0, backlash: float | None = No
     rotors, bearings, gears = [], [], []
     for name, disc, x in (("input", 2.0, 0.0), ("output", 5.0, PAIR.working_centre_distance)):
         shaft = Rotor(name, [Segment(0.1, 0.04, 0.0, STEEL)] * 3, [Disc(0.12, disc, 0.004 * disc, 0.0025 * disc)])
-        lateral = attach_loads(solve_lateral_modes(shaft, count=4), forces_at=[0.0, 0.12, 0.3])
+        lateral = add_attachment_modes(solve_lateral_modes(shaft, count=4), forces_at=[0.0, 0.12, 0.3])
         modal = ModalRotor(lateral, solve_torsional_modes(shaft, count=3))
         rotors.append(rotor_component(name, modal, start=0.0, damping_ratio=0.01))
         gears.append(MountedGear(f"{name} gear", name, 0.12, (x, 0.0)))
@@ -310,7 +310,7 @@ def geared(torque: float, *, unbalance: float = 0.0, backlash: float | None = No
             bearing = Bearing(f"{name} {end}", at, 5e7 * np.eye(2), 4e3 * np.eye(2))
             bearings.append(MountedBearing(bearing, name, None))
     contact = tooth_contact(PAIR, SquareStiffness(1.3e8), 2e3)
-    return couple(
+    return assemble_machine(
         rotors,
         None,
         speeds={"input": 300.0, "output": -300.0 / PAIR.ratio},

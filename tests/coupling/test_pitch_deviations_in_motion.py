@@ -27,7 +27,7 @@ from coupling.gears import (
     StiffnessModel,
     TipRelief,
     ToothContact,
-    static_transmission_error,
+    loaded_transmission_error,
     tooth_contact,
 )
 
@@ -125,24 +125,24 @@ def test_energies_balance_across_the_jumps(model: StiffnessModel) -> None:
 
 def test_slow_gears_follow_the_static_transmission_error_over_the_hunting_period() -> None:
     contact = contact_of(PotentialEnergyStiffness(), relief=25e-6)
-    contact = contact.with_damping(2.0 * 0.5 * math.sqrt(contact.mean_stiffness * MASS))
+    contact = contact.with_damping(2.0 * 0.5 * math.sqrt(contact.mean_mesh_stiffness * MASS))
     frequency = 4.0
     settings = TransientSettings(PERIOD / frequency, 0.0, 0.0371 / frequency, 2e-4, tolerance=1e-2)
     result = run(system_of(contact, frequency), settings)
-    static = static_transmission_error(contact, LOAD, frequency * result.times).transmission_error
+    static = loaded_transmission_error(contact, LOAD, frequency * result.times).transmission_error
     # Where a pair enters or leaves the mass still rings for a moment; elsewhere it follows.
     part = (frequency * result.times) % 1.0
     leaving = contact.contact_ratio % 1.0
     calm = (np.minimum(part, (part - leaving) % 1.0) > 0.05) & (result.times > 0.1 / frequency)
     assert calm.mean() > 0.7
     np.testing.assert_allclose(result.compression[calm, 0], static[calm], atol=2e-2 * np.ptp(static))
-    perfect = static_transmission_error(replace(contact, pitch_gaps=np.zeros(0)), LOAD, frequency * result.times)
+    perfect = loaded_transmission_error(replace(contact, pitch_gaps=np.zeros(0)), LOAD, frequency * result.times)
     assert np.ptp(static) > 1.2 * perfect.peak_to_peak_transmission_error
 
 
 def test_steady_motion_repeats_with_the_hunting_period_and_no_sooner() -> None:
     contact = contact_of(PotentialEnergyStiffness(), relief=10e-6)
-    contact = contact.with_damping(2.0 * 0.1 * math.sqrt(contact.mean_stiffness * MASS))
+    contact = contact.with_damping(2.0 * 0.1 * math.sqrt(contact.mean_mesh_stiffness * MASS))
     frequency, samples = 800.0, 16
     # Samples stand beside the jumps, never on them.
     begin, end = (2.0 * PERIOD + 0.5 / samples) / frequency, (4.0 * PERIOD + 1.0) / frequency

@@ -13,6 +13,7 @@ from coupling import (
     GearMesh,
     MountedBearing,
     MountedGear,
+    SpeedProfile,
     Torque,
     TorqueHistory,
     TorqueRipple,
@@ -20,8 +21,7 @@ from coupling import (
     TransientOutputs,
     TransientResult,
     TransientSettings,
-    Turning,
-    couple,
+    assemble_machine,
     histories,
     rotor_component,
     simulate,
@@ -58,7 +58,7 @@ def machine(speed: float, *, ends: tuple[float, float] = (0.0, LENGTH), **loads:
         MountedGear("wheel", "output", GEAR_AT, (PAIR.working_centre_distance, 0.0)),
     ]
     contact = tooth_contact(PAIR, ConstantStiffness(2e8), damping=2e3)
-    return couple(
+    return assemble_machine(
         rotors,
         None,
         speeds={"input": speed, "output": -speed * RATIO},
@@ -73,7 +73,7 @@ def balanced(torque: float) -> tuple[Torque, Torque]:
 
 
 def marched(
-    parts: CoupledMachine, turning: Turning | None, duration: float, record_from: float = 0.0
+    parts: CoupledMachine, turning: SpeedProfile | None, duration: float, record_from: float = 0.0
 ) -> TransientResult:
     settings = TransientSettings(duration, record_from, 1e-5, 2e-5, tolerance=1e-4)
     return simulate(parts.system, settings, transient_outputs(parts), turning=turning)
@@ -85,7 +85,7 @@ def test_inertia_passes_the_teeth(drive: Drive, sense: float) -> None:
     """The mean mesh force is what the far shaft's torque and inertia ask for: F R = T + J dω/dt."""
     speed, torque, duration, gain = 200.0, 30.0, 0.2, 2.5
     parts = machine(sense * speed, torques=balanced(sense * torque), drives=[drive])
-    turning = Turning(np.array([0.0, duration]), np.array([0.5, 0.5 + gain * duration]))
+    turning = SpeedProfile(np.array([0.0, duration]), np.array([0.5, 0.5 + gain * duration]))
     result = marched(parts, turning, duration, 0.1)
     radius = PAIR.driver.base_radius
     if drive.rotor == "input":
@@ -126,7 +126,7 @@ def on_tables(speed: float, rates: tuple[float, float]) -> CoupledMachine:
     modal = modal_rotor(shaft, [one.at_speed(speed) for one in bearings], count=2)
     rotor = rotor_component("input", modal, start=0.0)
     mounted = [MountedBearing(one, "input", None) for one in bearings]
-    return couple([rotor], None, speeds={"input": speed}, bearings=mounted, rates=rates)
+    return assemble_machine([rotor], None, speeds={"input": speed}, bearings=mounted, rates=rates)
 
 
 @pytest.mark.parametrize("rate", [0.25, 0.4, 0.75, 1.1, 2.0])
@@ -157,7 +157,7 @@ def test_bearing_forces_over_speed() -> None:
     result = replace(
         result, times=np.linspace(0.0, 1.0, s), displacement=rng.normal(size=(s, k)), velocity=rng.normal(size=(s, k))
     )
-    turning = Turning(np.array([0.0, 1.0]), np.array([0.5, 1.5]))
+    turning = SpeedProfile(np.array([0.0, 1.0]), np.array([0.5, 1.5]))
     forces = histories(parts, result, turning).bearing_force["0.0"]
     for i, rate in enumerate(turning.at(result.times)[1]):
         law = Bearing("one", 0.0, BY_SPEED, 1e-4 * BY_SPEED, TABLE).at_speed(200.0 * float(rate))
@@ -172,7 +172,7 @@ def test_torques_over_time_and_by_order() -> None:
     inertia, speed = shaft.polar_inertia, 100.0
     # Two cycles of a triangle: no torque in the mean, at rest at the start.
     times, values = np.array([0.0, 0.1, 0.3, 0.4]), np.array([0.0, 2.0, -2.0, 0.0])
-    parts = couple(
+    parts = assemble_machine(
         [rotor],
         None,
         speeds={"input": speed},
@@ -192,7 +192,7 @@ def test_a_slope_of_torque_resists() -> None:
     shaft = SHAFTS["input"]
     rotor = rotor_component("input", modal_rotor(shaft, [], count=1), start=0.0)
     slope = TorqueSlope("motor", "input", 0.0, np.array([0.0, 1.0]), np.array([-0.2, -0.2]))
-    parts = couple([rotor], None, speeds={"input": 100.0}, torques=[slope])
+    parts = assemble_machine([rotor], None, speeds={"input": 100.0}, torques=[slope])
     row = parts.rotors[0].rotation(0.0)[None, :]
     settings = TransientSettings(0.1, 0.0, 1e-3, 1e-4, tolerance=1e-4)
     start = np.zeros(parts.system.size), 3.0 * parts.rotors[0].turning

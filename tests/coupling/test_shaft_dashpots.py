@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from coupling import CoupledMachine, MountedBearing, ShaftDashpots, couple, coupled_modes, rotor_component
+from coupling import CoupledMachine, MountedBearing, ShaftDashpots, assemble_machine, coupled_modes, rotor_component
 from coupling.shaft_dashpots import shaft_dashpots
 from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
@@ -28,7 +28,7 @@ def machine(speed: float = 0.0, polar: tuple[float, float] = INERTIA, **damping:
     component = rotor_component("train", modal_rotor(rotor, held, count=8), start=0.0)
     dashpots = [ShaftDashpots("coupling 1", "train", 0.1, 0.12, **damping)] if damping else []
     bearings = [MountedBearing(bearing, "train", None) for bearing in held]
-    return couple([component], None, speeds={"train": speed}, bearings=bearings, dashpots=dashpots)
+    return assemble_machine([component], None, speeds={"train": speed}, bearings=bearings, dashpots=dashpots)
 
 
 def test_torsion_is_damped_as_two_inertias_on_a_spring_and_a_dashpot() -> None:

@@ -8,15 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import jv
 
-from coupling import CouplingError, Turning, amplitude_spectrum, lines_at, signal_parts
+from coupling import CouplingError, SpeedProfile, amplitude_spectrum, lines_at, signal_parts
 from coupling.signature import (
     decibels,
     from_decibels,
     order_map,
-    order_resampled,
     order_spectrum,
     peak_of_rms,
     power_density,
+    resample_by_angle,
     rms_of_peak,
     sidebands,
     spectrogram,
@@ -131,7 +131,7 @@ def test_sidebands_that_cannot_be_told_apart() -> None:
     assert len(sidebands(TIMES, INTERVAL, [50.0, 4990.0], 20.0)) == 2
 
 
-RUN_UP = Turning(np.array([0.0, 2.0]), np.array([0.5, 1.5]))
+RUN_UP = SpeedProfile(np.array([0.0, 2.0]), np.array([0.5, 1.5]))
 SHAFT_HZ = 30.0
 
 
@@ -148,7 +148,7 @@ def run_up(times: np.ndarray) -> np.ndarray:
 
 def test_orders_of_a_run_up_stand_as_lines() -> None:
     times = 2e-5 * np.arange(100_000)
-    turned = order_resampled(run_up(times), times, RUN_UP, SHAFT_HZ)
+    turned = resample_by_angle(run_up(times), times, RUN_UP, SHAFT_HZ)
     # With the same angular acceleration, 15 turns/s², all along: v² = v₀² + 2 a n.
     np.testing.assert_allclose(turned.speeds, np.sqrt(15.0**2 + 30.0 * turned.turns), rtol=1e-12)
     # An even number of turns holds whole cycles of the half order.
@@ -165,7 +165,7 @@ def test_orders_of_a_run_up_stand_as_lines() -> None:
 
 def test_order_slices_over_speed() -> None:
     times = 2e-5 * np.arange(100_000)
-    turned = order_resampled(run_up(times), times, RUN_UP, SHAFT_HZ)
+    turned = resample_by_angle(run_up(times), times, RUN_UP, SHAFT_HZ)
     found = order_map(turned, turns=4, step=2)
     assert found.order_slice(7.0) == pytest.approx(np.full(found.times.size, 0.5), abs=1e-6)
     assert found.order_slice(28.5) == pytest.approx(np.full(found.times.size, 0.1), abs=1e-6)
@@ -185,7 +185,7 @@ def test_orders_that_windows_hold_no_whole_cycles_of_are_followed() -> None:
     times = 2e-5 * np.arange(100_000)
     turns = SHAFT_HZ * (0.5 * times + 0.25 * times**2)
     signal = np.cos(2 * np.pi * turns) + 0.3 * np.cos(2 * np.pi * 27.0 / 29.0 * turns + 0.4) + 0.5
-    turned = order_resampled(signal, times, RUN_UP, SHAFT_HZ)
+    turned = resample_by_angle(signal, times, RUN_UP, SHAFT_HZ)
     found = order_map(turned, turns=43, step=5, follow=[27.0 / 29.0])
     assert found.order_slice(27.0 / 29.0) == pytest.approx(np.full(found.times.size, 0.3), rel=2e-2)
     assert found.order_slice(1.0) == pytest.approx(np.full(found.times.size, 1.0), rel=2e-2)
@@ -199,7 +199,7 @@ def test_at_steady_speed_orders_are_the_lines_of_the_record() -> None:
     """With a whole number of samples each turn nothing is resampled: the same numbers, on another axis."""
     times = np.arange(4000) / 8000.0
     signal = np.random.default_rng(1).normal(size=4000)
-    turned = order_resampled(signal, times, Turning.steady(), 40.0)
+    turned = resample_by_angle(signal, times, SpeedProfile.steady(), 40.0)
     assert turned.per_turn == 200
     np.testing.assert_allclose(turned.values, signal, atol=1e-9)
     spectrum, plain = order_spectrum(turned), amplitude_spectrum(signal, 1.0 / 8000.0)
@@ -208,12 +208,12 @@ def test_at_steady_speed_orders_are_the_lines_of_the_record() -> None:
 
 
 def test_runs_without_an_angle_to_sample_by() -> None:
-    stopping = Turning(np.array([0.0, 0.5]), np.array([1.0, 0.0]))
+    stopping = SpeedProfile(np.array([0.0, 0.5]), np.array([1.0, 0.0]))
     with pytest.raises(CouplingError, match="stands still"):
-        order_resampled(TIMES, TIMES, stopping, 40.0)
+        resample_by_angle(TIMES, TIMES, stopping, 40.0)
     with pytest.raises(CouplingError, match="expected a whole one"):
-        order_resampled(TIMES[:50], TIMES[:50], Turning.steady(), 40.0)
+        resample_by_angle(TIMES[:50], TIMES[:50], SpeedProfile.steady(), 40.0)
     with pytest.raises(CouplingError, match="expected as many"):
-        order_resampled(TIMES[1:], TIMES, Turning.steady(), 40.0)
+        resample_by_angle(TIMES[1:], TIMES, SpeedProfile.steady(), 40.0)
     with pytest.raises(CouplingError, match="samples a turn"):
-        order_resampled(TIMES, TIMES, Turning.steady(), 40.0, per_turn=1)
+        resample_by_angle(TIMES, TIMES, SpeedProfile.steady(), 40.0, per_turn=1)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling import CouplingError, MountedBearing, couple, coupled_modes, housing_component, rotor_component
+from coupling import CouplingError, MountedBearing, assemble_machine, coupled_modes, housing_component, rotor_component
 from coupling.component import HousingComponent
 from rotors import Bearing, Disc, ModalRotor, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, solve_whirl
 
@@ -24,7 +24,7 @@ def machine(bearings: tuple[Bearing, ...], speed: float = SPEED):  # type: ignor
     reduced = modal_rotor(SHAFT, [one.at_speed(speed) for one in bearings], count=12, gears_at=[0.25])
     component = rotor_component("shaft", reduced, start=0.0)
     mounted = [MountedBearing(bearing, "shaft", None) for bearing in bearings]
-    return couple([component], None, speeds={"shaft": speed}, bearings=mounted)
+    return assemble_machine([component], None, speeds={"shaft": speed}, bearings=mounted)
 
 
 def whirl_of(parts) -> np.ndarray:  # type: ignore[no-untyped-def]
@@ -90,7 +90,9 @@ def test_rigid_motion_of_rotor_and_seat_together_strains_no_bearing() -> None:
     component = rotor_component("shaft", reduced, start=-0.3)
     housing = rigid_seat(20.0, 3.0, 0.1)
     bearing = Bearing("b", 0.45, TILTING, np.zeros((5, 5)))
-    parts = couple([component], housing, speeds={"shaft": 0.0}, bearings=[MountedBearing(bearing, "shaft", "seat")])
+    parts = assemble_machine(
+        [component], housing, speeds={"shaft": 0.0}, bearings=[MountedBearing(bearing, "shaft", "seat")]
+    )
     rows = parts.system.linear[0].directions.T
     assert rows.shape[0] == 4  # z is held by nothing here
     # Coordinates of rigid motions of the shaft, by its own displacement and slope, x = 1 and x = z.

@@ -10,7 +10,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, TipRelief, tooth_contact
-from coupling.gears.kernels import ranked_nearness, tooth_force
+from coupling.gears.kernels import ranked_penetration, tooth_force
 from coupling.kernel_arrays import Contacts
 from coupling.periodic.arrays import Reference
 from coupling.periodic.collocation import INSIDE, ORDER, POINTS
@@ -88,12 +88,12 @@ def test_the_branch_is_left_just_there(
 @given(st.floats(-3.0, 3.0), st.floats(-1e-5, 6e-5), st.integers(1, 4))
 def test_as_many_pairs_touch_as_are_near(phase: float, compression: float, rank: int) -> None:
     touching = tooth_force(phase, compression, 0.0, LAW, AT)[5]
-    nearness = ranked_nearness(phase, compression, LAW, AT, rank)
-    assert (nearness > 0.0) == (touching >= rank)
-    assert ranked_nearness(phase, compression + 1e-6, LAW, AT, rank) - nearness == pytest.approx(1e-6, rel=1e-6) or (
-        nearness == -math.inf
-    )
-    assert ranked_nearness(phase, compression, LAW, AT, rank + 1) <= nearness
+    penetration = ranked_penetration(phase, compression, LAW, AT, rank)
+    assert (penetration > 0.0) == (touching >= rank)
+    assert ranked_penetration(phase, compression + 1e-6, LAW, AT, rank) - penetration == pytest.approx(
+        1e-6, rel=1e-6
+    ) or (penetration == -math.inf)
+    assert ranked_penetration(phase, compression, LAW, AT, rank + 1) <= penetration
 
 
 @pytest.mark.parametrize(

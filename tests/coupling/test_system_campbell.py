@@ -13,7 +13,7 @@ from coupling import (
     GearMesh,
     MountedBearing,
     MountedGear,
-    couple,
+    assemble_machine,
     coupled_modes,
     excitation_lines,
     rotor_component,
@@ -29,7 +29,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     campbell,
     solve_lateral_modes,
     solve_torsional_modes,
@@ -57,10 +57,10 @@ TABLED = [
 def machine(bearings: list[Bearing], speed: float) -> CoupledMachine:
     held = [bearing.at_speed(abs(speed)) for bearing in bearings]
     lateral = solve_lateral_modes(SHAFT, [bearing.mean_support for bearing in held], count=12)
-    lateral = attach_loads(lateral, forces_at=[0.0, 1.5], moments_at=(0.5, 1.0))
+    lateral = add_attachment_modes(lateral, forces_at=[0.0, 1.5], moments_at=(0.5, 1.0))
     part = rotor_component("shaft", ModalRotor(lateral, solve_torsional_modes(SHAFT, count=1)), start=0.0)
     mounted = [MountedBearing(bearing, "shaft", None) for bearing in bearings]
-    return couple([part], None, speeds={"shaft": speed}, bearings=mounted)
+    return assemble_machine([part], None, speeds={"shaft": speed}, bearings=mounted)
 
 
 @pytest.mark.parametrize("bearings", [ROUND, TABLED])
@@ -134,12 +134,12 @@ def geared(speed: float) -> CoupledMachine:
         rotor = Rotor(name, [Segment(0.2, 0.03, 0.0, STEEL)], [Disc(0.1, 2.0, 0.004, 0.002)])
         held = [Bearing.isotropic(f"{name} {at}", at, 2e8, 100.0) for at in (0.0, 0.2)]
         lateral = solve_lateral_modes(rotor, [bearing.mean_support for bearing in held], count=3)
-        basis = attach_loads(lateral, forces_at=[0.0, 0.1, 0.2])
+        basis = add_attachment_modes(lateral, forces_at=[0.0, 0.1, 0.2])
         parts.append(rotor_component(name, ModalRotor(basis, solve_torsional_modes(rotor, count=2)), start=0.0))
         bearings += [MountedBearing(bearing, name, None) for bearing in held]
         mounted.append(MountedGear(wheels[len(mounted)].name, name, 0.1, (x, 0.0)))
     mesh = GearMesh(mounted[0], mounted[1], pair, tooth_contact(pair, ConstantStiffness(2e8)))
-    return couple(parts, None, speeds={"fast": speed, "slow": -0.4 * speed}, bearings=bearings, meshes=[mesh])
+    return assemble_machine(parts, None, speeds={"fast": speed, "slow": -0.4 * speed}, bearings=bearings, meshes=[mesh])
 
 
 def test_orders_of_a_train() -> None:

@@ -26,7 +26,7 @@ from coupling import (
     TransientOutputs,
     TransientResult,
     TransientSettings,
-    couple,
+    assemble_machine,
     histories,
     periodic_response,
     rotor_component,
@@ -45,14 +45,14 @@ from coupling.gears import (
     TipRelief,
     ToothContact,
     face_slices,
+    loaded_transmission_error,
     mesh_friction,
     mesh_period_phases,
     piecewise,
     sliding_friction,
-    static_transmission_error,
     tooth_contact,
 )
-from coupling.gears.sliding import turned_share
+from coupling.gears.sliding import sliding_direction_means
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
@@ -79,7 +79,7 @@ def machine(friction: float, *, sense: int = 1, psi: float = 0.4, backlash: floa
         )
         bearings += [MountedBearing(bearing, name, None) for bearing in held]
         gears.append(MountedGear(gear.name, name, 0.1, (axis[0], axis[1])))
-    return couple(
+    return assemble_machine(
         rotors,
         None,
         speeds={"input": sense * SPEED, "output": -sense * SPEED / PAIR.ratio},
@@ -105,7 +105,7 @@ def test_forces_and_moments_are_those_of_the_flanks(sense: int, phase: float) ->
     found = force_of(contact, system, q)
     compression = float(contact.direction @ q)
     normal = float(CONTACT.pair_forces(phase + 1e-9, compression).sum())
-    mesh = static_transmission_error(CONTACT, normal, [phase + 1e-9])
+    mesh = loaded_transmission_error(CONTACT, normal, [phase + 1e-9])
     friction = mesh_friction(PAIR, CONTACT, mesh, COEFFICIENT)
     angle = 0.4 + sense * (np.pi / 2.0 - PAIR.working_pressure_angle)
     across = sense * np.array([-np.sin(angle), np.cos(angle)])
@@ -137,7 +137,7 @@ def test_a_contact_line_turns_piece_by_piece(half_line: float) -> None:
             on_path = np.array([0.0 if position < 0.0 else 1.6])
         sign = np.sign(on_path - 0.83)
         expected = sign.mean(), (sign * on_path).mean()
-        np.testing.assert_allclose(turned_share(position, half_line, 0.83, 1.6), expected, atol=4e-4)
+        np.testing.assert_allclose(sliding_direction_means(position, half_line, 0.83, 1.6), expected, atol=4e-4)
 
 
 @settings(deadline=None, max_examples=60)
@@ -176,7 +176,7 @@ def test_helical_faces_turn_slice_by_slice(helix: float) -> None:
     pair = GearPairGeometry(pinion, replace(WHEEL, helix_angle=-angle))
     contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=face_slices(pair))
     force = 4000.0
-    mesh = static_transmission_error(contact, force, np.arange(48) / 48.0)
+    mesh = loaded_transmission_error(contact, force, np.arange(48) / 48.0)
     expected = mesh_friction(pair, contact, mesh, COEFFICIENT)
     law = sliding_friction(pair, contact, COEFFICIENT)
     assert law.event_phases == ()
@@ -287,7 +287,7 @@ def test_what_the_rotation_loses_is_the_loss_of_the_static_mesh(monkeypatch: pyt
     monkeypatch.setattr(sys.modules[__name__], "SPEED", 0.5 * SPEED)
     parts = machine(COEFFICIENT)
     result = settled(parts)
-    mesh = static_transmission_error(CONTACT, TORQUE / PINION.base_radius, mesh_period_phases(CONTACT))
+    mesh = loaded_transmission_error(CONTACT, TORQUE / PINION.base_radius, mesh_period_phases(CONTACT))
     friction = mesh_friction(PAIR, CONTACT, mesh, COEFFICIENT)
     turned = 12 * 2.0 * np.pi / PINION.teeth
     expected = (1.0 - friction.efficiency) * TORQUE * turned

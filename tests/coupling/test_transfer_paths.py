@@ -11,7 +11,7 @@ from coupling import (
     HousingComponent,
     MountedBearing,
     Torque,
-    couple,
+    assemble_machine,
     coupled_modes,
     mesh_error_response,
     modal_record,
@@ -52,7 +52,7 @@ def grounded() -> CoupledMachine:
 def on_housing(machine: CoupledMachine, seed: int = 2) -> CoupledMachine:
     """The machine with its bearings in seats of the housing."""
     seats = ("one", "two", "three", "four")
-    return couple(
+    return assemble_machine(
         machine.rotors,
         housing(seed),
         speeds=machine.speeds,

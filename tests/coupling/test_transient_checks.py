@@ -24,7 +24,7 @@ from coupling import (
     TransientResult,
     TransientSettings,
     coupled_modes,
-    march_blocks,
+    integrate_blocks,
     simulate,
     static_equilibrium,
 )
@@ -325,12 +325,12 @@ def test_blocks_make_the_run() -> None:
     system = two_masses(pair_contact(1.6, damping=0.05), 0.45, errors=((0.2, 0.3, 0.1),))
     settings = replace(SETTINGS, duration=3000.0, sample_interval=0.02)
     whole = simulate(system, settings, all_rows(system))
-    blocks = list(march_blocks(system, settings, all_rows(system)))
+    blocks = list(integrate_blocks(system, settings, all_rows(system)))
     assert len(blocks) > 3
     np.testing.assert_array_equal(np.concatenate([block.displacement for block in blocks]), whole.displacement)
     assert [block.first for block in blocks] == np.cumsum([0, *(len(block.force) for block in blocks)])[:-1].tolist()
     kept = {name: np.array(value) for name, value in blocks[1].after.as_arrays().items()}
-    later = list(march_blocks(system, settings, all_rows(system), after=Checkpoint.from_arrays(kept)))
+    later = list(integrate_blocks(system, settings, all_rows(system), after=Checkpoint.from_arrays(kept)))
     assert len(later) == len(blocks) - 2
     for one, other in zip(later, blocks[2:], strict=True):
         for name in ("first", "displacement", "velocity", "acceleration", "compression", "force"):

@@ -17,8 +17,8 @@ from coupling import (
     MountedBearing,
     MountedGear,
     Unbalance,
+    assemble_machine,
     contact_at,
-    couple,
     coupled_modes,
     mesh_error_response,
     receptance,
@@ -35,7 +35,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
@@ -60,7 +60,7 @@ def geared(speed: float, *, housing: bool = True, cross: float = 0.0) -> Coupled
         stiffness = np.array([[4e7, cross], [-cross, 3e7]])
         held = [Bearing(f"{name} {at}", at, stiffness, 200.0 * np.eye(2)) for at in (0.0, 0.3)]
         lateral = solve_lateral_modes(rotor, [bearing.mean_support for bearing in held], count=4)
-        basis = attach_loads(lateral, forces_at=[0.0, 0.1, 0.3])
+        basis = add_attachment_modes(lateral, forces_at=[0.0, 0.1, 0.3])
         parts.append(
             rotor_component(
                 name, ModalRotor(basis, solve_torsional_modes(rotor, count=2)), start=0.0, damping_ratio=0.01
@@ -82,7 +82,7 @@ def geared(speed: float, *, housing: bool = True, cross: float = 0.0) -> Coupled
         sensors={name: 0.2 * rng.normal(size=4) for name in ("top", "side")},
     )
     mesh = GearMesh(mounted[0], mounted[1], pair, tooth_contact(pair, ConstantStiffness(2e8)))
-    return couple(
+    return assemble_machine(
         parts,
         plate if housing else None,
         speeds={"fast": speed, "slow": -0.4 * speed},

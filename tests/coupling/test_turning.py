@@ -17,12 +17,12 @@ from coupling import (
     CouplingError,
     HarmonicLoad,
     LinearConnector,
+    SpeedProfile,
     SpeedTable,
     TimedLoad,
     TransientOutputs,
     TransientResult,
     TransientSettings,
-    Turning,
     simulate,
     static_equilibrium,
 )
@@ -31,9 +31,9 @@ from coupling.gears import ToothContact, piecewise
 FloatArray = npt.NDArray[np.float64]
 
 
-def drawn(rates: list[float], gaps: list[float], begin: float) -> Turning:
+def drawn(rates: list[float], gaps: list[float], begin: float) -> SpeedProfile:
     times = begin + np.concatenate([[0.0], np.cumsum(gaps)])[: len(rates)]
-    return Turning(times, np.array(rates))
+    return SpeedProfile(times, np.array(rates))
 
 
 turnings = st.builds(
@@ -45,7 +45,7 @@ turnings = st.builds(
 
 
 @given(turnings, st.floats(-5.0, 20.0).filter(lambda time: abs(time) > 1e-3))
-def test_turned_time_is_the_integral_of_the_rate(turning: Turning, time: float) -> None:
+def test_turned_time_is_the_integral_of_the_rate(turning: SpeedProfile, time: float) -> None:
     turned, rate, _ = (float(value[0]) for value in turning.at(time))
     assert rate == pytest.approx(np.interp(time, turning.times, turning.rates), abs=1e-12)
     kinks = [float(t) for t in turning.times if min(0.0, time) < t < max(0.0, time)]
@@ -54,7 +54,7 @@ def test_turned_time_is_the_integral_of_the_rate(turning: Turning, time: float) 
 
 
 @given(turnings, st.lists(st.floats(-5.0, 20.0), min_size=1, max_size=5))
-def test_times_of_turned_times(turning: Turning, times: list[float]) -> None:
+def test_times_of_turned_times(turning: SpeedProfile, times: list[float]) -> None:
     given_times = np.array(times)
     turned, rates, _ = turning.at(given_times)
     found = turning.times_of(turned)
@@ -64,11 +64,11 @@ def test_times_of_turned_times(turning: Turning, times: list[float]) -> None:
 
 
 def test_never_turned_so_far() -> None:
-    stopping = Turning(np.array([0.0, 2.0]), np.array([1.0, 0.0]))
+    stopping = SpeedProfile(np.array([0.0, 2.0]), np.array([1.0, 0.0]))
     np.testing.assert_allclose(stopping.times_of(np.array([0.5, 1.0])), [2.0 - np.sqrt(2.0), 2.0], rtol=1e-12)
     assert np.isnan(stopping.times_of(np.array([1.0001]))).all()
-    assert Turning.steady().is_steady
-    np.testing.assert_array_equal(Turning.steady().at([-1.0, 0.3])[0], [-1.0, 0.3])
+    assert SpeedProfile.steady().is_steady
+    np.testing.assert_array_equal(SpeedProfile.steady().at([-1.0, 0.3])[0], [-1.0, 0.3])
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_never_turned_so_far() -> None:
 )
 def test_speeds_that_make_no_sense(times: list[float], rates: list[float], what: str) -> None:
     with pytest.raises(CouplingError, match=what):
-        Turning(np.array(times), np.array(rates))
+        SpeedProfile(np.array(times), np.array(rates))
 
 
 # A shaft of two planes on a bearing that stiffens with speed, an unbalance, and a tooth contact on its x motion.
@@ -97,7 +97,7 @@ TABLE = SpeedTable(
 )
 UNBALANCE = 0.4 * SPEED**2 * np.array([1.0, -1.0j])
 TORQUE = TimedLoad(np.array([1.0, 4.0, 5.0]), np.array([0.0, 0.5, 0.2]), np.array([0.0, 1.0]))
-RUN_UP = Turning(np.array([0.0, 6.0, 9.0]), np.array([0.9, 1.1, 1.05]))
+RUN_UP = SpeedProfile(np.array([0.0, 6.0, 9.0]), np.array([0.9, 1.1, 1.05]))
 
 
 def shaft(contacts: tuple[ContactConnector, ...] = ()) -> CoupledSystem:
@@ -115,7 +115,7 @@ def shaft(contacts: tuple[ContactConnector, ...] = ()) -> CoupledSystem:
     )
 
 
-def rhs(turning: Turning, tooth: tuple[float, float, float] | None = None):  # type: ignore[no-untyped-def]
+def rhs(turning: SpeedProfile, tooth: tuple[float, float, float] | None = None):  # type: ignore[no-untyped-def]
     """Written out from the equations, with nothing of the march in it."""
 
     def slope(time: float, state: FloatArray) -> FloatArray:
@@ -206,7 +206,7 @@ def test_steady_turning_is_no_turning() -> None:
     settings = TransientSettings(10.0, 0.0, 0.5, 0.02)
     start = (np.array([0.2, 0.0]), np.zeros(2))
     plain = simulate(system, settings, OUTPUTS, initial=start)
-    nearly = Turning(np.array([0.0, 5.0]), np.array([1.0, 1.0 + 1e-14]))
+    nearly = SpeedProfile(np.array([0.0, 5.0]), np.array([1.0, 1.0 + 1e-14]))
     assert not nearly.is_steady
     varied = simulate(system, settings, OUTPUTS, turning=nearly, initial=start)
     np.testing.assert_allclose(varied.displacement, plain.displacement, rtol=0, atol=1e-5)

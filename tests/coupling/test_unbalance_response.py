@@ -11,7 +11,7 @@ from coupling import (
     TransientOutputs,
     TransientSettings,
     Unbalance,
-    couple,
+    assemble_machine,
     coupled_modes,
     rotor_component,
     simulate,
@@ -23,7 +23,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     solve_lateral_modes,
     solve_torsional_modes,
     solve_whirl,
@@ -52,10 +52,10 @@ def machine(
     supports = [] if free else [bearing.mean_support for bearing in bearings]
     lateral = solve_lateral_modes(SHAFT, supports, count=count)
     if not free:
-        lateral = attach_loads(lateral, forces_at=[0.0, LENGTH], moments_at=DISCS_AT)
+        lateral = add_attachment_modes(lateral, forces_at=[0.0, LENGTH], moments_at=DISCS_AT)
     rotor = rotor_component("shaft", ModalRotor(lateral, solve_torsional_modes(SHAFT, count=1)), start=0.0)
     mounted = [] if free else [MountedBearing(bearing, "shaft", None) for bearing in bearings]
-    return couple([rotor], None, speeds={"shaft": speed}, bearings=mounted, unbalances=[UNBALANCE])
+    return assemble_machine([rotor], None, speeds={"shaft": speed}, bearings=mounted, unbalances=[UNBALANCE])
 
 
 def disc_rows(parts: CoupledMachine) -> FloatArray:
@@ -164,7 +164,7 @@ def rigid_on_cross_coupling(cross: float) -> CoupledMachine:
     lateral = solve_lateral_modes(shaft, [bearing.mean_support for bearing in bearings], count=2)
     rotor = rotor_component("stiff", ModalRotor(lateral, solve_torsional_modes(shaft, count=1)), start=0.0)
     mounted = [MountedBearing(bearing, "stiff", None) for bearing in bearings]
-    return couple([rotor], None, speeds={"stiff": 0.0}, bearings=mounted)
+    return assemble_machine([rotor], None, speeds={"stiff": 0.0}, bearings=mounted)
 
 
 @pytest.mark.parametrize("cross", [CROSS, -CROSS])

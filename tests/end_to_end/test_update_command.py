@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
-from gearwhine.stages.designs import HousingDesigns
+from gearwhine.stages.designs import ParametricHousing
 from gearwhine.stages.update_keys import fitted_case
 from housing.measured import (
     MeasuredGeometry,
@@ -136,7 +136,7 @@ def secret_survey(text: str) -> SurveyData:
     """
     generator = np.random.default_rng(4)
     case = load_case(text, [f"housing.box.wall.{face}={value} m" for face, value in SECRET.items()]).case
-    secret = HousingDesigns(fitted_case(case), 24, threads=1).solve(np.zeros(2))
+    secret = ParametricHousing(fitted_case(case), 24, threads=1).solve(np.zeros(2))
     assert secret.shapes is not None
     corners = np.array([[-0.1, 0.0, -0.12], [0.1, 0.16, 0.12]])
     where = corners[0] + (corners[1] - corners[0]) * generator.uniform(0.05, 0.95, size=(60, 3))

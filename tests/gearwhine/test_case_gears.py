@@ -12,7 +12,7 @@ from gearwhine.results.check import check_document
 from gearwhine.results.gears import gears_document, sections
 from gearwhine.stages.build import build_gear
 from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gear_torques import over_torques
+from gearwhine.stages.gear_torques import solve_over_torques
 from gearwhine.stages.gears import pair_geometry, solve_gears
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
@@ -109,7 +109,7 @@ def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) 
     assert angles == pytest.approx([15.0, -15.0])
     assert [point["point"] for point in pair["geometry"]["path_of_contact"]][::4] == ["SAP", "EAP"]
     shown_by(check.sections)(document)
-    document = gears_document(over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL))))
+    document = gears_document(solve_over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL))))
     assert document["pairs"][0]["transmission_error_m"]["peak_to_peak"] > 0.0
     show(document, sections(document))
     shown = " ".join(capsys.readouterr().out.split())

@@ -270,5 +270,5 @@ def test_a_housing_has_its_damping_sensors_and_masses() -> None:
     assert solved.sensors["cover"].direction.tolist() == [0.0, -1.0, 0.0]
     assert solved.sensors["wall"].direction.tolist() == [1.0, 0.0, 0.0]
     # Three orders of response attached to thirty motions, less what depends on others.
-    assert solved.modes.attachments is not None
-    assert len(solved.modes.attachments.frequencies) > 60
+    assert solved.modes.residual_modes is not None
+    assert len(solved.modes.residual_modes.frequencies) > 60

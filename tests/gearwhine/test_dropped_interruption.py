@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from gearwhine.cli import command_line
-from gearwhine.interruption import aside, each_aside, uninterrupted
+from gearwhine.interruption import each_from_thread, in_thread, uninterrupted
 
 
 @pytest.fixture(autouse=True)
@@ -114,7 +114,7 @@ def test_what_is_worked_out_aside_is_waited_for_where_an_interruption_is_safe() 
             told.wait(20.0)
             yield 1
 
-    found = each_aside(items())
+    found = each_from_thread(items())
     timer = threading.Timer(0.1, signal.pthread_kill, (threading.get_ident(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
@@ -124,7 +124,7 @@ def test_what_is_worked_out_aside_is_waited_for_where_an_interruption_is_safe() 
 
 
 def test_results_and_errors_come_from_aside() -> None:
-    assert list(each_aside(iter([1, None, 3]))) == [1, None, 3]
-    assert aside(lambda: None) is None
+    assert list(each_from_thread(iter([1, None, 3]))) == [1, None, 3]
+    assert in_thread(lambda: None) is None
     with pytest.raises(ZeroDivisionError):
-        aside(lambda: 1 / 0)
+        in_thread(lambda: 1 / 0)

@@ -19,7 +19,7 @@ from gearwhine.output.dataset import labelled
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
 from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs
-from gearwhine.stages.gear_torques import coarser_faces, over_torques
+from gearwhine.stages.gear_torques import solve_over_torques, with_coarser_slices
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
 from gearwhine.stages.machine import build_machine
@@ -34,7 +34,7 @@ def case_of(name: str, *settings: str) -> Case:
 @cache
 def analysed(name: str, *settings: str) -> PairAnalysis:
     case = case_of(name, *settings)
-    (pair,) = over_torques(analyse_pairs(case, solve_gears(case)))
+    (pair,) = solve_over_torques(analyse_pairs(case, solve_gears(case)))
     return pair
 
 
@@ -85,7 +85,7 @@ def test_harmonics_are_those_of_the_curve() -> None:
     """Against a plain sum over many even phases; the curve has no steps at this torque."""
     pair = analysed(*EVEN)
     phases = np.arange(20_000) / 20_000
-    curve = room.static_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
+    curve = room.loaded_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
     expected = 2.0 * np.abs(np.fft.rfft(curve))[1:9] / phases.size
     np.testing.assert_allclose(pair.harmonics, expected, atol=2e-4 * expected[0])
     of_none = np.fft.rfft(pair.solved.contact.pairs(phases).deviation.min(axis=1))
@@ -98,7 +98,7 @@ def test_harmonics_of_the_mesh_over_the_hunting_period() -> None:
     periods, points = pair.solved.contact.hunting_period, 400
     assert periods == 28
     phases = np.arange(periods * points) / points
-    curve = room.static_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
+    curve = room.loaded_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
     lines = 2.0 * np.abs(np.fft.rfft(curve))[periods::periods][:8] / phases.size
     np.testing.assert_allclose(pair.harmonics, lines, atol=4e-3 * lines[0])
 
@@ -117,7 +117,7 @@ def test_the_harris_map_is_of_gears_with_all_teeth_alike() -> None:
         driven=replace(geometry.driven, pitch_deviations=()),
     )
     contact = room.tooth_contact(alike, pair.solved.model)
-    expected = room.static_transmission_error(contact, pair.solved.static.force)
+    expected = room.loaded_transmission_error(contact, pair.solved.static.force)
     assert pair.as_given == pytest.approx(expected.peak_to_peak_transmission_error, rel=2e-2)
 
 
@@ -137,7 +137,7 @@ def test_the_best_relief_is_better_than_any_neighbour() -> None:
             driver=replace(geometry.driver, tip_relief=other),
             driven=replace(geometry.driven, tip_relief=other),
         )
-        mesh = room.static_transmission_error(room.tooth_contact(relieved, pair.solved.model), force)
+        mesh = room.loaded_transmission_error(room.tooth_contact(relieved, pair.solved.model), force)
         assert mesh.peak_to_peak_transmission_error > found
 
 
@@ -147,7 +147,7 @@ def test_corners_are_found_in_the_contact() -> None:
     (solved,) = solve_gears(case)
     force = 3.0 * solved.static.force
     contact = room.tooth_contact(solved.geometry, solved.model, corner_contact=True)
-    rounded = replace(solved, contact=contact, static=room.static_transmission_error(contact, force))
+    rounded = replace(solved, contact=contact, static=room.loaded_transmission_error(contact, force))
     (pair,) = analyse_pairs(case, (rounded,))
     assert pair.corner_force > 0.0
     assert pair.loaded_contact_ratio > solved.geometry.contact_ratio
@@ -163,7 +163,7 @@ def test_a_crowned_face() -> None:
     geometry = replace(solved.geometry, driver=crowned)
     faces = room.face_slices(geometry, count=11)
     contact = room.tooth_contact(geometry, solved.model, faces=faces)
-    static = room.static_transmission_error(contact, solved.static.force)
+    static = room.loaded_transmission_error(contact, solved.static.force)
     (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
     (even,) = analyse_pairs(case, (solved,))
     assert pair.pressure is not None
@@ -180,10 +180,10 @@ def test_a_coarser_face_is_the_one_that_would_be_cut_so() -> None:
         replace(analysed(*EVEN).solved.geometry.driven, helix_angle=-0.2),
     )
     fine, expected = room.face_slices(pair, misalignment=1e-4), room.face_slices(pair, misalignment=1e-4, count=21)
-    coarse = coarser_faces(fine, 21)
+    coarse = with_coarser_slices(fine, 21)
     for name in ("z", "width", "shift", "gap", "flattening", "coupling"):
         np.testing.assert_allclose(getattr(coarse, name), getattr(expected, name), rtol=1e-12, atol=1e-18)
-    assert coarser_faces(expected, 61) is expected
+    assert with_coarser_slices(expected, 61) is expected
 
 
 def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.CaptureFixture[str]) -> None:
@@ -196,7 +196,7 @@ def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.C
     geometry = room.GearPairGeometry(driver, driven)
     assert geometry.pitch_point_position < 0.0
     contact = room.tooth_contact(geometry, solved.model)
-    static = room.static_transmission_error(contact, 1000.0)
+    static = room.loaded_transmission_error(contact, 1000.0)
     (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
     assert pair.pitch_pressure is None
     show(gears_document((pair,)), sections(gears_document((pair,))))
@@ -262,7 +262,7 @@ def test_gears_by_base_radius_have_no_width_to_press_on() -> None:
             "operation": {"speed": "1000 rpm", "torque": "77.5 N*m"},
         }
     )
-    (pair,) = over_torques(analyse_pairs(case, solve_gears(case)))
+    (pair,) = solve_over_torques(analyse_pairs(case, solve_gears(case)))
     (given,) = gears_document((pair,))["pairs"]
     assert given["contact_pressure_pa"] is None
     assert [one["face_width_m"] for one in given["gears"]] == [None, None]

@@ -49,8 +49,8 @@ def contact(*, corners: bool = False) -> room.ToothContact:
 
 
 @cache
-def mesh(*, corners: bool = False) -> room.StaticMesh:
-    return room.static_transmission_error(contact(corners=corners), FORCE)
+def mesh(*, corners: bool = False) -> room.LoadedMesh:
+    return room.loaded_transmission_error(contact(corners=corners), FORCE)
 
 
 def lines(axes: Axes, label: str) -> list[np.ndarray]:
@@ -117,7 +117,7 @@ def test_stiffness_and_shares(corners: bool) -> None:
 
 
 def test_without_load_there_is_one_panel() -> None:
-    idle = room.static_transmission_error(contact(), 0.0)
+    idle = room.loaded_transmission_error(contact(), 0.0)
     figure = draw_mesh_stiffness("s", contact(), idle)
     (axes,) = figure.axes
     assert axes.get_xlabel() == "mesh period"
@@ -208,7 +208,7 @@ def test_the_contact_pattern_holds_the_load() -> None:
     pair = room.GearPairGeometry(crowned, gear("b", helix=-0.25))
     faces = room.face_slices(pair, count=15)
     helical = room.tooth_contact(pair, room.PotentialEnergyStiffness(), faces=faces)
-    static = room.static_transmission_error(helical, FORCE)
+    static = room.loaded_transmission_error(helical, FORCE)
     figure = draw_contact_pattern("c", pair, helical, static)
     assert len(figure.axes) == 4
     for axes in figure.axes[::2]:  # beside each its colours
@@ -236,7 +236,7 @@ def test_every_pair_has_its_files(tmp_path: Path) -> None:
     """Odd names are no paths and no formulas; what one has not is not drawn."""
     case = load_case("spur-pair").case
     (solved,) = solve_gears(case)
-    idle = replace(solved, static=room.static_transmission_error(solved.contact, 0.0))
+    idle = replace(solved, static=room.loaded_transmission_error(solved.contact, 0.0))
     pairs = [
         replace(pair, solved=replace(one, pair=replace(one.pair, driver=name, driven="ö ö")))
         for name, one in (("a/$b$", solved), ("A/$B$", idle))

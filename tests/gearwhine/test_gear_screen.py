@@ -10,7 +10,7 @@ from gearwhine.case import load_case
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import gears_document, sections
 from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gear_torques import over_torques
+from gearwhine.stages.gear_torques import solve_over_torques
 from gearwhine.stages.gears import solve_gears
 
 Document = dict[str, Any]
@@ -19,7 +19,7 @@ Document = dict[str, Any]
 @cache
 def document(name: str, *settings: str) -> Document:
     case = load_case(name, settings).case
-    return gears_document(over_torques(analyse_pairs(case, solve_gears(case))))
+    return gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case))))
 
 
 def said(capsys: pytest.CaptureFixture[str], given: Document) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwhine.case import case_document, load_case, parse_case
-from gearwhine.stages.designs import HousingDesigns, _followed
+from gearwhine.stages.designs import ParametricHousing, _followed
 from gearwhine.stages.geometry import build_mesh
 from gearwhine.stages.regions import materials_of
 from gearwhine.stages.update_keys import fitted_case
@@ -27,7 +27,7 @@ NUMBERS: list[tuple[list[str], list[Any], Any]] = [
 
 
 @pytest.fixture(scope="module")
-def designs() -> HousingDesigns:
+def designs() -> ParametricHousing:
     document = case_document(load_case("steel-box", ["housing.box.mesh_size=50 mm"]).case)
     document["housing"]["support"] = [
         {"name": f"mount {n}", "surface": f"foot-{n}", "stiffness": {"x": 3e8, "y": 1e9, "z": 4e8}} for n in range(1, 5)
@@ -47,10 +47,10 @@ def designs() -> HousingDesigns:
     }
     case = parse_case(document)
     assert case.update is not None
-    return HousingDesigns(fitted_case(case), case.update.modes, threads=1)
+    return ParametricHousing(fitted_case(case), case.update.modes, threads=1)
 
 
-def test_slopes_of_all_numbers_together_are_those_of_solved_designs(designs: HousingDesigns) -> None:
+def test_slopes_of_all_numbers_together_are_those_of_solved_designs(designs: ParametricHousing) -> None:
     """Geometry, springs, a mass, moduli and a density at once, along two directions: to 1e-6 of the largest."""
     start = designs.solve(designs.start)
     slopes = start.surrogate().at(start.coordinates).slopes
@@ -67,7 +67,7 @@ def test_slopes_of_all_numbers_together_are_those_of_solved_designs(designs: Hou
         assert np.abs(way @ slopes[:, :12] - expected).max() < 1e-6 * np.abs(slopes).max()
 
 
-def test_a_light_design_is_the_same_without_its_shapes(designs: HousingDesigns) -> None:
+def test_a_light_design_is_the_same_without_its_shapes(designs: ParametricHousing) -> None:
     start = designs.solve(designs.start)
     light = start.light()
     assert light.shapes is None
@@ -78,7 +78,7 @@ def test_a_light_design_is_the_same_without_its_shapes(designs: HousingDesigns) 
     assert light.light().surrogate() is light.surrogate()
 
 
-def test_where_the_neighbours_mesh_would_fold_a_new_one_is_made(designs: HousingDesigns) -> None:
+def test_where_the_neighbours_mesh_would_fold_a_new_one_is_made(designs: ParametricHousing) -> None:
     start = designs.solve(designs.start)
     narrow = designs.start.copy()
     narrow[1] = coordinate_bounds(designs.parameters)[0, 1]
@@ -90,10 +90,10 @@ def test_where_the_neighbours_mesh_would_fold_a_new_one_is_made(designs: Housing
     assert np.array_equal(designs.solve(narrow, start).mesh.points, build_mesh(case).points)
 
 
-def test_a_design_that_is_no_sound_housing_is_said(designs: HousingDesigns) -> None:
+def test_a_design_that_is_no_sound_housing_is_said(designs: ParametricHousing) -> None:
     wide = designs.start.copy()
     wide[1] = 100.0  # as wide a boss as its range allows is still sound
     assert designs.case_at(wide).housing is not None
-    broken = HousingDesigns(designs.case, 10_000)
+    broken = ParametricHousing(designs.case, 10_000)
     with pytest.raises(HousingError):
         broken.solve(designs.start)

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.locks import held
-from gearwhine.march_files import BlockFiles, kept_march
+from gearwhine.locks import held_lock
+from gearwhine.march_files import BlockFiles, stored_record
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.machine import build_machine
 from gearwhine.stages.transient import SolvedTransient, solve_transient
@@ -69,7 +69,7 @@ def test_ten_kills_leave_no_trace(solve: Solve, tmp_path: Path, record_bytes: in
     assert total > 4 * KILLS
 
     def march() -> None:
-        with kept_march(tmp_path, "key") as blocks:
+        with stored_record(tmp_path, "key") as blocks:
             solve(record_bytes=record_bytes, keep=lambda key: blocks)
             os._exit(1)  # not reached: killed before
 
@@ -89,7 +89,7 @@ def test_ten_kills_leave_no_trace(solve: Solve, tmp_path: Path, record_bytes: in
         first_written = first_written or block.stat().st_mtime_ns
         assert block.stat().st_mtime_ns == first_written  # gone on, not begun again
 
-    with kept_march(tmp_path, "key") as blocks:
+    with stored_record(tmp_path, "key") as blocks:
         assert 0 < len(blocks) < total
         assert bits(solve(record_bytes=record_bytes, keep=lambda key: blocks)) == bits(expected)
     assert not list(tmp_path.iterdir())
@@ -102,7 +102,7 @@ def some(number: int) -> dict[str, np.ndarray]:
 def stop(folder: Path, key: str, count: int, error: type[BaseException] = KeyboardInterrupt) -> BaseException:
     """A run that writes some blocks more and then ends badly."""
     raised = error()
-    with suppress(error), kept_march(folder, key) as blocks:
+    with suppress(error), stored_record(folder, key) as blocks:
         for number in range(len(blocks), len(blocks) + count):
             blocks.append(some(number))
         raise raised
@@ -113,7 +113,7 @@ def test_blocks_come_back_until_the_work_is_done(tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert "the same command goes on" in stop(out, "a", 2).__notes__[0]
     stop(out, "a", 1, ValueError)
-    with kept_march(out, "a") as blocks:
+    with stored_record(out, "a") as blocks:
         assert len(blocks) == 3
         assert [float(blocks[n]["columns"][0, 0]) for n in range(3)] == [0.0, 1.0, 2.0]
         assert blocks[2]["time"].shape == ()
@@ -122,21 +122,21 @@ def test_blocks_come_back_until_the_work_is_done(tmp_path: Path) -> None:
 
 def test_another_march_and_a_fresh_one_begin_anew(tmp_path: Path) -> None:
     stop(tmp_path, "a", 2)
-    with kept_march(tmp_path, "b") as blocks:
+    with stored_record(tmp_path, "b") as blocks:
         assert len(blocks) == 0
         assert len(list(tmp_path.iterdir())) == 1  # what the other kept is cleared away
     stop(tmp_path, "a", 2)
-    with kept_march(tmp_path, "a", fresh=True) as blocks:
+    with stored_record(tmp_path, "a", fresh=True) as blocks:
         assert len(blocks) == 0
 
 
 def test_a_march_that_runs_is_left_alone(tmp_path: Path) -> None:
     stop(tmp_path, "a", 2)
     (kept,) = tmp_path.iterdir()
-    with held(kept):
-        with kept_march(tmp_path, "b"):
+    with held_lock(kept):
+        with stored_record(tmp_path, "b"):
             assert kept.exists()
-        with kept_march(tmp_path, "a") as blocks:
+        with stored_record(tmp_path, "a") as blocks:
             assert len(blocks) == 0
             blocks.append(some(7))
         assert len(BlockFiles(kept)) == 2
@@ -155,7 +155,7 @@ def test_the_march_goes_on_before_a_damaged_block(tmp_path: Path, damage: bytes)
     (kept,) = tmp_path.iterdir()
     (kept / "block-00000003.npz").write_bytes(damage)
     (kept / "block-00000004.part").write_bytes(damage)
-    with kept_march(tmp_path, "a") as blocks:
+    with stored_record(tmp_path, "a") as blocks:
         assert len(blocks) == 3
         blocks.append(some(3))
         assert float(blocks[3]["columns"][0, 0]) == 3.0
@@ -170,10 +170,10 @@ def test_an_interruption_while_a_block_is_put_in_its_place_keeps_it(
 
     # Between the block's renaming and its being counted.
     monkeypatch.setattr("gearwhine.march_files._force_names", interrupted)
-    with pytest.raises(KeyboardInterrupt) as stop, kept_march(tmp_path, "key") as blocks:
+    with pytest.raises(KeyboardInterrupt) as stop, stored_record(tmp_path, "key") as blocks:
         blocks.append({"columns": np.ones(3)})
     assert "goes on from there" in stop.value.__notes__[0]
-    with kept_march(tmp_path, "key") as blocks:
+    with stored_record(tmp_path, "key") as blocks:
         assert len(blocks) == 1
 
 
@@ -198,5 +198,5 @@ def test_damage_to_any_block_is_found_and_its_span_marched_again(tmp_path: Path,
     damaged[place] ^= 0x10
     block.write_bytes(damaged)
     stop(tmp_path, "a", 4 - number)
-    with kept_march(tmp_path, "a") as blocks:
+    with stored_record(tmp_path, "a") as blocks:
         assert [float(blocks[n]["columns"][0, 0]) for n in range(len(blocks))] == [0.0, 1.0, 2.0, 3.0]

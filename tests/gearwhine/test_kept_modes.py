@@ -9,7 +9,7 @@ import pytest
 
 from gearwhine.case import Case, Housing, case_document, load_case, parse_case
 from gearwhine.stages.housing import build_mesh
-from gearwhine.stages.kept_modes import solution_inputs
+from gearwhine.stages.kept_modes import mode_cache_inputs
 from housing import content_key
 from meshes import write_mesh
 
@@ -18,7 +18,7 @@ CASE = "nasa-gear-noise-rig"
 
 def key(case: Case) -> str:
     mesh = build_mesh(case) if case.housing is not None and case.housing.mesh is not None else None
-    return content_key(solution_inputs(case, mesh))
+    return content_key(mode_cache_inputs(case, mesh))
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +134,9 @@ def test_another_file_counts_by_its_bytes(tmp_path: Path) -> None:
 
     def of_cad(path: Path) -> str:
         cad = given.cad.model_copy(update={"file": path})
-        return content_key(solution_inputs(case.model_copy(update={"housing": given.model_copy(update={"cad": cad})})))
+        return content_key(
+            mode_cache_inputs(case.model_copy(update={"housing": given.model_copy(update={"cad": cad})}))
+        )
 
     assert of_cad(file) == of_cad(copy)
     copy.write_text("ISO-10303-21; ", encoding="utf-8")
@@ -142,7 +144,7 @@ def test_another_file_counts_by_its_bytes(tmp_path: Path) -> None:
 
 
 def test_the_inputs_say_what_the_key_is_made_of() -> None:
-    inputs = solution_inputs(load_case("steel-box").case)
+    inputs = mode_cache_inputs(load_case("steel-box").case)
     assert set(inputs) == {"housing", "bearings", "attachment_orders", "material", "versions", "source"}
     assert inputs["housing"]["box"]["wall"] == "0.01 m"
     assert inputs["material"]["steel"]["density"] == "7850 kg/m^3"

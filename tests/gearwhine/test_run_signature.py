@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling import Turning
+from coupling import SpeedProfile
 from gearwhine.case import Case, load_case, mesh_frequencies
 from gearwhine.figures.transient import _speed
 from gearwhine.results.run import run_signature_document
@@ -61,7 +61,7 @@ def test_captions_of_a_run_name_its_speeds() -> None:
 
 def long_run(solved: SolvedTransient, orders: dict[float, float]) -> SolvedTransient:
     """The same machine along 660 turns from 600 to 6000 rpm, its mesh force with these amplitudes at these orders."""
-    turning = Turning(np.array([0.0, 12.0]), np.array([600.0, 6000.0]) / 5500.0)
+    turning = SpeedProfile(np.array([0.0, 12.0]), np.array([600.0, 6000.0]) / 5500.0)
     times = np.arange(0.0, 12.0, 1.0 / 7000.0)
     turns = 5500.0 / 60.0 * turning.at(times)[0]
     force = 1000.0 + sum(size * np.cos(2.0 * np.pi * order * turns + order) for order, size in orders.items())

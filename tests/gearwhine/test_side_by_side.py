@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from gearwhine.stages.side_by_side import side_by_side
+from gearwhine.stages.side_by_side import in_parallel
 from housing import HousingError
 
 
@@ -14,7 +14,7 @@ def test_results_come_in_the_order_of_the_tasks_from_other_processes() -> None:
     def work(number: int) -> tuple[int, int, str]:
         return factor * number, os.getpid(), os.environ["OMP_NUM_THREADS"]
 
-    with side_by_side(2) as each:
+    with in_parallel(2) as each:
         rows = list(each(work, [5, 2, 9, 4]))
     assert [row[0] for row in rows] == [15, 6, 27, 12]
     assert os.getpid() not in {row[1] for row in rows}
@@ -22,7 +22,7 @@ def test_results_come_in_the_order_of_the_tasks_from_other_processes() -> None:
 
 
 def test_one_worker_is_this_process() -> None:
-    with side_by_side(1) as each:
+    with in_parallel(1) as each:
         assert list(each(lambda number: (number, os.getpid()), [1, 2])) == [(1, os.getpid()), (2, os.getpid())]
 
 
@@ -32,5 +32,5 @@ def test_what_goes_wrong_in_a_process_is_raised_here() -> None:
             raise HousingError("walls meet")
         return number
 
-    with side_by_side(2) as each, pytest.raises(HousingError, match="walls meet"):
+    with in_parallel(2) as each, pytest.raises(HousingError, match="walls meet"):
         list(each(work, [1, 2, 3]))

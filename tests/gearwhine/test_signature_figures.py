@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coupling import Turning
-from coupling.signature import LineName, order_map, order_resampled, spectrogram
+from coupling import SpeedProfile
+from coupling.signature import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import draw_order_slices, draw_run_up_waterfall, save
 from gearwhine.figures.contributions import draw_contributions
 from gearwhine.figures.modal_coordinates import draw_modal_coordinates
@@ -18,12 +18,12 @@ def test_run_up(tmp_path: Path) -> None:
     """Orders 1 and 28 through a resonance at 600 Hz: the slice of the latter is highest at 600/28 turns a second."""
     interval = 1e-4
     times = interval * np.arange(40_000)
-    turning = Turning(np.array([0.0, 4.0]), np.array([0.5, 1.5]))
+    turning = SpeedProfile(np.array([0.0, 4.0]), np.array([0.5, 1.5]))
     turned, rates, _ = turning.at(times)
     hertz = 28.0 * 20.0 * rates
     swell = 1.0 / np.abs(600.0**2 - hertz**2 + 0.06j * 600.0 * hertz) * 600.0**2
     signal = swell * np.cos(2 * np.pi * 28.0 * 20.0 * turned) + 0.2 * np.cos(2 * np.pi * 20.0 * turned)
-    orders = order_map(order_resampled(signal, times, turning, 20.0), turns=2)
+    orders = order_map(resample_by_angle(signal, times, turning, 20.0), turns=2)
     figure = draw_order_slices("Run-up", orders, {"mesh": 28.0, "shaft": 1.0}, unit="m/s²")
     mesh, shaft = figure.axes[0].lines
     top = np.asarray(mesh.get_xdata())[np.argmax(mesh.get_ydata())]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 import rotors
 from gearwhine.figures import ProbeResponse, draw_campbell, draw_critical_map, draw_unbalance_response
 from gearwhine.figures.campbell import stability_onset
-from gearwhine.figures.critical_map import meetings
+from gearwhine.figures.critical_map import map_intersections
 from gearwhine.figures.unbalance import phase_lag
 
 RPM = 60.0 / (2.0 * math.pi)
@@ -147,7 +147,7 @@ def test_meetings_with_a_stiffness_that_grows_with_speed() -> None:
     springs = np.geomspace(1e4, 1e8, 9)
     turning = np.geomspace(1.0, 1e4, 50)
     # Critical at √k, the bearing has 1e3 Ω: they meet at k = 1e6.
-    (met,) = meetings(springs, np.sqrt(springs)[:, None], turning, 1e3 * turning)
+    (met,) = map_intersections(springs, np.sqrt(springs)[:, None], turning, 1e3 * turning)
     assert met == pytest.approx((1e6, 1e3))
 
 
@@ -158,10 +158,10 @@ def test_meetings_up_to_the_end_of_a_table() -> None:
     end = 1.02 * np.sqrt(stiffness)
     assert not ((np.sqrt(springs) > np.sqrt(stiffness)) & (np.sqrt(springs) < end)).any()
     turning = np.geomspace(50.0, end, 40)
-    (met,) = meetings(springs, np.sqrt(springs)[:, None], turning, 3e7 / turning)
+    (met,) = map_intersections(springs, np.sqrt(springs)[:, None], turning, 3e7 / turning)
     assert met == pytest.approx((stiffness, np.sqrt(stiffness)), rel=1e-9)
     short = np.geomspace(50.0, 0.98 * np.sqrt(stiffness), 40)
-    assert meetings(springs, np.sqrt(springs)[:, None], short, 3e7 / short) == []
+    assert map_intersections(springs, np.sqrt(springs)[:, None], short, 3e7 / short) == []
 
 
 def test_the_map_marks_where_operation_is_critical_and_writes_what_its_marks_are() -> None:

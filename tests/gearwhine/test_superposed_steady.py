@@ -172,7 +172,7 @@ def test_the_steady_motion_of_a_braked_machine_is_told_of_its_back_flanks() -> N
     changes = ["operation.torque=-100 N*m", "gear_pair.0.backlash=0.1 mm", "rotor.0.modes=1", "rotor.1.modes=1"]
     case = load_case("spur-pair", changes).case
     machine = build_machine(case, None, solve_gears(case))
-    assert machine.pressed_contacts == (1,)
+    assert machine.loaded_contacts == (1,)
     (motion,) = steady_document(case.title, solve_steady(case, machine, None))["motions"]
     base_radius = 0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0))
     (pair,) = motion["gear_pairs"]

@@ -13,11 +13,11 @@ from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
 from gearwhine.figures.waterfall import draw_waterfall
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import build_machine, housing_in_machine
+from gearwhine.stages.machine import build_machine, reduce_housing
 from gearwhine.stages.transient import solve_transient
-from gearwhine.sweep import PointFailure, PointResult, SweptPoint, gathered, sweep_document, sweep_points
-from gearwhine.sweep.conduct import conduct_sweep
-from gearwhine.sweep.point_files import read_point, stale_points, write_point
+from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
+from gearwhine.sweep.conduct import run_sweep
+from gearwhine.sweep.point_files import outdated_points, read_point, write_point
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.solution import solve_point
 
@@ -62,7 +62,7 @@ def test_what_is_wrong_at_several_points_is_said_together() -> None:
 def solved() -> tuple:
     (point, _) = points_of(*COARSE)
     housing = solve_housing(point.case)
-    result = solve_point(point.case, housing_in_machine(point.case, housing), code_digest())
+    result = solve_point(point.case, reduce_housing(point.case, housing), code_digest())
     assert isinstance(result, PointResult)
     return point, housing, result
 
@@ -93,8 +93,8 @@ def test_a_point_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> N
     file = tmp_path / "points" / point.file
     file.write_bytes(file.read_bytes()[:100])
     assert read_point(tmp_path, point) is None
-    assert stale_points(tmp_path, (point,)) == []
-    assert stale_points(tmp_path, ()) == [file]
+    assert outdated_points(tmp_path, (point,)) == []
+    assert outdated_points(tmp_path, ()) == [file]
 
 
 def test_a_damaged_point_is_no_point(solved: tuple, tmp_path: Path) -> None:
@@ -145,7 +145,7 @@ def test_spectra_of_unlike_lengths_meet_on_their_orders(solved: tuple) -> None:
         SweptPoint(replace(point, place=(0,)), result, False),
         SweptPoint(replace(point, place=(1,)), finer, False),
     ]
-    data = gathered(case, keys, swept)
+    data = collected_sweep(case, keys, swept)
     assert data.order.values[:5].tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
     top = data.sensor_spectrum.sel(sensor="top")
     np.testing.assert_array_equal(top[1, :5], np.arange(5.0))
@@ -161,7 +161,7 @@ def test_words_are_swept_too(solved: tuple) -> None:
         SweptPoint(replace(point, place=(0,)), result, False),
         SweptPoint(replace(point, place=(1,)), PointFailure("no"), False),
     ]
-    data = gathered(point.case, keys, swept)
+    data = collected_sweep(point.case, keys, swept)
     assert data.rotor_input_mass.values.tolist() == ["lumped", "distributed"]
     assert data.done.values.tolist() == [True, False]
     assert data.failure.values.tolist() == ["", "no"]
@@ -219,7 +219,7 @@ def test_every_figure_of_a_point_stands_at_its_place() -> None:
     points = points_of(over=over)
     keys = swept_keys(load_case("small-gearbox").case, over)
     swept = [SweptPoint(point, made_up(number), resumed=number == 2) for number, point in enumerate(points)]
-    data = gathered(points[0].case, keys, swept)
+    data = collected_sweep(points[0].case, keys, swept)
     for number, (i, j) in enumerate([(0, 0), (0, 1), (1, 0), (1, 1)]):
         at = data.isel(speed=i, operation_torque=j)
         assert float(at.rotation_speed) == 60.0 * (number + 1)
@@ -263,6 +263,6 @@ def test_points_of_the_case_as_it_was_are_cleared_away(tmp_path: Path) -> None:
     slow, fast = points_of()
     for number, point in enumerate((slow, fast)):
         write_point(tmp_path, tmp_path, point, made_up(number))
-    (taken,) = conduct_sweep([slow], tmp_path, lambda message, fraction=None: None, workers=1)
+    (taken,) = run_sweep([slow], tmp_path, lambda message, fraction=None: None, workers=1)
     assert taken.resumed
     assert [path.name for path in (tmp_path / "points").iterdir()] == [slow.file]

@@ -17,14 +17,14 @@ from scipy.stats import chi2
 
 import housing
 from gearwhine.case import Case, parse_case
-from gearwhine.stages.designs import HousingDesign, HousingDesigns
+from gearwhine.stages.designs import HousingAtParameters, ParametricHousing
 from gearwhine.stages.update_keys import fitted_case
 from housing.updating import (
     UNPAIRED,
     Effort,
-    Found,
     ModalState,
     Posterior,
+    SearchResult,
     Surrogate,
     Target,
     measure,
@@ -93,19 +93,19 @@ def survey_normals(mesh: Mesh) -> sparse.csr_array:
 
 
 @pytest.fixture(scope="module")
-def designs() -> HousingDesigns:
+def designs() -> ParametricHousing:
     case = housing_case()
     assert case.update is not None
-    return HousingDesigns(fitted_case(case), case.update.modes, measured=survey_normals, threads=1)
+    return ParametricHousing(fitted_case(case), case.update.modes, measured=survey_normals, threads=1)
 
 
 @pytest.fixture(scope="module")
-def start(designs: HousingDesigns) -> HousingDesign:
+def start(designs: ParametricHousing) -> HousingAtParameters:
     return designs.solve(designs.start)
 
 
 @pytest.fixture(scope="module")
-def reduced(start: HousingDesign) -> Surrogate:
+def reduced(start: HousingAtParameters) -> Surrogate:
     return start.surrogate()
 
 
@@ -144,7 +144,7 @@ def measured(secret: ModalState, generator: np.random.Generator) -> tuple[Target
     return target, [seen[place] for place in order]
 
 
-def secret_coordinates(designs: HousingDesigns, generator: np.random.Generator) -> FloatArray:
+def secret_coordinates(designs: ParametricHousing, generator: np.random.Generator) -> FloatArray:
     low, high = coordinate_bounds(designs.parameters)
     while True:
         drawn = generator.normal(size=len(low))
@@ -152,12 +152,12 @@ def secret_coordinates(designs: HousingDesigns, generator: np.random.Generator) 
             return np.asarray(drawn)
 
 
-def spread_of(found: Found, target: Target) -> Posterior:
+def spread_of(found: SearchResult, target: Target) -> Posterior:
     design = found.design
     return posterior(target, found.misfit, design.coordinates, design.surrogate().at(design.coordinates))
 
 
-def test_secrets_are_recovered_within_the_reported_uncertainty(designs: HousingDesigns, reduced: Surrogate) -> None:
+def test_secrets_are_recovered_within_the_reported_uncertainty(designs: ParametricHousing, reduced: Surrogate) -> None:
     """At least 95 of 100, on the reduced model; and every mode is paired with its own.
 
     The part in smaller regions has to be what each says within three standard deviations of such a count.
@@ -184,7 +184,7 @@ def test_secrets_are_recovered_within_the_reported_uncertainty(designs: HousingD
     assert right >= 98
 
 
-def test_a_solved_housing_is_recovered(designs: HousingDesigns, start: HousingDesign) -> None:
+def test_a_solved_housing_is_recovered(designs: ParametricHousing, start: HousingAtParameters) -> None:
     """With a true solution for every design, all parameters together and each wall to a millimetre."""
     generator = np.random.default_rng(7)
     secret = secret_coordinates(designs, generator)
@@ -196,7 +196,7 @@ def test_a_solved_housing_is_recovered(designs: HousingDesigns, start: HousingDe
     assert (spread.deviations < 0.9).all()
 
 
-def test_a_shape_that_is_none_of_the_model_is_reported_unpaired(designs: HousingDesigns, reduced: Surrogate) -> None:
+def test_a_shape_that_is_none_of_the_model_is_reported_unpaired(designs: ParametricHousing, reduced: Surrogate) -> None:
     generator = np.random.default_rng(3)
     target, own = measured(reduced.state, generator)
     assert target.shapes is not None

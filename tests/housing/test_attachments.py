@@ -18,12 +18,12 @@ from housing import (
     Patch,
     Support,
     assemble,
-    attach,
+    attach_fixtures,
     axes_along,
     rigid_motions,
     solve_modes,
 )
-from housing.attachments import MOST_PATCH_NODES, port_additions
+from housing.attachments import MOST_PATCH_NODES, port_fixture_matrices
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -73,7 +73,7 @@ def test_a_block_on_a_soft_mount_is_a_rigid_body_on_springs(solid: tuple[Mesh, M
         # m I ω⁴ - (k tip + kr m) ω² + k kr = 0, since m tip - (m h)² = m I.
         squares = np.roots([mass * inertia[about], -(k[across] * tip + kr[about] * mass), k[across] * kr[about]])
         expected += list(np.sqrt(squares))
-    modes = solve_modes(attach(free, mesh, [Mount("m", BASE, Bushing((*k, *kr)))]), count=6)
+    modes = solve_modes(attach_fixtures(free, mesh, [Mount("m", BASE, Bushing((*k, *kr)))]), count=6)
     np.testing.assert_allclose(modes.frequencies[:6], np.sort(expected), rtol=2e-5)
 
 
@@ -82,7 +82,7 @@ def test_a_mount_whose_axes_meet_at_the_centre_of_gravity_decouples(solid: tuple
     mass, inertia = _block_body()
     k = (2e4, 3e4, 5e4, 40.0, 70.0, 90.0)
     middle = (SIDES[0] / 2, SIDES[1] / 2, SIDES[2] / 2)
-    modes = solve_modes(attach(free, mesh, [Mount("m", BASE, Bushing(k), center=middle)]), count=6)
+    modes = solve_modes(attach_fixtures(free, mesh, [Mount("m", BASE, Bushing(k), center=middle)]), count=6)
     expected = np.sort(np.sqrt(np.array(k) / np.array([mass] * 3 + list(inertia))))
     np.testing.assert_allclose(modes.frequencies[:6], expected, rtol=2e-5)
 
@@ -142,7 +142,7 @@ def test_two_free_bodies_with_a_joint_have_six_rigid_modes_and_six_of_the_joint(
     mesh, free = pair
     assert solve_modes(free, count=12).frequencies[:12].max() == 0.0
     bolt = Bushing.along((0, 0, 1), Axial(axial=4e5, shear=1e5, tilting=900.0, torsional=300.0))
-    matrices = attach(free, mesh, [Joint("bolt", Patch("lower"), Patch("upper"), bolt)])
+    matrices = attach_fixtures(free, mesh, [Joint("bolt", Patch("lower"), Patch("upper"), bolt)])
     modes = solve_modes(matrices, count=12)
     assert modes.certificate.complete
     assert modes.frequencies[:6].max() == 0.0
@@ -161,7 +161,7 @@ def test_a_stiff_joint_welds_two_halves(block: Callable[..., Mesh], steel: Mater
     one = block((0.01, 0.01, 0.1), (1, 1, 4))
     mesh = _stacked(one, one.points + [0.0, 0.0, 0.1])
     joint = Joint("weld", Patch("lower"), Patch("upper"), Bushing((1e14, 1e14, 1e14, 1e10, 1e10, 1e10)))
-    matrices = attach(assemble(mesh, material), mesh, [joint])
+    matrices = attach_fixtures(assemble(mesh, material), mesh, [joint])
     expected = np.pi * np.sqrt(210e9 / 7800.0) / 0.2
     modes = solve_modes(matrices, frequency_limit=1.05 * expected)
     assert np.abs(modes.frequencies / expected - 1).min() < 1e-4
@@ -170,7 +170,7 @@ def test_a_stiff_joint_welds_two_halves(block: Callable[..., Mesh], steel: Mater
 def test_whole_matrices_stand_on_one_pattern(pair: tuple[Mesh, Matrices]) -> None:
     mesh, free = pair
     inertia = ((2e-3, 0, 0), (0, 2e-3, 0), (0, 0, 3e-3))
-    attached = attach(
+    attached = attach_fixtures(
         free,
         mesh,
         [
@@ -200,9 +200,9 @@ def test_attached_one_by_one_or_together_is_the_same(pair: tuple[Mesh, Matrices]
         LumpedMass("c", 0.2, position=(0.03, 0.03, 0.13)),
         Joint("d", Patch("lower"), Patch("upper"), Bushing((1e8,) * 6)),
     ]
-    together, one_by_one = attach(free, mesh, things), free
+    together, one_by_one = attach_fixtures(free, mesh, things), free
     for thing in reversed(things):
-        one_by_one = attach(one_by_one, mesh, [thing])
+        one_by_one = attach_fixtures(one_by_one, mesh, [thing])
     for name in ("stiffness", "mass", "damping"):
         ours, theirs = getattr(together, name).toarray(), getattr(one_by_one, name).toarray()
         np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=1e-14 * np.abs(ours).max())
@@ -210,17 +210,17 @@ def test_attached_one_by_one_or_together_is_the_same(pair: tuple[Mesh, Matrices]
 
 def test_nothing_attached_leaves_the_matrices_as_they_are(solid: tuple[Mesh, Matrices]) -> None:
     mesh, free = solid
-    same = attach(free, mesh, [])
+    same = attach_fixtures(free, mesh, [])
     assert same.blocks is free.blocks
     assert same.neighbors is free.neighbors
     assert same.damping.nnz == 0
-    damped = attach(free, mesh, [Support("d", surface="bottom", damping=(1.0, 2.0, 3.0))])
+    damped = attach_fixtures(free, mesh, [Support("d", surface="bottom", damping=(1.0, 2.0, 3.0))])
     assert damped.blocks is free.blocks
 
 
 def test_a_dashpot_meets_a_translation_and_spares_the_stiffness(solid: tuple[Mesh, Matrices]) -> None:
     mesh, free = solid
-    damped = attach(free, mesh, [Support("d", surface="bottom", damping=(7.0, 0.0, 3.0))])
+    damped = attach_fixtures(free, mesh, [Support("d", surface="bottom", damping=(7.0, 0.0, 3.0))])
     translations = rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)[:, :3]
     resistance = translations.T @ damped.damping @ translations
     np.testing.assert_allclose(resistance, np.diag([7.0, 0.0, 3.0]), atol=1e-12)
@@ -233,7 +233,7 @@ def test_too_large_a_patch_is_refused() -> None:
     count = MOST_PATCH_NODES + 1
     port = sparse.csr_array(np.ones((1, 3 * count)))
     with pytest.raises(HousingError, match=rf"mount 'm' ties {count} nodes.*smaller patch or larger elements"):
-        port_additions(port, name="mount 'm'", stiffness=np.eye(1))
+        port_fixture_matrices(port, name="mount 'm'", stiffness=np.eye(1))
 
 
 def test_bushings_and_joints_that_make_no_sense_are_refused() -> None:

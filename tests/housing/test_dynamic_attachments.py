@@ -16,7 +16,7 @@ from housing import (
     Support,
     assemble,
     fixed_freedoms,
-    leading_attachments,
+    leading_residual_modes,
     seat_matrix,
     solve_modes,
 )
@@ -66,9 +66,9 @@ def dense(beam: tuple[Mesh, Matrices], fixed: npt.NDArray[np.int64], port: spars
 
 def reduced(modes: ModeSet, port: sparse.csr_array, w: float) -> FloatArray:
     """The same by modes and attachments."""
-    assert modes.attachments is not None
-    squared = np.concatenate([modes.frequencies, modes.attachments.frequencies]) ** 2
-    shapes = np.concatenate([modes.shapes, modes.attachments.shapes]).reshape(len(squared), -1)
+    assert modes.residual_modes is not None
+    squared = np.concatenate([modes.frequencies, modes.residual_modes.frequencies]) ** 2
+    shapes = np.concatenate([modes.shapes, modes.residual_modes.shapes]).reshape(len(squared), -1)
     return np.asarray((shapes.T / (squared - w**2)) @ modes.project_all(port))
 
 
@@ -105,10 +105,10 @@ def test_every_order_brings_the_band_nearer(
 @pytest.mark.parametrize("orders", [1, 2])
 def test_fewer_orders_are_part_of_more(port: sparse.csr_array, solved: dict[int, ModeSet], orders: int) -> None:
     """The smaller set taken out of the larger one is the one that is found by itself."""
-    whole, alone = solved[3].attachments, solved[orders].attachments
+    whole, alone = solved[3].residual_modes, solved[orders].residual_modes
     assert whole is not None
     assert alone is not None
-    fewer, mixture = leading_attachments(whole, port, LIMIT**2, orders)
+    fewer, mixture = leading_residual_modes(whole, port, LIMIT**2, orders)
     np.testing.assert_allclose(fewer.frequencies, alone.frequencies, rtol=1e-6)
     np.testing.assert_allclose(np.abs(fewer.project(port)), np.abs(alone.project(port)), rtol=1e-5, atol=1e-5)
     np.testing.assert_allclose(mixture.T @ mixture, np.eye(len(fewer.frequencies)), atol=1e-10)
@@ -116,7 +116,7 @@ def test_fewer_orders_are_part_of_more(port: sparse.csr_array, solved: dict[int,
 
 
 def test_no_order_at_all_is_refused(port: sparse.csr_array, solved: dict[int, ModeSet]) -> None:
-    attached = solved[1].attachments
+    attached = solved[1].residual_modes
     assert attached is not None
     with pytest.raises(HousingError, match="0 orders of response; expected 1 or more"):
-        leading_attachments(attached, port, LIMIT**2, 0)
+        leading_residual_modes(attached, port, LIMIT**2, 0)

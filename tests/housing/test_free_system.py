@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
-from housing import HousingError, LumpedMass, Material, Matrices, Patch, assemble, attach, symmetric
+from housing import HousingError, LumpedMass, Material, Matrices, Patch, assemble, attach_fixtures, symmetric
 from housing.free_system import FreeMass, FreeSystem
 from housing.symmetric import SymmetricMatrix
 from meshes import Mesh
@@ -25,7 +25,7 @@ def matrices(request: pytest.FixtureRequest, block: Callable[..., Mesh], steel: 
     if request.param == "bare":
         return bare
     motor = LumpedMass("motor", 1.5, patch=Patch("top"), offset=(0.02, 0.0, 0.01))
-    return attach(bare, mesh, [motor])
+    return attach_fixtures(bare, mesh, [motor])
 
 
 @settings(max_examples=25, deadline=None)

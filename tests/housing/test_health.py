@@ -17,8 +17,8 @@ from housing import (
     Seat,
     Support,
     assemble,
-    attach,
-    enclosed,
+    attach_fixtures,
+    enclosed_volume,
     health_report,
     seat_matrix,
     solve_modes,
@@ -34,7 +34,7 @@ DENSITY = 7850.0
 
 @pytest.fixture(scope="module")
 def sprung(box: Mesh, box_matrices: Matrices) -> Matrices:
-    return attach(box_matrices, box, FEET)
+    return attach_fixtures(box_matrices, box, FEET)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def modes(box: Mesh, sprung: Matrices) -> ModeSet:
 
 
 def report(box: Mesh, unsupported: Matrices, sprung: Matrices, modes: ModeSet) -> HealthReport:
-    volume, center = enclosed(box)
+    volume, center = enclosed_volume(box)
     return health_report(box, unsupported, sprung, FEET, modes, mass=DENSITY * volume, center=center)
 
 
@@ -68,7 +68,7 @@ def test_volume_and_centroid_of_a_cylinder_bored_box(box: Mesh) -> None:
     from housing.assembly import assemble as sum_elements
 
     body = sum_elements(box, Material(1.0, 0.3, 1.0))
-    volume, center = enclosed(box)
+    volume, center = enclosed_volume(box)
     assert volume == pytest.approx(body.total_mass, rel=1e-12)
     weights = body.mass.sum(axis=0).reshape(-1, 3)[:, 0]
     np.testing.assert_allclose(center, weights @ box.points / weights.sum(), atol=1e-9)
@@ -77,7 +77,7 @@ def test_volume_and_centroid_of_a_cylinder_bored_box(box: Mesh) -> None:
 def test_wrong_density_unit_or_geometry_is_caught(
     box: Mesh, box_matrices: Matrices, sprung: Matrices, modes: ModeSet
 ) -> None:
-    volume, center = enclosed(box)
+    volume, center = enclosed_volume(box)
     with pytest.raises(HealthError, match="mass 1e-05"):
         health_report(
             box, box_matrices, sprung, FEET, modes, mass=DENSITY * volume * (1 + 1e-5), center=center
@@ -124,8 +124,8 @@ def test_parts_that_are_not_joined_are_told(block, steel: Material) -> None:
     two = Mesh.of_tetrahedra(points, np.vstack([cells, cells + len(one.points)]), {"bottom": bottom})
     matrices = assemble(two, steel)
     support = Support("root", surface="bottom", fixed=(True, True, True))
-    modes = solve_modes(attach(matrices, two, [support]), count=8)
-    volume, center = enclosed(two)
+    modes = solve_modes(attach_fixtures(matrices, two, [support]), count=8)
+    volume, center = enclosed_volume(two)
     health = health_report(two, matrices, matrices, [support], modes, mass=DENSITY * volume, center=center)
     assert failing(health) == ["rigid modes"]
     assert "joined?" in next(line.why for line in health.lines if line.name == "rigid modes")
@@ -171,8 +171,8 @@ def test_shares_of_the_feet(box: Mesh) -> None:
 
 def test_a_housing_free_to_move_is_told_not_refused(box: Mesh, box_matrices: Matrices) -> None:
     slide = (Support("slide", surface="foot-1", fixed=(False, True, False)),)
-    modes = solve_modes(attach(box_matrices, box, slide), count=5)
-    volume, center = enclosed(box)
+    modes = solve_modes(attach_fixtures(box_matrices, box, slide), count=5)
+    volume, center = enclosed_volume(box)
     health = health_report(box, box_matrices, box_matrices, slide, modes, mass=DENSITY * volume, center=center)
     assert failing(health) == ["grounding"]
     assert "can still move: x, z, rotation y" in next(line.why for line in health.lines if not line.ok)

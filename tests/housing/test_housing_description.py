@@ -39,7 +39,9 @@ def test_a_clamped_housing_cannot_come_out_free(box: Housing) -> None:
 
 def test_modes_carry_what_a_machine_takes_of_them(box: Housing) -> None:
     found = box.modes(count=3, bearings={"near the front": ("front bearing", 0.01)})
-    n = len(found.frequencies_hz) + len(found.mode_set.attachments.frequencies if found.mode_set.attachments else ())
+    n = len(found.frequencies_hz) + len(
+        found.mode_set.residual_modes.frequencies if found.mode_set.residual_modes else ()
+    )
     assert set(found.seats) == {"front bearing", "back bearing"}
     assert found.seats["front bearing"].shape == (n, 6)
     assert found.sensors["top"].shape == (n,)

@@ -16,7 +16,7 @@ from housing import (
     RigidBody,
     Support,
     assemble,
-    attach,
+    attach_fixtures,
     rigid_body,
     solve_modes,
 )
@@ -45,7 +45,7 @@ def test_a_mass_on_a_patch_adds_up_as_rigid_bodies_do(block: Callable[..., Mesh]
     free = assemble(mesh, steel)
     offset = np.array([0.03, -0.02, 0.08])
     motor = LumpedMass("motor", 3.7, Patch(surface="top"), inertia=INERTIA, offset=tuple(offset))
-    whole = rigid_body(mesh.points, both := attach(free, mesh, [motor]))
+    whole = rigid_body(mesh.points, both := attach_fixtures(free, mesh, [motor]))
     bare = rigid_body(mesh.points, free)
     place = np.array([0.05, 0.035, 0.05]) + offset
     mass = bare.mass + 3.7
@@ -64,7 +64,7 @@ def test_a_point_mass_adds_up_too(box: Mesh, box_matrices: Matrices) -> None:
     place = np.array([0.03, 0.16, -0.05])
     sensor = LumpedMass("sensor", 0.25, position=tuple(place))
     np.testing.assert_allclose(sensor.place(box).position, place, atol=1e-12)
-    bare, whole = (rigid_body(box.points, m) for m in (box_matrices, attach(box_matrices, box, [sensor])))
+    bare, whole = (rigid_body(box.points, m) for m in (box_matrices, attach_fixtures(box_matrices, box, [sensor])))
     assert whole.mass == pytest.approx(bare.mass + 0.25, rel=1e-13)
     center = (bare.mass * bare.center + 0.25 * place) / whole.mass
     np.testing.assert_allclose(whole.center, center, rtol=1e-10)
@@ -79,7 +79,7 @@ def test_lengthwise_modes_of_a_bar_with_an_end_mass(block: Callable[..., Mesh]) 
     bar = SLACK.density * side**2 * length
     supports = [Support("root", surface="bottom", fixed=(True, True, True))]
     tip = LumpedMass("tip", heavy, Patch(surface="top"))
-    matrices = attach(assemble(mesh, SLACK), mesh, [*supports, tip])
+    matrices = attach_fixtures(assemble(mesh, SLACK), mesh, [*supports, tip])
     speed = np.sqrt(SLACK.youngs_modulus / SLACK.density)
     roots = [brentq(lambda b: b * np.tan(b) - bar / heavy, low + 1e-9, low + np.pi / 2 - 1e-9) for low in (0.0, np.pi)]
     modes = solve_modes(matrices, frequency_limit=1.05 * roots[1] * speed / length)
@@ -99,7 +99,7 @@ def test_bending_of_a_cantilever_with_a_body_at_its_tip(block: Callable[..., Mes
     tensor = ((inertia, 0, 0), (0, inertia, 0), (0, 0, 0.05 * inertia))
     tip = LumpedMass("tip", heavy, Patch(surface="top"), inertia=tensor, offset=(0.0, 0.0, arm))
     root = Support("root", surface="bottom", fixed=(True, True, True))
-    matrices = attach(assemble(mesh, SLACK), mesh, [root, tip])
+    matrices = attach_fixtures(assemble(mesh, SLACK), mesh, [root, tip])
     stiffness, line = SLACK.youngs_modulus * side**4 / 12.0, SLACK.density * side**2
 
     def determinant(omega: float) -> float:

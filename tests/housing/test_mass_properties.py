@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import LumpedMass, Material, Matrices, Patch, assemble, attach, mass_properties
+from housing import LumpedMass, Material, Matrices, Patch, assemble, attach_fixtures, mass_properties
 from housing.rigid import rigid_body
 from meshes import Mesh
 from meshes.elements import SOLIDS
@@ -61,7 +61,7 @@ def test_inertia_is_about_the_centre_of_gravity_wherever_the_nodes_lie(
     mesh = block((0.10, 0.07, 0.05), (2, 1, 1))
     own = rigid_body(mesh.points, assemble(mesh, steel))
     tip = LumpedMass("tip", 5.0, Patch(surface="top"), offset=(0.03, -0.01, 0.2))
-    whole = rigid_body(mesh.points, attach(assemble(mesh, steel), mesh, [tip]))
+    whole = rigid_body(mesh.points, attach_fixtures(assemble(mesh, steel), mesh, [tip]))
     facets = mesh.points[np.unique(np.concatenate([part.nodes.ravel() for part in mesh.surface("top")]))]
     place = facets.mean(axis=0)
     place[:2] = mesh.points[:, :2].mean(axis=0)

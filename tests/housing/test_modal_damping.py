@@ -14,7 +14,7 @@ from housing import (
     Patch,
     Support,
     assemble,
-    attach,
+    attach_fixtures,
     damping_ratios,
     modal_damping,
     solve_modes,
@@ -37,7 +37,7 @@ def test_a_block_on_a_damped_mount_decays_as_one_degree_of_freedom(block: Callab
     mesh = block((0.1, 0.1, 0.1))
     k, c, mass = 5e4, 60.0, 7.85
     mount = Mount("m", Patch(surface="bottom"), Bushing((k, k, k, 9e3, 9e3, 9e3), (0.0, 0.0, c, 0.0, 0.0, 0.0)))
-    matrices = attach(assemble(mesh, steel), mesh, [mount])
+    matrices = attach_fixtures(assemble(mesh, steel), mesh, [mount])
     modes = solve_modes(matrices, count=6)
     damping = modal_damping(modes, matrices)
     expected = complex(-c / (2 * mass), np.sqrt(k / mass - (c / (2 * mass)) ** 2))
@@ -66,7 +66,7 @@ def test_a_bar_with_a_dashpot_at_its_end(block: Callable[..., Mesh], how: str) -
         "support": Support("end", surface="top", damping=(0.0, 0.0, dashpot)),
         "mount": Mount("end", Patch(surface="top"), Bushing(damping=(0.0, 0.0, dashpot, 0.0, 0.0, 0.0))),
     }[how]
-    matrices = attach(assemble(mesh, material), mesh, [root, end])
+    matrices = attach_fixtures(assemble(mesh, material), mesh, [root, end])
     modes = solve_modes(matrices, frequency_limit=20 * speed / length)
     expected = complex(-np.arctanh(r), np.pi / 2) * speed / length
     found = _eigenvalues(modes, modal_damping(modes, matrices))
@@ -81,7 +81,7 @@ def test_modal_damping_is_symmetric_and_takes_energy(box: Mesh, steel: Material)
     free = assemble(box, steel)
     feet = [Support(f"foot-{n}", surface=f"foot-{n}", damping=(10.0 * n, 20.0, 30.0)) for n in (1, 2, 3, 4)]
     modes = solve_modes(free, count=10)
-    damping = modal_damping(modes, attach(free, box, feet))
+    damping = modal_damping(modes, attach_fixtures(free, box, feet))
     assert np.array_equal(damping, damping.T)
     values = np.linalg.eigvalsh(damping)
     assert values.min() > -1e-12 * values.max()

@@ -7,9 +7,9 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from housing import HousingError, Material, Matrices, Support, assemble, attach, fixed_freedoms, solve_modes
+from housing import HousingError, Material, Matrices, Support, assemble, attach_fixtures, fixed_freedoms, solve_modes
 from housing.material import element_constants
-from housing.updating import ModelRate, modal_rates
+from housing.updating import ModelSensitivity, modal_sensitivities
 from meshes import BoxGeometry, BoxMorph, Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -39,7 +39,7 @@ def test_rates_are_those_of_the_assembled_matrices(
         feet=replace(geometry.feet, size=(0.042, 0.021, 0.05)) if geometry.feet else None,
     )
     velocity = BoxMorph(box, geometry).displacement(other)
-    found = modal_rates(box, constants, shapes, [ModelRate(velocity=velocity)])
+    found = modal_sensitivities(box, constants, shapes, [ModelSensitivity(velocity=velocity)])
     flat = shapes.reshape(len(shapes), -1).T
 
     def difference(step: float) -> tuple[FloatArray, FloatArray]:
@@ -62,11 +62,11 @@ def test_a_body_twice_as_large_sounds_an_octave_lower(box: Mesh, steel: Material
     elastic = modes.frequencies > 1.0
     lam, mu, density = constants
     rates = [
-        ModelRate(velocity=box.points),
-        ModelRate(constants=np.stack([lam, mu, np.zeros_like(density)])),
-        ModelRate(constants=np.stack([np.zeros_like(lam), np.zeros_like(mu), density])),
+        ModelSensitivity(velocity=box.points),
+        ModelSensitivity(constants=np.stack([lam, mu, np.zeros_like(density)])),
+        ModelSensitivity(constants=np.stack([np.zeros_like(lam), np.zeros_like(mu), density])),
     ]
-    found = modal_rates(box, constants, modes.shapes, rates).eigenvalues(modes.frequencies)
+    found = modal_sensitivities(box, constants, modes.shapes, rates).eigenvalues(modes.frequencies)
     slopes = found[:, elastic] / (2.0 * modes.frequencies[elastic] ** 2)
     assert elastic.sum() >= 8
     assert slopes == pytest.approx(np.array([-1.0, 0.5, -0.5])[:, None] * np.ones(elastic.sum()), rel=1e-7)
@@ -75,7 +75,9 @@ def test_a_body_twice_as_large_sounds_an_octave_lower(box: Mesh, steel: Material
 def test_turning_and_shifting_a_body_changes_no_frequency(box: Mesh, steel: Material, constants: FloatArray) -> None:
     modes = solve_modes(assemble(box, steel), count=12)
     turn = np.cross(np.array([0.3, -0.5, 0.8]), box.points) + np.array([0.1, 0.2, 0.3])
-    found = modal_rates(box, constants, modes.shapes, [ModelRate(velocity=turn)]).eigenvalues(modes.frequencies)
+    found = modal_sensitivities(box, constants, modes.shapes, [ModelSensitivity(velocity=turn)]).eigenvalues(
+        modes.frequencies
+    )
     elastic = modes.frequencies > 1.0
     assert np.abs(found[0, elastic] / modes.frequencies[elastic] ** 2).max() < 1e-7
 
@@ -94,10 +96,10 @@ def test_frequency_slopes_are_those_of_solved_modes(
         mesh = replace(box, points=box.points + wall * velocity)
         held = [Support("spring", surface="foot-3", stiffness=tuple((1.0 + springs) * k for k in spring))]  # type: ignore[arg-type]
         own = replace(steel, density=(1.0 + density) * steel.density)
-        return solve_modes(attach(assemble(mesh, own), mesh, held).held(fixed), count=6).frequencies
+        return solve_modes(attach_fixtures(assemble(mesh, own), mesh, held).held(fixed), count=6).frequencies
 
     held = Support("spring", surface="foot-3", stiffness=spring)
-    matrices = attach(assemble(box, steel), box, [held])
+    matrices = attach_fixtures(assemble(box, steel), box, [held])
     modes = solve_modes(matrices.held(fixed), count=6)
     n = len(box.points)
     fastened = held.additions(box).stiffness.matrix(n)
@@ -105,11 +107,13 @@ def test_frequency_slopes_are_those_of_solved_modes(
         (held.additions(replace(box, points=box.points + way * STEP * velocity)).stiffness.matrix(n)) for way in (1, -1)
     ]
     rates = [
-        ModelRate(velocity=velocity, stiffness=(shares[0] - shares[1]) / (2.0 * STEP)),
-        ModelRate(stiffness=fastened),
-        ModelRate(constants=np.stack([0.0 * constants[0], 0.0 * constants[1], constants[2]])),
+        ModelSensitivity(velocity=velocity, stiffness=(shares[0] - shares[1]) / (2.0 * STEP)),
+        ModelSensitivity(stiffness=fastened),
+        ModelSensitivity(constants=np.stack([0.0 * constants[0], 0.0 * constants[1], constants[2]])),
     ]
-    slopes = modal_rates(box, constants, modes.shapes, rates).eigenvalues(modes.frequencies) / (2.0 * modes.frequencies)
+    slopes = modal_sensitivities(box, constants, modes.shapes, rates).eigenvalues(modes.frequencies) / (
+        2.0 * modes.frequencies
+    )
     for number, step in enumerate((0.02, 0.01, 0.005)):
         one, two = (
             (frequencies(*np.eye(3)[number] * h) - frequencies(*np.eye(3)[number] * -h)) / (2.0 * h)
@@ -140,7 +144,7 @@ def test_shapes_mix_as_solved_modes_do(cube: tuple[Mesh, Matrices], steel: Mater
 
     values, vectors = solved(0.0)
     shapes = vectors.T.reshape(len(values), -1, 3)
-    rates = modal_rates(brick, constants, shapes, [ModelRate(velocity=bend)])
+    rates = modal_sensitivities(brick, constants, shapes, [ModelSensitivity(velocity=bend)])
     slopes = vectors @ rates.mixtures(np.sqrt(values))[0]
 
     def difference(step: float) -> FloatArray:
@@ -157,6 +161,6 @@ def test_shapes_mix_as_solved_modes_do(cube: tuple[Mesh, Matrices], steel: Mater
 
 def test_arrays_that_do_not_fit_are_refused(box: Mesh, constants: FloatArray, shapes: FloatArray) -> None:
     with pytest.raises(HousingError, match="velocity of shape"):
-        modal_rates(box, constants, shapes, [ModelRate(velocity=np.zeros((3, 3)))])
+        modal_sensitivities(box, constants, shapes, [ModelSensitivity(velocity=np.zeros((3, 3)))])
     with pytest.raises(HousingError, match="constants' rates"):
-        modal_rates(box, constants, shapes, [ModelRate(constants=np.zeros((3, 2)))])
+        modal_sensitivities(box, constants, shapes, [ModelSensitivity(constants=np.zeros((3, 2)))])

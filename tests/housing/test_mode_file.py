@@ -261,7 +261,7 @@ def test_a_record_that_does_not_fit_itself_is_refused(record: ModeRecord) -> Non
 def test_every_field_of_a_mode_set_has_its_place_in_the_file(record: ModeRecord) -> None:
     """Whoever adds a field must say how it stands in the file, or re-used modes would lack it."""
     modes = record.modes
-    numbers = (modes.frequencies, modes.shapes, modes.certificate, modes.attachments)
+    numbers = (modes.frequencies, modes.shapes, modes.certificate, modes.residual_modes)
     notes = (modes.seconds, modes.backend, modes.shift, modes.threads)
     assert len(fields(ModeSet)) == len(numbers) + len(notes)
     assert {field.name for field in fields(Certificate)} == {

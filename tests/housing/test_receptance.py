@@ -68,7 +68,7 @@ def test_receptance_is_the_direct_solution(
 ) -> None:
     """Exact at rest; within the kept band to the order of (w / first discarded ω)⁴, and far better than modes alone."""
     undamped = np.zeros(len(modes.frequencies))
-    bare = replace(modes, attachments=None)
+    bare = replace(modes, residual_modes=None)
     for part, allowed in ((0.0, 1e-10), (0.1, 1e-4), (0.3, 1e-2)):
         w = part * LIMIT
         exact = direct(beam, ports[0], ports[0], w)

@@ -18,14 +18,14 @@ from housing import (
     ReductionError,
     Seat,
     Support,
+    add_residual_modes,
     assemble,
-    attach,
-    attach_ports,
+    attach_fixtures,
     fixed_freedoms,
     seat_matrix,
     solve_modes,
 )
-from housing.reduction import residual_attachments
+from housing.reduction import residual_attachment_modes
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -84,12 +84,12 @@ def relief(matrices: Matrices, rigid: FloatArray, port: sparse.csr_array) -> Flo
 
 def recovered(modes: ModeSet, port: sparse.csr_array) -> FloatArray:
     """Displacements of all nodes under unit loads on the port by elastic modes and attachments."""
-    assert modes.attachments is not None
+    assert modes.residual_modes is not None
     elastic = modes.frequencies > 0.0
     total = np.zeros((port.shape[1], port.shape[0]))
     for frequencies, shapes in (
         (modes.frequencies[elastic], modes.shapes[elastic]),
-        (modes.attachments.frequencies, modes.attachments.shapes),
+        (modes.residual_modes.frequencies, modes.residual_modes.shapes),
     ):
         flat = shapes.reshape(len(shapes), -1)
         total += (flat.T / frequencies**2) @ (port @ flat.T).T
@@ -105,7 +105,7 @@ def test_grounded_compliance_is_the_dense_solution(
     beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
 ) -> None:
     exact = static(beam[1], clamped, port)
-    attached = grounded.attachments
+    attached = grounded.residual_modes
     assert attached is not None
     assert worst(attached.proof.compliance, port @ exact) < 1e-10
     assert worst(port @ recovered(grounded, port), port @ exact) < 1e-10
@@ -134,15 +134,15 @@ def test_free_compliance_is_inertia_relief(
     modes = solve_modes(matrices, frequency_limit=LIMIT, ports=port)
     assert (modes.frequencies[:6] == 0.0).all()
     exact = relief(matrices, rigid_fields(mesh.points), port)
-    assert modes.attachments is not None
-    assert worst(modes.attachments.proof.compliance, port @ exact) < 1e-10
+    assert modes.residual_modes is not None
+    assert worst(modes.residual_modes.proof.compliance, port @ exact) < 1e-10
     assert worst(port @ recovered(modes, port), port @ exact) < 1e-10
 
 
 def test_modes_and_attachments_are_one_orthonormal_basis(
     beam: tuple[Mesh, Matrices], grounded: ModeSet, clamped: IntArray
 ) -> None:
-    attached = grounded.attachments
+    attached = grounded.residual_modes
     assert attached is not None
     basis = np.vstack([part.shapes.reshape(len(part.shapes), -1) for part in (grounded, attached)])
     squared = np.concatenate([grounded.frequencies, attached.frequencies]) ** 2
@@ -160,41 +160,41 @@ def test_soft_mounts_do_not_hide_the_local_compliance(
 ) -> None:
     """On mounts of some 10 Hz the ports are as compliant as those of the free body, to the order (ω / ω_elastic)²."""
     mesh, matrices = beam
-    soft = attach(matrices, mesh, [Support("mount", surface="bottom", stiffness=(3e4, 3e4, 3e4))])
+    soft = attach_fixtures(matrices, mesh, [Support("mount", surface="bottom", stiffness=(3e4, 3e4, 3e4))])
     modes = solve_modes(soft, frequency_limit=LIMIT, ports=port)
     assert 0.0 < modes.frequencies_hz[0] < 50.0
-    assert modes.attachments is not None
+    assert modes.residual_modes is not None
     exact = port @ relief(matrices, rigid_fields(mesh.points), port)
-    assert worst(modes.attachments.proof.compliance, exact) < 1e-3
-    assert modes.attachments.proof.error < 1e-10
+    assert worst(modes.residual_modes.proof.compliance, exact) < 1e-3
+    assert modes.residual_modes.proof.error < 1e-10
 
 
 def test_a_port_given_twice_brings_nothing_new(
     beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, grounded: ModeSet
 ) -> None:
-    twice = attach_ports(beam[1].held(clamped), grounded, [port, port[:2]])
-    assert twice.attachments is not None
-    assert grounded.attachments is not None
-    np.testing.assert_allclose(twice.attachments.frequencies, grounded.attachments.frequencies, rtol=1e-6)
-    assert twice.attachments.proof.compliance.shape == (9, 9)
+    twice = add_residual_modes(beam[1].held(clamped), grounded, [port, port[:2]])
+    assert twice.residual_modes is not None
+    assert grounded.residual_modes is not None
+    np.testing.assert_allclose(twice.residual_modes.frequencies, grounded.residual_modes.frequencies, rtol=1e-6)
+    assert twice.residual_modes.proof.compliance.shape == (9, 9)
 
 
 def test_a_port_on_the_fixed_patch_does_not_move(
     beam: tuple[Mesh, Matrices], clamped: IntArray, grounded: ModeSet
 ) -> None:
     held = seat_matrix(beam[0], Seat("bottom", (0.025, 0.03, 0.0)))
-    modes = attach_ports(beam[1].held(clamped), grounded, held)
-    assert modes.attachments is not None
-    assert modes.attachments.shapes.shape == (0, len(beam[0].points), 3)
-    assert not modes.attachments.proof.compliance.any()
-    assert not modes.attachments.proof.missing_parts.any()
-    assert modes.attachments.project(held).shape == (0, 6)
+    modes = add_residual_modes(beam[1].held(clamped), grounded, held)
+    assert modes.residual_modes is not None
+    assert modes.residual_modes.shapes.shape == (0, len(beam[0].points), 3)
+    assert not modes.residual_modes.proof.compliance.any()
+    assert not modes.residual_modes.proof.missing_parts.any()
+    assert modes.residual_modes.project(held).shape == (0, 6)
 
 
 def test_all_the_modes_lack_nothing(beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array) -> None:
     arrays = dense(beam[1], clamped, port)
     stiffness, mass, solve, shift, values, vectors, ports, free = arrays
-    attached, _ = residual_attachments(
+    attached, _ = residual_attachment_modes(
         stiffness, mass, solve, values, vectors, ports, shift=shift, floor=-shift, free=free, n_nodes=beam[1].n_nodes
     )
     assert len(attached.frequencies) == 0
@@ -233,7 +233,7 @@ def test_loads_together_take_fewer_sweeps_than_the_slowest_alone(
     )
 
     def sweeps(rows: sparse.csr_array) -> int:
-        attached, _ = residual_attachments(
+        attached, _ = residual_attachment_modes(
             stiffness,
             mass,
             solve,
@@ -268,7 +268,7 @@ def compare_with_direct_solution(
     The modes as the attachments leave them are returned.
     """
     n_nodes = int(free.max()) // 3 + 1
-    attached, turned = residual_attachments(
+    attached, turned = residual_attachment_modes(
         stiffness,
         mass,
         solve,
@@ -324,11 +324,11 @@ def test_modes_that_are_not_the_housings_fail_the_proof(
 ) -> None:
     wrong = replace(grounded, frequencies=grounded.frequencies * (1.0 + 1e-7))
     with pytest.raises(ReductionError, match="miss the static compliance at the ports by"):
-        attach_ports(beam[1].held(clamped), wrong, port)
+        add_residual_modes(beam[1].held(clamped), wrong, port)
     bent = grounded.shapes.copy()
     bent[0] += 1e-3 * bent[1]
     with pytest.raises(ReductionError, match=r"overlap by|not its own"):
-        attach_ports(beam[1].held(clamped), replace(grounded, shapes=bent), port)
+        add_residual_modes(beam[1].held(clamped), replace(grounded, shapes=bent), port)
 
 
 def test_arrays_that_do_not_fit_are_refused(
@@ -337,9 +337,9 @@ def test_arrays_that_do_not_fit_are_refused(
     stiffness, mass, solve, shift, values, vectors, ports, free = dense(beam[1], clamped, port)
     places = {"floor": 1.0, "free": free, "n_nodes": beam[1].n_nodes}
     with pytest.raises(HousingError, match="expected"):
-        residual_attachments(stiffness, mass, solve, values, vectors, port, shift=shift, **places)
+        residual_attachment_modes(stiffness, mass, solve, values, vectors, port, shift=shift, **places)
     with pytest.raises(HousingError, match="below zero or above every kept mode"):
-        residual_attachments(stiffness, mass, solve, values, vectors, ports, shift=float(values[3]), **places)
+        residual_attachment_modes(stiffness, mass, solve, values, vectors, ports, shift=float(values[3]), **places)
 
 
 def dense(

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from housing import HousingError, Material, Matrices, Support, assemble, attach, fixed_freedoms, solve_modes
+from housing import HousingError, Material, Matrices, Support, assemble, attach_fixtures, fixed_freedoms, solve_modes
 from meshes import GeometryError, Mesh, facet_nodes
 
 STIFFNESS = (5e8, 9e9, 3e8)
@@ -15,7 +15,7 @@ STIFFNESS = (5e8, 9e9, 3e8)
 def test_a_translated_patch_meets_its_stiffness(name: str, steel: Material, request: pytest.FixtureRequest) -> None:
     mesh = request.getfixturevalue(name)
     free = assemble(mesh, steel)
-    held = attach(free, mesh, [Support("foot", surface="foot-2", stiffness=STIFFNESS)])
+    held = attach_fixtures(free, mesh, [Support("foot", surface="foot-2", stiffness=STIFFNESS)])
     added = held.stiffness - free.stiffness
     for component, stiffness in enumerate(STIFFNESS):
         translation = np.zeros((len(mesh.points), 3))
@@ -36,7 +36,7 @@ def test_springs_store_the_energy_of_the_field(block: Callable[..., Mesh], steel
     mesh = block((a, b, 0.05), (2, 1, 1))
     free = assemble(mesh, steel)
     base = Support("base", surface="bottom", stiffness=(0.0, 0.0, 1e12))
-    added = attach(free, mesh, [base]).blocks - free.blocks
+    added = attach_fixtures(free, mesh, [base]).blocks - free.blocks
     spring = Matrices(free.pointer, free.neighbors, added, free.node_mass).stiffness
     field = np.zeros((len(mesh.points), 3))
     field[:, 2] = mesh.points[:, 0] ** power
@@ -49,10 +49,10 @@ def test_springs_of_several_supports_add_up_and_leave_the_free_matrices_alone(
 ) -> None:
     before = box_matrices.blocks.copy()
     feet = [Support(f"foot-{n}", surface=f"foot-{n}", stiffness=STIFFNESS) for n in (1, 2, 3, 4)]
-    together = attach(box_matrices, box, feet)
+    together = attach_fixtures(box_matrices, box, feet)
     one_by_one = box_matrices
     for foot in feet:
-        one_by_one = attach(one_by_one, box, [foot])
+        one_by_one = attach_fixtures(one_by_one, box, [foot])
     assert np.array_equal(together.blocks, one_by_one.blocks)
     assert np.array_equal(box_matrices.blocks, before)
     assert together.node_mass is box_matrices.node_mass
@@ -99,10 +99,10 @@ def test_a_clamped_housing_does_not_come_out_free(block: Callable[..., Mesh], st
     mesh = block((0.10, 0.07, 0.05), (2, 1, 1))
     free = assemble(mesh, steel)
     clamp = Support("base", surface="bottom", fixed=(True, True, True))
-    held = attach(free, mesh, [clamp, Support("cover", surface="top", stiffness=STIFFNESS)])
+    held = attach_fixtures(free, mesh, [clamp, Support("cover", surface="top", stiffness=STIFFNESS)])
     assert np.array_equal(held.fixed, fixed_freedoms(mesh, [clamp]))
     assert free.fixed.size == 0
     assert np.count_nonzero(solve_modes(free, count=8).frequencies == 0.0) == 6
     assert solve_modes(held, count=2).frequencies[0] > 1000.0
-    again = attach(held, mesh, [Support("side", surface="top", fixed=(True, False, False))])
+    again = attach_fixtures(held, mesh, [Support("side", surface="top", fixed=(True, False, False))])
     assert set(held.fixed) < set(again.fixed)

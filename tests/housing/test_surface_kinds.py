@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import Material, Seat, Sensor, Support, assemble, attach, seat_matrix, sensor_port
+from housing import Material, Seat, Sensor, Support, assemble, attach_fixtures, seat_matrix, sensor_port
 from housing.surface import NearestOnSurface, surface_point, surface_quadrature
 from meshes import KINDS, Mesh, facet_centers, facet_nodes, facet_normals, pick_facets
 from meshes.elements import SOLIDS
@@ -51,7 +51,7 @@ def test_springs_store_the_energy_of_the_field(slab: Mesh, steel: Material) -> N
     """u_z = x^p over a patch of length a: ½ k/(a b) ∫ x^2p dA = ½ k a^2p / (2 p + 1)."""
     p = slab.order
     free = assemble(slab, steel)
-    held = attach(free, slab, [Support("s", surface="top", stiffness=(0.0, 0.0, 1e12))])
+    held = attach_fixtures(free, slab, [Support("s", surface="top", stiffness=(0.0, 0.0, 1e12))])
     spring = held.stiffness - free.stiffness
     field = np.zeros((len(slab.points), 3))
     field[:, 2] = slab.points[:, 0] ** p

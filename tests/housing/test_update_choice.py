@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from housing.dominance import Dominance
 from housing.updating import Target, measure
-from housing.updating.choice import GAP_SCALE, choose, lacking
+from housing.updating.choice import GAP_SCALE, choice_shortfall, choose_modes
 from housing.updating.surrogate import ModalState
 
 FloatArray = npt.NDArray[np.float64]
@@ -55,7 +55,7 @@ def test_no_choice_costs_less_by_much(seed: int) -> None:
         errors = np.log(frequencies[list(chosen)] / measured) / noise
         return float(errors @ errors) + cost_by_hand(strengths, chosen, 0.1, 0.03)
 
-    found = tuple(choose(np.log(measured), noise, strengths, WIDE, 0.1, 0.03).tolist())
+    found = tuple(choose_modes(np.log(measured), noise, strengths, WIDE, 0.1, 0.03).tolist())
     costs = sorted(cost(chosen) for chosen in combinations(range(8), 3))
     assert cost(found) <= costs[2] + 1e-6
     assert cost(found) <= 1.2 * costs[0] + 5.0
@@ -68,19 +68,19 @@ def test_what_a_choice_lacks_is_the_sum_of_its_definition(seed: int, gap: float,
     strengths = dominance(np.linspace(100.0, 800.0, 9), generator.normal(scale=0.2, size=(3, 9)))
     chosen = np.sort(generator.choice(9, 4, replace=False))
     by_hand = cost_by_hand(strengths, tuple(chosen), gap, margin)
-    assert lacking(chosen, strengths, WIDE, gap, margin).cost == pytest.approx(by_hand, rel=1e-6, abs=1e-6)
+    assert choice_shortfall(chosen, strengths, WIDE, gap, margin).cost == pytest.approx(by_hand, rel=1e-6, abs=1e-6)
 
 
 def test_a_clear_choice_lacks_nothing_and_one_pair_lacks_what_it_lacks() -> None:
     logarithms = np.array([1.0, 0.0, 0.3])[None] * np.ones((3, 1))
     strengths = dominance(np.array([100.0, 200.0, 300.0]), logarithms)
-    assert lacking(np.array([0, 2]), strengths, BAND, 0.3, 0.3).cost == pytest.approx(0.0, abs=1e-20)
+    assert choice_shortfall(np.array([0, 2]), strengths, BAND, 0.3, 0.3).cost == pytest.approx(0.0, abs=1e-20)
     # One measure, one pair, 0.02 too near each other: as an error of one σ, half of it on either side.
-    alone = lacking(np.array([0, 2]), strengths, BAND, 0.32)
+    alone = choice_shortfall(np.array([0, 2]), strengths, BAND, 0.32)
     assert alone.cost == pytest.approx(1.0)
     assert sorted(zip(alone.modes.tolist(), alone.sign.tolist(), strict=True)) == [(1, 1.0), (2, -1.0)]
     assert alone.values == pytest.approx(np.sqrt([0.5, 0.5]))
-    assert lacking(np.array([0, 2]), strengths, BAND, 0.32, firmness=3.0).cost == pytest.approx(9.0)
+    assert choice_shortfall(np.array([0, 2]), strengths, BAND, 0.32, firmness=3.0).cost == pytest.approx(9.0)
 
 
 def test_a_strong_mode_beyond_the_band_costs_what_it_lacks_to_be_clearly_beyond() -> None:
@@ -88,9 +88,9 @@ def test_a_strong_mode_beyond_the_band_costs_what_it_lacks_to_be_clearly_beyond(
         return dominance(np.array([100.0, 200.0, last]), np.array([0.0, -1.0, 2.0])[None] * np.ones((3, 1)))
 
     for beyond, cost in ((0.0, 4.0), (0.005, 1.0), (0.01, 0.0), (0.2, 0.0)):
-        just = lacking(np.array([0]), strengths(1000.0 * np.exp(beyond + 1e-12)), BAND, 0.1, 0.1)
+        just = choice_shortfall(np.array([0]), strengths(1000.0 * np.exp(beyond + 1e-12)), BAND, 0.1, 0.1)
         assert just.cost == pytest.approx(cost, abs=1e-6)
-    inside = lacking(np.array([0]), strengths(1000.0 * np.exp(-0.005)), BAND, 0.1, 0.1)
+    inside = choice_shortfall(np.array([0]), strengths(1000.0 * np.exp(-0.005)), BAND, 0.1, 0.1)
     assert inside.cost == pytest.approx(9.0)  # nearer to the end than to being weak
 
 
@@ -118,7 +118,7 @@ def test_the_misfit_has_no_step_where_modes_exchange_their_places() -> None:
 
 def test_measures_that_are_not_asked_for_take_no_part() -> None:
     strengths = dominance(np.array([100.0, 200.0]), np.array([[0.0, 1.0], [5.0, 0.0], [5.0, 0.0]]))
-    assert lacking(np.array([1]), strengths, BAND, 0.5).cost == 0.0
-    assert lacking(np.array([1]), strengths, BAND, 0.5, 0.1).cost > 100.0
-    assert choose(np.log([190.0]), np.array([0.01]), strengths, BAND, 0.5).tolist() == [1]
-    assert choose(np.log([105.0]), np.array([10.0]), strengths, BAND, 0.5).tolist() == [1]
+    assert choice_shortfall(np.array([1]), strengths, BAND, 0.5).cost == 0.0
+    assert choice_shortfall(np.array([1]), strengths, BAND, 0.5, 0.1).cost > 100.0
+    assert choose_modes(np.log([190.0]), np.array([0.01]), strengths, BAND, 0.5).tolist() == [1]
+    assert choose_modes(np.log([105.0]), np.array([10.0]), strengths, BAND, 0.5).tolist() == [1]

@@ -19,7 +19,7 @@ from housing.updating import (
     Procedure,
     Surrogate,
     Target,
-    hold_back,
+    leave_one_out,
     measure,
     null_fits,
     posterior,
@@ -236,7 +236,7 @@ def test_two_springs_in_parallel_are_told_by_their_sum_only() -> None:
 def test_a_mode_that_nothing_else_tells_of_is_predicted_no_better_than_before() -> None:
     """Each oscillator has a parameter of its own: held back, it stays where the prior has it, with its uncertainty."""
     target = target_at(OWN * np.array([1.2, 0.9, 1.1]), noise=0.01)
-    rows = hold_back(Procedure(solve, FREE, solve(np.zeros(3), None), Effort(trust=0.4, solves=20), 2), target)
+    rows = leave_one_out(Procedure(solve, FREE, solve(np.zeros(3), None), Effort(trust=0.4, solves=20), 2), target)
     assert [row.error_percent for row in rows] == pytest.approx([row.start_error_percent for row in rows], abs=0.2)
     assert [row.deviation for row in rows] == pytest.approx([np.hypot(0.5, 0.01)] * 3)
     assert [row.prior_deviation for row in rows] == pytest.approx([np.hypot(0.5, 0.01)] * 3)
@@ -250,7 +250,7 @@ def test_a_mode_that_the_others_tell_of_is_predicted() -> None:
         return Common(coordinates)
 
     target = target_at(OWN * 1.1, noise=0.005)
-    rows = hold_back(Procedure(common, FREE[:1], common(np.zeros(1), None), Effort(), 1), target)
+    rows = leave_one_out(Procedure(common, FREE[:1], common(np.zeros(1), None), Effort(), 1), target)
     assert max(abs(row.error_percent) for row in rows) < 0.1
     assert max(abs(row.start_error_percent) for row in rows) > 9.0
     assert max(row.deviation for row in rows) < 0.007

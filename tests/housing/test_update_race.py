@@ -14,16 +14,16 @@ from housing.updating import (
     MeshBias,
     Meshes,
     ModalState,
+    MultistartResult,
     Parameter,
-    Raced,
     Surrogate,
     Target,
-    one_by_one,
-    race,
+    multistart_search,
     search,
+    serial_map,
 )
 from housing.updating.bias import Debiased, debiased
-from housing.updating.rates import ModalRates
+from housing.updating.rates import ModalSensitivities
 from housing.updating.search import Design
 
 FloatArray = npt.NDArray[np.float64]
@@ -58,7 +58,9 @@ class Oscillators:
         frequencies, vectors = self._solved
         own = OWN**2 * np.exp(self.coordinates)
         rates = np.einsum("ka,k,kb->kab", vectors, own, vectors)
-        return Surrogate.about(self.coordinates, state_of(frequencies, vectors), ModalRates(rates, np.zeros((N, N, N))))
+        return Surrogate.about(
+            self.coordinates, state_of(frequencies, vectors), ModalSensitivities(rates, np.zeros((N, N, N)))
+        )
 
 
 def state_of(frequencies: FloatArray, vectors: FloatArray) -> ModalState:
@@ -98,7 +100,7 @@ class Finer(Oscillators):
         _, vectors = self._solved
         own = SOFTER * OWN**2 * np.exp(self.coordinates)
         rates = np.einsum("ka,k,kb->kab", vectors, own, vectors)
-        return Surrogate.about(self.coordinates, self.state, ModalRates(rates, np.zeros((N, N, N))))
+        return Surrogate.about(self.coordinates, self.state, ModalSensitivities(rates, np.zeros((N, N, N))))
 
 
 def test_where_the_bias_was_learned_the_fine_frequencies_come_out() -> None:
@@ -163,10 +165,10 @@ def test_a_search_on_the_coarse_mesh_ends_where_the_fine_one_would() -> None:
     assert np.abs(np.log(fine(blind.design.coordinates).frequencies / target.frequencies)).max() > 0.02
 
 
-def run_race(target: Target, count: int, each: Any = one_by_one, solves: int = 30, seed: int = 1) -> Raced:
+def run_race(target: Target, count: int, each: Any = serial_map, solves: int = 30, seed: int = 1) -> MultistartResult:
     begin = np.zeros(N)
     effort = Effort(solves=solves, seed=seed)
-    return race(Meshes(coarse, finely), target, FREE, Oscillators(begin), fine(begin), effort, count, each)
+    return multistart_search(Meshes(coarse, finely), target, FREE, Oscillators(begin), fine(begin), effort, count, each)
 
 
 def test_a_race_ends_with_what_the_fine_mesh_calls_met_and_says_so() -> None:
@@ -174,7 +176,7 @@ def test_a_race_ends_with_what_the_fine_mesh_calls_met_and_says_so() -> None:
     said: list[str] = []
     begin = np.zeros(N)
     target = target_at(secret)
-    raced = race(
+    raced = multistart_search(
         Meshes(coarse, finely),
         target,
         FREE,
@@ -216,7 +218,9 @@ def test_no_design_of_the_fine_mesh_is_solved_twice() -> None:
     # So narrow that no heat meets it.
     target = replace(target_at(np.array([1.2, -0.9, 1.0, -1.3])), noise=np.full(N, 1e-12))
     begin = np.zeros(N)
-    raced = race(Meshes(coarse, noted), target, FREE, Oscillators(begin), fine(begin), Effort(solves=12), 3)
+    raced = multistart_search(
+        Meshes(coarse, noted), target, FREE, Oscillators(begin), fine(begin), Effort(solves=12), 3
+    )
     assert len(solved) > 4
     assert len(set(solved)) == len(solved)
     assert raced.design is not None
@@ -232,7 +236,9 @@ def test_a_race_outlives_starts_that_are_no_housing() -> None:
 
     begin = np.zeros(N)
     target = target_at(np.array([0.5, -0.4, 0.45, 0.2]))
-    raced = race(Meshes(fragile, finely), target, FREE, Oscillators(begin), fine(begin), Effort(solves=60), 6)
+    raced = multistart_search(
+        Meshes(fragile, finely), target, FREE, Oscillators(begin), fine(begin), Effort(solves=60), 6
+    )
     assert raced.is_met
 
 
@@ -262,8 +268,8 @@ def test_a_race_finds_a_basin_that_no_step_leads_to() -> None:
     measured = np.array([100.0 * np.exp(0.5)])
     target = Target(measured, np.array([0.05]), (1.0, 1e4), shapes=np.array([[0.0, 1.0]]))
     begin, effort = either(np.array([-3.0]), None), Effort(solves=60)
-    alone = race(Meshes(either, None), target, FREE[:1], begin, None, replace(effort, solves=6), 1)
-    several = race(Meshes(either, None), target, FREE[:1], begin, None, effort, 4)
+    alone = multistart_search(Meshes(either, None), target, FREE[:1], begin, None, replace(effort, solves=6), 1)
+    several = multistart_search(Meshes(either, None), target, FREE[:1], begin, None, effort, 4)
     assert alone.misfit.mac is not None
     assert alone.misfit.mac[0] == 0.0
     assert several.misfit.mac is not None

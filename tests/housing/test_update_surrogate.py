@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy import linalg
 
 from housing.updating import ModalState, Surrogate
-from housing.updating.rates import ModalRates
+from housing.updating.rates import ModalSensitivities
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def surrogate_about(z: FloatArray) -> Surrogate:
         (np.exp(v) * vectors.T @ k @ vectors, 0.3 * np.exp(0.3 * v) * vectors.T @ m @ vectors) for v, k, m in parts
     ]
     stiffness, mass = (np.array(part) for part in zip(*pairs, strict=True))
-    return Surrogate.about(z, state, ModalRates(stiffness, mass))
+    return Surrogate.about(z, state, ModalSensitivities(stiffness, mass))
 
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=P, max_size=P), st.integers(0, 10_000))
@@ -65,7 +65,7 @@ def test_a_power_law_goes_exactly_through_any_step() -> None:
     """All stiffness with e^z: every ω with e^(z/2), however far, and shapes not at all."""
     state, _ = solved(np.zeros(P))
     values = state.frequencies**2
-    surrogate = Surrogate.about(np.zeros(1), state, ModalRates(np.diag(values)[None], np.zeros((1, N, N))))
+    surrogate = Surrogate.about(np.zeros(1), state, ModalSensitivities(np.diag(values)[None], np.zeros((1, N, N))))
     far = surrogate.at(np.array([3.0])).state
     assert far.frequencies == pytest.approx(state.frequencies * np.exp(1.5), rel=1e-12)
     assert np.abs(far.skin) == pytest.approx(np.abs(state.skin), rel=1e-9)
@@ -101,7 +101,7 @@ def test_slopes_of_frequencies_and_shapes_are_those_of_differences() -> None:
 
 def test_rigid_modes_are_left_out() -> None:
     state = ModalState(np.array([0.0, 1e-4, 100.0, 200.0]), np.zeros((4, 1, 2)), np.ones((4, 3)))
-    surrogate = Surrogate.about(np.zeros(1), state, ModalRates(np.zeros((1, 4, 4)), np.zeros((1, 4, 4))))
+    surrogate = Surrogate.about(np.zeros(1), state, ModalSensitivities(np.zeros((1, 4, 4)), np.zeros((1, 4, 4))))
     assert surrogate.state.frequencies.tolist() == [100.0, 200.0]
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes import Ailment, ElementBlock, GeometryError, Mesh, diagnose
+from meshes import ElementBlock, GeometryError, Mesh, MeshDefect, diagnose
 from meshes.connections import bodies
 from meshes.elements import KINDS, SOLIDS
 
@@ -21,9 +21,9 @@ def _join(first: Mesh, second: Mesh, offset: tuple[float, float, float], *, merg
     return Mesh(points[index], tuple(ElementBlock(b.kind, inverse[b.nodes]) for b in blocks))
 
 
-def _only(mesh: Mesh, **options: float) -> Ailment:
-    (ailment,) = diagnose(mesh, **options)
-    return ailment
+def _only(mesh: Mesh, **options: float) -> MeshDefect:
+    (mesh_defect,) = diagnose(mesh, **options)
+    return mesh_defect
 
 
 @pytest.mark.parametrize("kind", SOLIDS)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from housing import Material, assemble, solve_modes
-from meshes import Mesh, WaveCarrier, resolution_ailments, wall_thickness
+from meshes import Mesh, WaveCarrier, resolution_defects, wall_thickness
 from meshes.quality import edge_lengths
 from meshes.resolution import locking_excess
 
@@ -62,8 +62,8 @@ def test_elements_are_held_against_the_shortest_wave(block_of: Callable[..., Mes
         thickness = wall_thickness(mesh)
         # λ ~ 1/√f: the frequency at which the longest edge is just short enough.
         limit = 1000.0 * (_wave(1000.0).shortest_wave(thickness) / (part * longest)) ** 2
-        assert resolution_ailments(mesh, _wave(0.99 * limit)) == ()
-        (found,) = resolution_ailments(mesh, _wave(1.01 * limit))
+        assert resolution_defects(mesh, _wave(0.99 * limit)) == ()
+        (found,) = resolution_defects(mesh, _wave(1.01 * limit))
         assert (found.name, found.severity, found.count) == ("size", "warning", mesh.n_elements)
         needed = 1e3 * longest / np.sqrt(1.01)
         assert f"use elements of at most {needed:.3g} mm" in found.message
@@ -79,9 +79,9 @@ def test_the_stiffness_of_simple_tetrahedra_is_foretold(block_of: Callable[..., 
     # Shear and rotary inertia lower it by about half of (1 + E / κ G) (4.73 r / L)².
     exact = slender * (1 - 0.5 * (1 + 2.6 / (5 / 6)) * (4.73 * t / np.sqrt(12) / length) ** 2)
     excess = (first / exact) ** 2 - 1
-    (found,) = resolution_ailments(mesh, _wave(1e-3))
+    (found,) = resolution_defects(mesh, _wave(1e-3))
     assert found.name == "locking"
     foretold = locking_excess(float(np.median(edge_lengths(mesh.points, mesh.blocks[0]))), t)
     assert 0.7 < foretold / excess < 1.4
     assert "% too stiff in bending" in found.message
-    assert resolution_ailments(block_of("tetra10", (length, width, t), (20, 4, 1)), _wave(1e-3)) == ()
+    assert resolution_defects(block_of("tetra10", (length, width, t), (20, 4, 1)), _wave(1e-3)) == ()

@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from housing import (
-    Attachment,
     Bushing,
+    Fixture,
     Joint,
     LumpedMass,
     Material,
     Mount,
     Patch,
     assemble,
-    attach,
+    attach_fixtures,
     modal_damping,
     rigid_body,
     solve_modes,
@@ -44,7 +44,7 @@ def turned_mesh() -> Callable[[Mesh, FloatArray, FloatArray], Mesh]:
     return lambda mesh, turn, shift: Mesh(mesh.points @ turn.T + shift, mesh.blocks, surfaces=mesh.surfaces)
 
 
-def _things(stiffness: tuple[float, ...], turn: FloatArray, shift: FloatArray) -> list[Attachment]:
+def _things(stiffness: tuple[float, ...], turn: FloatArray, shift: FloatArray) -> list[Fixture]:
     """A mount, a strut, a motor on a patch and a sensor, all moved as one rigid body."""
 
     def point(*place: float) -> tuple[float, float, float]:
@@ -83,7 +83,7 @@ def test_turning_and_moving_everything_changes_no_frequency_and_no_damping(
         (mesh, _things(stiffness, np.eye(3), still)),
         (other, _things(stiffness, turn, np.array(shift))),
     ):
-        matrices = attach(assemble(body, STEEL), body, things)
+        matrices = attach_fixtures(assemble(body, STEEL), body, things)
         modes = solve_modes(matrices, frequency_limit=2 * np.pi * 3500.0)
         whole = rigid_body(body.points, matrices)
         found.append((modes, np.trace(modal_damping(modes, matrices)), whole))
@@ -101,10 +101,10 @@ def test_added_mass_raises_no_frequency(
     mesh: Mesh, mass: float, inertia: float, offset: tuple[float, float, float]
 ) -> None:
     """Rayleigh: more kinetic energy for the same motion lowers every natural frequency or leaves it."""
-    held = attach(assemble(mesh, STEEL), mesh, _things((1.0,) * 6, np.eye(3), np.zeros(3))[:3])
+    held = attach_fixtures(assemble(mesh, STEEL), mesh, _things((1.0,) * 6, np.eye(3), np.zeros(3))[:3])
     tensor = ((inertia, 0.0, 0.0), (0.0, inertia, 0.0), (0.0, 0.0, inertia))
     lighter = LumpedMass("a", 0.5 * mass, Patch("top"), inertia=tensor, offset=offset)
-    steps = [held, attach(held, mesh, [lighter]), attach(held, mesh, [lighter, lighter])]
+    steps = [held, attach_fixtures(held, mesh, [lighter]), attach_fixtures(held, mesh, [lighter, lighter])]
     frequencies = [solve_modes(matrices, count=8).frequencies[:8] for matrices in steps]
     for before, after in pairwise(frequencies):
         assert (after <= before * (1 + 1e-9)).all()

@@ -15,8 +15,8 @@ from coupling.gears import (
     ProfileDeviation,
     TipRelief,
     face_slices,
+    loaded_transmission_error,
     mesh_stiffness,
-    static_transmission_error,
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force
@@ -65,7 +65,7 @@ def test_every_mesh_balances_its_load_with_finite_stiffness(
     faces = face_slices(pair, sense=sense, misalignment=misalignment, count=21)
     contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=faces)
     force = line_load * pair.face_width
-    mesh = static_transmission_error(contact, force, PHASES)
+    mesh = loaded_transmission_error(contact, force, PHASES)
     np.testing.assert_allclose(mesh.pair_forces.sum(axis=1), force, rtol=1e-8)
     np.testing.assert_allclose(mesh.load_shares.sum(axis=1), 1.0, rtol=1e-8)
     assert mesh.line_loads is not None
@@ -76,7 +76,7 @@ def test_every_mesh_balances_its_load_with_finite_stiffness(
     assert np.all(np.isfinite(stiffness))
     assert np.all(stiffness > 0.0)
     np.testing.assert_allclose(mesh_stiffness(contact, PHASES + 3.0), stiffness, rtol=1e-9)
-    heavier = static_transmission_error(contact, 1.5 * force, PHASES)
+    heavier = loaded_transmission_error(contact, 1.5 * force, PHASES)
     assert np.all(heavier.transmission_error > mesh.transmission_error)
     law = tooth_force(0.3, float(mesh.transmission_error[4]), 0.0, *contact.kernel_arguments)
     assert all(math.isfinite(value) for value in law)
@@ -94,7 +94,7 @@ def test_exchanging_the_gears_changes_nothing(pair: GearPairGeometry, line_load:
         contact = tooth_contact(
             geometry, PotentialEnergyStiffness(), corner_contact=True, faces=face_slices(geometry, count=21)
         )
-        errors.append(static_transmission_error(contact, force, phases).transmission_error)
+        errors.append(loaded_transmission_error(contact, force, phases).transmission_error)
     np.testing.assert_allclose(errors[1], errors[0], rtol=1e-5, atol=1e-12)
 
 
@@ -118,6 +118,6 @@ def test_compression_knows_no_size(pair: GearPairGeometry, line_load: float, sca
     for by in (1.0, scale):
         geometry = GearPairGeometry(plain(pair.driver, by), plain(pair.driven, by))
         contact = tooth_contact(geometry, PotentialEnergyStiffness(), faces=face_slices(geometry, count=21))
-        mesh = static_transmission_error(contact, line_load * geometry.face_width, PHASES)
+        mesh = loaded_transmission_error(contact, line_load * geometry.face_width, PHASES)
         errors.append(mesh.transmission_error)
     np.testing.assert_allclose(errors[1], errors[0], rtol=1e-7)

@@ -19,8 +19,8 @@ from coupling.gears import (
     inverse_involute,
     involute,
     iso6336_stiffness,
+    loaded_transmission_error,
     piecewise,
-    static_transmission_error,
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force
@@ -98,7 +98,7 @@ def test_exchanging_driver_and_driven_mirrors_the_path(pair: GearPairGeometry) -
     eps = pair.contact_ratio
     assert other.contact_ratio == pytest.approx(eps, rel=1e-12)
     here, there = (tooth_contact(p, PotentialEnergyStiffness(), corner_contact=True) for p in (pair, other))
-    start, end = here.touching_range
+    start, end = here.contact_range
     position = np.linspace(start, end, 67)
     np.testing.assert_allclose(here.stiffness(position), there.stiffness(eps - position), rtol=1e-7)
     np.testing.assert_allclose(here.deviation(position), there.deviation(eps - position), atol=3e-13)
@@ -124,12 +124,12 @@ def test_compliance_knows_no_size(gear: Gear, scale: float) -> None:
 @settings(deadline=None, max_examples=40)
 @given(pairs(), st.floats(0.2, 5.0))
 def test_stiffness_is_proportional_to_width_and_modulus(pair: GearPairGeometry, factor: float) -> None:
-    reference = tooth_contact(pair, PotentialEnergyStiffness()).mean_stiffness
+    reference = tooth_contact(pair, PotentialEnergyStiffness()).mean_mesh_stiffness
     for quantity in ("face_width", "youngs_modulus"):
         scaled = GearPairGeometry(
             *(replace(gear, **{quantity: factor * getattr(gear, quantity)}) for gear in (pair.driver, pair.driven))
         )
-        stiffness = tooth_contact(scaled, PotentialEnergyStiffness()).mean_stiffness
+        stiffness = tooth_contact(scaled, PotentialEnergyStiffness()).mean_mesh_stiffness
         assert stiffness == pytest.approx(factor * reference, rel=1e-7)
 
 
@@ -140,7 +140,7 @@ def test_mesh_stiffness_is_of_the_norms_order(pair: GearPairGeometry) -> None:
         return  # the norm's gears are solid
     driver = replace(pair.driver, face_width=0.02)
     same_width = GearPairGeometry(driver, replace(pair.driven, face_width=0.02))
-    mean = tooth_contact(same_width, PotentialEnergyStiffness()).mean_stiffness / 0.02
+    mean = tooth_contact(same_width, PotentialEnergyStiffness()).mean_mesh_stiffness / 0.02
     # The norm's mean counts the body again for every pair in contact; counted once, two pairs are softer.
     assert 0.6 < mean / iso6336_stiffness(same_width).mesh_mean < 1.4
 
@@ -171,7 +171,7 @@ def test_force_is_the_energys_slope(contact: ToothContact, phase: float, delta: 
     if np.any(np.abs(delta - gaps) < 2.0 * step):
         return  # a pair is just about to touch: the tangent steps there
     before, here, after = (evaluate(contact, phase, delta + change) for change in (-step, 0.0, step))
-    scale = contact.mean_stiffness
+    scale = contact.mean_mesh_stiffness
     assert (after[3] - before[3]) / (2.0 * step) == pytest.approx(here[0], rel=1e-7, abs=1e-9 * scale * delta)
     assert (after[0] - before[0]) / (2.0 * step) == pytest.approx(here[1], rel=1e-7, abs=1e-9 * scale)
 
@@ -185,19 +185,19 @@ def test_parametric_power_is_the_energys_slope_in_phase(contact: ToothContact, p
     before, here, after = (evaluate(contact, phase + change, delta) for change in (-step, 0.0, step))
     if before[5] != after[5]:
         return  # a relieved pair begins to touch inside the difference
-    scale = 0.5 * contact.mean_stiffness * delta**2
+    scale = 0.5 * contact.mean_mesh_stiffness * delta**2
     assert (after[3] - before[3]) / (2.0 * step) == pytest.approx(here[4], rel=1e-4, abs=1e-5 * scale)
 
 
 @settings(deadline=None, max_examples=40)
 @given(contacts(), st.floats(0.0, 1e4))
 def test_static_mesh_balances_shares_and_only_pushes(contact: ToothContact, force: float) -> None:
-    mesh = static_transmission_error(contact, force)
+    mesh = loaded_transmission_error(contact, force)
     assert np.all(mesh.pair_forces >= 0.0)
     np.testing.assert_allclose(mesh.pair_forces.sum(axis=1), force, rtol=1e-9, atol=1e-9)
     if force > 1e-6:
         np.testing.assert_allclose(mesh.load_shares.sum(axis=1), 1.0, rtol=1e-6)
-    heavier = static_transmission_error(contact, 1.5 * force + 1.0, mesh.phases)
+    heavier = loaded_transmission_error(contact, 1.5 * force + 1.0, mesh.phases)
     assert np.all(heavier.transmission_error > mesh.transmission_error)
     first_touch = np.min(contact.pairs(mesh.phases).deviation, axis=1)
     assert np.all(mesh.transmission_error >= first_touch)
@@ -211,7 +211,7 @@ def test_rigid_teeth_have_no_transmission_error(pair: GearPairGeometry, force: f
         *(replace(gear, youngs_modulus=1e10 * gear.youngs_modulus) for gear in (pair.driver, pair.driven))
     )
     real, rigid = (
-        static_transmission_error(tooth_contact(p, PotentialEnergyStiffness()), force, [0.2, 0.9])
+        loaded_transmission_error(tooth_contact(p, PotentialEnergyStiffness()), force, [0.2, 0.9])
         for p in (pair, stiff)
     )
     np.testing.assert_allclose(rigid.transmission_error, 1e-10 * real.transmission_error, rtol=1e-6)
@@ -239,6 +239,6 @@ def test_any_contact_finds_its_equilibrium(
         piecewise.polyline(np.linspace(0.0, eps, len(gaps)), np.array(gaps)),
         shared_compliance=shared / max(high, middle),
     )
-    mesh = static_transmission_error(contact, force, [phase])
+    mesh = loaded_transmission_error(contact, force, [phase])
     found = evaluate(contact, phase, float(mesh.transmission_error[0]))[0]
     assert found == pytest.approx(force, rel=1e-8, abs=1e-6)

@@ -17,7 +17,7 @@ from housing import (
     Sensor,
     Support,
     assemble,
-    attach,
+    attach_fixtures,
     seat_matrix,
     sensor_port,
     solve_modes,
@@ -100,7 +100,7 @@ def test_springs_raise_every_frequency_or_leave_it(
     soft = Support("base", surface="bottom", stiffness=stiffness)
     hard = replace(soft, stiffness=tuple(more * value for value in stiffness))
     lower, upper = (
-        solve_modes(attach(matrices, mesh, [support]), count=10).frequencies[:10] for support in (soft, hard)
+        solve_modes(attach_fixtures(matrices, mesh, [support]), count=10).frequencies[:10] for support in (soft, hard)
     )
     assert (upper >= lower * (1 - 1e-8) - 1e-6 * upper[-1]).all()
 

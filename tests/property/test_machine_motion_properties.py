@@ -1,7 +1,7 @@
 """Laws of motion of whole machines: Newton's third law through gears and bearings, and no frame that counts.
 
 Two geared rotors with gyroscopic discs on unsymmetric bearings in a free rigid housing, put together by
-:func:`coupling.couple` and marched in time, teeth entering and leaving contact.
+:func:`coupling.assemble_machine` and marched in time, teeth entering and leaving contact.
 """
 
 from functools import cache
@@ -23,7 +23,7 @@ from coupling import (
     TransientOutputs,
     TransientSettings,
     Unbalance,
-    couple,
+    assemble_machine,
     histories,
     rotor_component,
     simulate,
@@ -37,7 +37,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
@@ -55,7 +55,7 @@ MASS, INERTIA = 20.0, 0.7  # of the housing, the latter about every axis through
 def free_rotor(name: str, disc: float) -> RotorComponent:
     """On the free shaft's modes, which hold its rigid motions exactly, and what bearings and gear add."""
     shaft = Rotor(name, [Segment(0.1, 0.04, 0.0, STEEL)] * 3, [Disc(GEAR_AT, disc, 0.004 * disc, 0.0025 * disc)])
-    lateral = attach_loads(solve_lateral_modes(shaft, count=4), forces_at=[0.0, LENGTH, GEAR_AT])
+    lateral = add_attachment_modes(solve_lateral_modes(shaft, count=4), forces_at=[0.0, LENGTH, GEAR_AT])
     modal = ModalRotor(lateral, solve_torsional_modes(shaft, count=3), None)
     return rotor_component(name, modal, start=-0.15, damping_ratio=0.01)
 
@@ -110,7 +110,7 @@ def machine(seed: int, sense: int, psi: float, *, turned: float = 0.0, unbalance
     seat_z = {name: float(place[2]) for name, place in seats.items()}
     motions = {name: seat(place) for name, place in seats.items()}
     masses = (Unbalance("input", 0.2, 3e-5, 0.4 + turned), Unbalance("output", 0.1, 8e-5, -2.0 + turned))
-    return couple(
+    return assemble_machine(
         both_rotors(),
         HousingComponent("housing", kinds, zeros, zeros, zeros, motions, seat_z, {}),
         speeds={"input": sense * SPEED, "output": -sense * SPEED / geometry.ratio},

@@ -202,7 +202,7 @@ def assert_these_are_all(
     for first, after in itertools.pairwise(edges):
         probes += [elastic[first] * (1.0 - each[first]), elastic[after - 1] * (1.0 + each[after - 1])]
         expected += [zeros + first, zeros + after]
-    counted = sum(model.count_below(probes) for model in models)
+    counted = sum(model.wittrick_williams_count(probes) for model in models)
     np.testing.assert_array_equal(counted, expected, err_msg=f"at {probes} rad/s")
 
 
@@ -237,7 +237,7 @@ def assert_every_root(
     limit = float(lowest[-1]) * (1.0 + max(part, 4.0 * close)) if lowest[-1] > 0.0 else 1.0
     reference = models(limit * (1.0 + 32.0 * close))
     around = limit * (1.0 + close * np.arange(-2.0, 31.0, 4.0))
-    same = np.flatnonzero(np.diff(sum(model.count_below(around) for model in reference)) == 0)
+    same = np.flatnonzero(np.diff(sum(model.wittrick_williams_count(around) for model in reference)) == 0)
     assume(same.size > 0)
     limit = 0.5 * float(around[same[0]] + around[same[0] + 1])
     with refusal_allowed_of_extremes(rotor):

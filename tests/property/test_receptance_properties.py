@@ -18,8 +18,8 @@ from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
 from housing import (
-    Attachment,
     Bushing,
+    Fixture,
     Joint,
     LumpedMass,
     Material,
@@ -31,7 +31,7 @@ from housing import (
     Sensor,
     Support,
     assemble,
-    attach,
+    attach_fixtures,
     damping_ratios,
     fixed_freedoms,
     modal_damping,
@@ -119,7 +119,7 @@ def solved(mesh: Mesh) -> Solved:
     return _solve(mesh, HERE, _fastened(HERE), [Support("pad", surface="foot-4", fixed=(True, True, True))])
 
 
-def _fastened(frame: Frame) -> list[Attachment]:
+def _fastened(frame: Frame) -> list[Fixture]:
     tilted = Rotation.from_euler("xyz", (0.3, -0.5, 1.1)).as_matrix()
     axes = tuple(frame.vector(*row) for row in tilted)
     springs = Bushing((1e8, 2e8, 3e8, 1e5, 2e5, 3e5), (2e3, 1e3, 4e3, 5.0, 3.0, 1.0), axes)
@@ -134,9 +134,9 @@ def _fastened(frame: Frame) -> list[Attachment]:
     ]
 
 
-def _solve(mesh: Mesh, frame: Frame, fastened: list[Attachment], supports: list[Support]) -> Solved:
+def _solve(mesh: Mesh, frame: Frame, fastened: list[Fixture], supports: list[Support]) -> Solved:
     moved = replace(mesh, points=mesh.points @ frame.turn.T + frame.shift)
-    matrices = attach(assemble(moved, STEEL), moved, [*fastened, *supports])
+    matrices = attach_fixtures(assemble(moved, STEEL), moved, [*fastened, *supports])
     ports = [seat_matrix(moved, Seat(name, frame.point(*center))) for name, center in SEATS.items()]
     ports.append(sensor_port(moved, Sensor("normal", frame.point(0.03, 0.16, 0.05))).matrix)
     slanted = Sensor("slanted", frame.point(-0.10, 0.09, 0.02), frame.vector(1.0, -2.0, 0.5))
@@ -160,7 +160,7 @@ def _size(values: ComplexArray) -> FloatArray:
 @given(frequency=st.floats(0.0, 8000.0), near=st.integers(0, 11))
 def test_receptances_of_modes_and_attachments_are_reciprocal(solved: Solved, frequency: float, near: int) -> None:
     """At any frequency, and at a resonance."""
-    assert solved.modes.attachments is not None
+    assert solved.modes.residual_modes is not None
     assert solved.matrices.damping.nnz
     grid = np.array([2 * np.pi * frequency, solved.modes.frequencies[near % len(solved.modes.frequencies)]])
     values = solved.receptance(grid)
@@ -181,8 +181,8 @@ def test_receptances_of_all_degrees_of_freedom_are_reciprocal_and_those_of_the_m
     direct = ports @ splu(sparse.csc_matrix(dynamic)).solve(ports.T.astype(np.complex128))
     assert _asymmetry(direct[None]) < RECIPROCAL
     modes = solved.modes
-    assert modes.attachments is not None
-    stiffness = np.concatenate([modes.frequencies, modes.attachments.frequencies]) ** 2
+    assert modes.residual_modes is not None
+    stiffness = np.concatenate([modes.frequencies, modes.residual_modes.frequencies]) ** 2
     motion = modes.project_all(solved.ports)
     coupled = np.diag(stiffness - w**2) + 1j * w * modal_damping(modes, matrices)
     modal = motion.T @ np.linalg.solve(coupled, motion)

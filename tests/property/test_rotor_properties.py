@@ -21,7 +21,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     critical_speeds,
     rest_frequencies,
     solve_lateral_modes,
@@ -200,7 +200,7 @@ def test_compliance_of_attached_loads_is_reciprocal_and_that_of_the_model(
 ) -> None:
     supports = [RadialSupport(0.0, 1e7), RadialSupport(rotor.length, 3e7)]
     places = [first * rotor.length, second * rotor.length]
-    modes = attach_loads(solve_lateral_modes(rotor, supports, count=3), forces_at=places)
+    modes = add_attachment_modes(solve_lateral_modes(rotor, supports, count=3), forces_at=places)
     shapes = modes.evaluate(places)[0]
     compliance = (shapes / modes.frequencies[:, None] ** 2).T @ shapes
     model = bending_model(rotor, supports, float(modes.frequencies[2]), places=places)

@@ -44,7 +44,7 @@ class PlaneModel:
     node_mass: FloatArray
     node_polar: FloatArray
 
-    def count_below(self, frequencies: npt.ArrayLike) -> IntArray:
+    def wittrick_williams_count(self, frequencies: npt.ArrayLike) -> IntArray:
         """Number of natural frequencies below each of some frequencies (rad/s), multiple ones with multiplicity."""
         omega = np.atleast_1d(np.asarray(frequencies, dtype=np.float64))
         stiffness, mass = self.matrices.stiffness, self.matrices.mass
@@ -61,7 +61,7 @@ class PlaneModel:
         near = (estimates[:, None] * (1.0 + np.outer([-1.0, 1.0], [1e-12, 1e-8, 1e-4]).ravel())).ravel()
         probes = np.unique(np.concatenate([below * np.geomspace(floor, 1.0, 11), near]))
         probes = probes[(probes >= floor * below) & (probes <= below)]
-        counts = self.count_below(probes)
+        counts = self.wittrick_williams_count(probes)
         zeros = int(counts[0])
         wanted = np.arange(zeros, int(counts[-1]))
         above = np.array([int(np.argmax(counts > index)) for index in wanted], dtype=np.intp)
@@ -70,7 +70,7 @@ class PlaneModel:
         while wanted.size and bool((high > low * (1.0 + WIDTH)).any()):
             inner = low[:, None] * (high / low)[:, None] ** fractions
             different, back = np.unique(inner, return_inverse=True)
-            is_above = self.count_below(different)[back].reshape(inner.shape) > wanted[:, None]
+            is_above = self.wittrick_williams_count(different)[back].reshape(inner.shape) > wanted[:, None]
             edges = np.concatenate([low[:, None], inner, high[:, None]], axis=1)
             first = np.where(is_above.any(axis=1), np.argmax(is_above, axis=1), SECTIONS)
             low, high = edges[rows, first], edges[rows, first + 1]

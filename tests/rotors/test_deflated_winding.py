@@ -6,9 +6,9 @@ import pytest
 
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, rest_frequencies, solve_lateral_modes, solve_whirl
 from rotors.exact_roots import constant_speed
-from rotors.spatial_chain import spatial_chain
+from rotors.spatial_chain import whirl_equations
 from rotors.whirl_certificate import oscillating
-from rotors.winding import wind
+from rotors.winding import count_by_argument_principle
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -38,19 +38,19 @@ def shaft(parts: int) -> Rotor:
 )
 def test_count_does_not_depend_on_what_is_divided_out(wrong: ComplexArray) -> None:
     # Every root inside, known or not, is counted once: by the argument principle, with nothing divided out.
-    chain, sector, speed = spatial_chain(shaft(1), BEARINGS, (1, -1), 4000.0), oscillating(1e-2, LIMIT), SPEED
+    chain, sector, speed = whirl_equations(shaft(1), BEARINGS, (1, -1), 4000.0), oscillating(1e-2, LIMIT), SPEED
     modes = solve_whirl(shaft(1), BEARINGS, speed, frequency_limit=LIMIT)
-    plain = wind(chain, sector, constant_speed(speed))
+    plain = count_by_argument_principle(chain, sector, constant_speed(speed))
     assert plain.count == modes.eigenvalues.size >= 8
     for known in (wrong, np.append(modes.eigenvalues, wrong), np.append(modes.eigenvalues[::2], wrong)):
-        assert wind(chain, sector, constant_speed(speed), known).count == plain.count
+        assert count_by_argument_principle(chain, sector, constant_speed(speed), known).count == plain.count
 
 
 def test_roots_left_out_are_found_from_what_is_left() -> None:
-    chain, sector = spatial_chain(shaft(1), BEARINGS, (1, -1), 4000.0), oscillating(1e-2, LIMIT)
+    chain, sector = whirl_equations(shaft(1), BEARINGS, (1, -1), 4000.0), oscillating(1e-2, LIMIT)
     whole = solve_whirl(shaft(1), BEARINGS, SPEED, frequency_limit=LIMIT).eigenvalues
     known = np.delete(whole, [1, 4])
-    winding = wind(chain, sector, constant_speed(SPEED), known)
+    winding = count_by_argument_principle(chain, sector, constant_speed(SPEED), known)
     assert winding.count - known.size == 2
     found = winding.missing(2)
     # Power sums by a rule of fourth order on few samples: good enough to start from, each nearest to its own.
@@ -59,15 +59,18 @@ def test_roots_left_out_are_found_from_what_is_left() -> None:
 
 
 def test_all_roots_known_need_few_samples() -> None:
-    chain, sector = spatial_chain(shaft(1), BEARINGS, (1, -1), 4000.0), oscillating(1e-2, LIMIT)
+    chain, sector = whirl_equations(shaft(1), BEARINGS, (1, -1), 4000.0), oscillating(1e-2, LIMIT)
     known = solve_whirl(shaft(1), BEARINGS, SPEED, frequency_limit=2.0 * LIMIT).eigenvalues
     speed = constant_speed(SPEED)
-    assert wind(chain, sector, speed, known).samples < 0.4 * wind(chain, sector, speed).samples
+    assert (
+        count_by_argument_principle(chain, sector, speed, known).samples
+        < 0.4 * count_by_argument_principle(chain, sector, speed).samples
+    )
 
 
 def test_equal_segments_are_one_piece_and_answer_as_before() -> None:
     one, many = shaft(1), shaft(60)
-    assert spatial_chain(many, BEARINGS, (1, -1), 500.0).bending.lengths.size < 10
+    assert whirl_equations(many, BEARINGS, (1, -1), 500.0).bending.lengths.size < 10
     same = [solve_whirl(rotor, BEARINGS, SPEED, count=8).eigenvalues for rotor in (one, many)]
     np.testing.assert_allclose(same[0], same[1], rtol=1e-12)
     undamped = [Bearing(b.name, b.at, np.diag(np.diag(b.stiffness)), np.zeros((2, 2))) for b in BEARINGS]

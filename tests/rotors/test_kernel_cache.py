@@ -10,7 +10,7 @@ import pytest
 
 from coupling.contact_kernels import evaluate_contact
 from coupling.gears.friction_kernels import friction_history
-from coupling.gears.kernels import nearness
+from coupling.gears.kernels import penetration
 from coupling.gears.law_table import law_table
 from coupling.periodic.switches import by_pairs
 from rotors import kernel_cache
@@ -72,7 +72,7 @@ def test_a_changed_called_kernel_or_constant_is_compiled_anew(tmp_path: Path) ->
 
 
 def test_the_digest_covers_every_kernel_and_what_it_imports() -> None:
-    kernels = [factor, evaluate_contact, friction_history, nearness, by_pairs]
+    kernels = [factor, evaluate_contact, friction_history, penetration, by_pairs]
     files = {Path(kernel.py_func.__code__.co_filename) for kernel in kernels}  # type: ignore[attr-defined]
     files |= {Path(function.__code__.co_filename) for function in (counted, law_table)}
     assert len(files) >= 6

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial
-from rotors.spatial_chain import SpatialChain, spatial_chain
-from rotors.spatial_ties import block_sets
+from rotors.spatial_chain import WhirlEquations, whirl_equations
+from rotors.spatial_ties import coupled_motions
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISCS = [Disc.from_dimensions(at, 0.07, 0.28, 0.05, STEEL.density) for at in (0.5, 1.0)]
@@ -19,14 +19,14 @@ KINDS = {"one sense alone": ALIKE, "both senses": UNLIKE, "along the axis too": 
 AT, SPEED = np.array([-3.0 + 400.0j]), np.array([300.0 + 0.0j])
 
 
-def chains_of(stiffness: np.ndarray, pedestal: Pedestal | None) -> list[SpatialChain]:
+def chains_of(stiffness: np.ndarray, pedestal: Pedestal | None) -> list[WhirlEquations]:
     """Two bearings at one place among them, for every set of tied motions."""
     bearings = [Bearing(name, at, stiffness, 1e-4 * stiffness) for name, at in (("a", 0.0), ("b", 1.2), ("c", 1.2))]
     bearings.append(Bearing("d", 1.5, stiffness, 1e-4 * stiffness, pedestal=pedestal))
-    return [spatial_chain(PLAIN, bearings, blocks, 3e3).in_runs() for blocks in block_sets(bearings)]
+    return [whirl_equations(PLAIN, bearings, blocks, 3e3).in_runs() for blocks in coupled_motions(bearings)]
 
 
-def dense(chain: SpatialChain) -> np.ndarray:
+def dense(chain: WhirlEquations) -> np.ndarray:
     pattern, matrix = chain.pattern, np.zeros((chain.pattern.order,) * 2, dtype=np.complex128)
     np.add.at(matrix, (pattern.rows, pattern.columns), chain.values(AT, SPEED, chain.force_scale(AT))[0])
     return matrix
@@ -79,7 +79,7 @@ def test_equal_runs_are_multiplied_once_and_no_others() -> None:
     bearings = [Bearing("left", 0.0, UNLIKE, 0.0 * UNLIKE), Bearing("right", 1.5, UNLIKE, 0.0 * UNLIKE)]
     steps = [Segment(0.25, 0.05 + 0.01 * (number // 2 == 1), 0.0, STEEL) for number in range(6)]
     for rotor, expected in ((PLAIN, [0, 0, 0]), (Rotor("stepped", steps, DISCS), [0, 1, 0])):
-        chain = spatial_chain(rotor, bearings, (1, -1), 1e3).in_runs()
+        chain = whirl_equations(rotor, bearings, (1, -1), 1e3).in_runs()
         *runs, like = chain.entries.beams
         np.testing.assert_array_equal(like, expected)
         apart = replace(chain.entries, beams=(*runs, np.arange(like.size)))

@@ -13,7 +13,7 @@ from rotors import (
     RotorError,
     Segment,
     ShaftMaterial,
-    attach_motions,
+    add_rod_attachment_modes,
     modal_rotor,
     solve_lateral_modes,
     solve_torsional_modes,
@@ -79,7 +79,7 @@ def test_attached_torques_make_the_static_twist_exact() -> None:
     """Opposite torques at two places of a free shaft twist the length between them by M L / GJ."""
     shaft = Rotor("shaft", [BAR] * 4, [Disc(0.0, 1.0, 0.02, 0.01), Disc(1.0, 1.0, 0.05, 0.02)])
     modes = solve_torsional_modes(shaft, count=3)
-    attached = attach_motions(modes, [0.25, 0.75])
+    attached = add_rod_attachment_modes(modes, [0.25, 0.75])
     assert attached.count == 5
     assert np.array_equal(attached.frequencies[:3], modes.frequencies)
 
@@ -93,7 +93,7 @@ def test_attached_torques_make_the_static_twist_exact() -> None:
 
 
 def test_torsional_set_stays_orthonormal_with_its_vectors() -> None:
-    attached = attach_motions(solve_torsional_modes(SHAFT, count=4), [0.3, 0.9, 0.9])
+    attached = add_rod_attachment_modes(solve_torsional_modes(SHAFT, count=4), [0.3, 0.9, 0.9])
     mass, stiffness = attached.fields.energies(attached.mixture)
     assert np.abs(mass - np.eye(attached.count)).max() < 1e-9
     off = stiffness - np.diag(np.diag(stiffness))

@@ -13,7 +13,7 @@ from rotors.rolling import (
     ContactElasticity,
     RollerRow,
     RollingBearing,
-    bearing_from,
+    linearised_bearing,
     paired,
     point_contact,
     preload_offset,
@@ -203,12 +203,12 @@ def test_play_without_load_has_no_stiffness() -> None:
     assert not state.stiffness.any()
     assert state.loose == ("x", "y", "z", "rx", "ry")
     with pytest.raises(EquilibriumError, match=r"loose in x and y .* expected a load, a preload or less clearance"):
-        bearing_from(state, "left", 0.0)
+        linearised_bearing(state, "left", 0.0)
 
 
 def test_bearing_takes_the_tangent() -> None:
     state = rolling_equilibrium(RollingBearing([ANGULAR]), [100.0, 0.0, 400.0, 0.0, 0.0], held=ALIGNED)
-    bearing = bearing_from(state, "left", 0.1, damping=[[50.0, 0.0], [0.0, 50.0]])
+    bearing = linearised_bearing(state, "left", 0.1, damping=[[50.0, 0.0], [0.0, 50.0]])
     np.testing.assert_array_equal(bearing.spatial_stiffness, state.stiffness)
     assert bearing.spatial_damping[1, 1] == 50.0
     assert state.load[4] != 0.0  # what holds the shaft in line

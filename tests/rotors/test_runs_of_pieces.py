@@ -9,9 +9,9 @@ from rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, Whi
 from rotors.coalesced_roots import refine_roots
 from rotors.exact_roots import constant_speed
 from rotors.shaft import MassModel
-from rotors.spatial_chain import MOST_GROWTH, SpatialChain, spatial_chain, whirl_reach
-from rotors.spatial_field import SpatialMotion
-from rotors.spatial_ties import block_sets
+from rotors.spatial_chain import MOST_GROWTH, WhirlEquations, whirl_equations, whirl_reach
+from rotors.spatial_field import ShaftMotion
+from rotors.spatial_ties import coupled_motions
 from rotors.whirl import MOST_HELD
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -40,10 +40,10 @@ def bearings_of(kind: str, factor: float = 1.0) -> list[Bearing]:
     return [Bearing("left", 0.0, factor * stiffness, damping), Bearing("right", 1.2, factor * stiffness, damping)]
 
 
-def motion_of(chain: SpatialChain, starts: np.ndarray) -> SpatialMotion:
+def motion_of(chain: WhirlEquations, starts: np.ndarray) -> ShaftMotion:
     speed = constant_speed(SPEED)
     roots = refine_roots(chain, starts, speed)
-    return SpatialMotion.of(chain, roots.eigenvalues, speed(roots.eigenvalues), roots.solutions, roots.scales)
+    return ShaftMotion.of(chain, roots.eigenvalues, speed(roots.eigenvalues), roots.solutions, roots.scales)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -52,8 +52,8 @@ def test_runs_have_the_roots_and_shapes_of_their_pieces(kind: str, mass_model: M
     rotor, bearings = stepped(30, mass_model), bearings_of(kind)
     modes = solve_whirl(rotor, bearings, SPEED, frequency_limit=LIMIT)
     assert modes.eigenvalues.size >= 6
-    for blocks in block_sets(bearings):
-        whole = spatial_chain(rotor, bearings, blocks, whirl_reach(LIMIT, SPEED))
+    for blocks in coupled_motions(bearings):
+        whole = whirl_equations(rotor, bearings, blocks, whirl_reach(LIMIT, SPEED))
         runs = whole.in_runs()
         if mass_model == "distributed":
             # Ends, the disc, the bearing, and a few between them.
@@ -75,7 +75,7 @@ def test_runs_have_the_roots_and_shapes_of_their_pieces(kind: str, mass_model: M
 
 def test_motion_grows_no_more_along_a_run_than_it_may() -> None:
     rotor, bearings = stepped(30), bearings_of("both senses")
-    runs = spatial_chain(rotor, bearings, (1, -1), 4e4).in_runs()
+    runs = whirl_equations(rotor, bearings, (1, -1), 4e4).in_runs()
     growth = runs.bending.table.growth(4e4)[runs.bending.element]
     along = np.add.reduceat(growth, runs.kept[:-1])
     assert (along <= MOST_GROWTH).all()
@@ -83,7 +83,7 @@ def test_motion_grows_no_more_along_a_run_than_it_may() -> None:
     assert runs.kept.size > 8
     # The bound is one: no wave of a uniform piece is shorter than it says.
     table = runs.bending.table
-    eigenvalues = np.linalg.eigvals(table.transfers([4e4**2])[0, :, 0])
+    eigenvalues = np.linalg.eigvals(table.transfer_matrices([4e4**2])[0, :, 0])
     uniform = ~table.coefficients[:, :, 1:].any(axis=(1, 2))
     fastest = np.abs(np.log(eigenvalues.astype(complex))).max(axis=1)
     assert (fastest[uniform] <= table.growth(4e4)[uniform] * (1.0 + 1e-12)).all()

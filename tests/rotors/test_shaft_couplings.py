@@ -21,8 +21,8 @@ from rotors import (
     solve_torsional_modes,
     torsional_response,
 )
-from rotors.root_count import isolate
-from rotors.rotor_lines import axial_chain_on, bending_chain
+from rotors.root_count import lowest_natural_frequencies
+from rotors.rotor_lines import axial_shaft_on, discretised_bending_shaft
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 # Without mass, and so stiff that it moves as a rigid body.
@@ -79,15 +79,15 @@ def test_axial_chain_on_the_nodes_of_bending_is_the_same_shaft() -> None:
     cone = Segment(0.4, 0.05, 0.0, STEEL, right_outer_diameter=0.09)
     coupling = Coupling(0.02, 1e8, 1e5, 1e4, 1e7, mass=1.0)
     rotor = Rotor("row", [cone, coupling, Segment(0.3, 0.04, 0.01, STEEL)], [Disc(0.2, 3.0)])
-    bending = bending_chain(rotor, [RadialSupport(0.1, 1e6)], 1e5)
-    axial = axial_chain_on(rotor, bending)
+    bending = discretised_bending_shaft(rotor, [RadialSupport(0.1, 1e6)], 1e5)
+    axial = axial_shaft_on(rotor, bending)
     np.testing.assert_array_equal(axial.nodes, bending.nodes)
     np.testing.assert_allclose(axial.lengths, bending.lengths, rtol=1e-12)
     for chain in (axial, bending):
         # Masses are scaled by the unit of displacement squared.
         mass = chain.energy_weights.mass[:: chain.size].sum() / chain.displacement_unit[0] ** 2
         assert mass == pytest.approx(rotor.mass, rel=1e-12)
-    found = isolate(axial, 4, 1e5)
+    found = lowest_natural_frequencies(axial, 4, 1e5)
     np.testing.assert_allclose(found, solve_axial_modes(rotor, count=4).frequencies, rtol=1e-12)
 
 

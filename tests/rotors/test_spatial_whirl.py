@@ -27,8 +27,8 @@ from rotors import (
 )
 from rotors.coalesced_roots import refine_roots
 from rotors.exact_roots import constant_speed
-from rotors.spatial_chain import spatial_chain, whirl_reach
-from rotors.spatial_ties import block_sets
+from rotors.spatial_chain import whirl_equations, whirl_reach
+from rotors.spatial_ties import coupled_motions
 from rotors.whirl_certificate import certified_roots, count_roots, oscillating
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -190,8 +190,8 @@ def test_certificate_catches_a_removed_root_and_the_search_finds_it() -> None:
             bearings = [Bearing(b.name, b.at, np.diag([2e7, 1e7]), ZERO) for b in bearings]
         speed, limit = 900.0, 5000.0
         modes = solve_whirl(SHAFT, bearings, speed, frequency_limit=limit)
-        for blocks in block_sets(bearings):
-            chain = spatial_chain(SHAFT, bearings, blocks, whirl_reach(1.2 * limit, speed))
+        for blocks in coupled_motions(bearings):
+            chain = whirl_equations(SHAFT, bearings, blocks, whirl_reach(1.2 * limit, speed))
             turning, sector = constant_speed(speed), oscillating(1e-2, limit)
             roots = refine_roots(chain, modes.eigenvalues, turning)
             roots = roots.take(sector.holds(roots.eigenvalues))
@@ -209,7 +209,7 @@ def test_certificate_catches_a_removed_root_and_the_search_finds_it() -> None:
 
 def test_a_root_too_many_is_refused() -> None:
     bearings = bearings_of("cross-coupled")
-    chain = spatial_chain(SHAFT, bearings, (1, -1), whirl_reach(6000.0, 900.0))
+    chain = whirl_equations(SHAFT, bearings, (1, -1), whirl_reach(6000.0, 900.0))
     turning, sector = constant_speed(900.0), oscillating(1e-2, 3000.0)
     modes = solve_whirl(SHAFT, bearings, 900.0, frequency_limit=3000.0)
     roots = refine_roots(chain, modes.eigenvalues, turning)

@@ -8,9 +8,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from rotors.material import ShaftMaterial
-from rotors.profile import BENDING, profile_of, restricted
+from rotors.profile import BENDING, restricted, stiffness_profile
 from rotors.segment import Segment
-from rotors.timoshenko import PieceTable
+from rotors.timoshenko import ShaftElements
 
 # 1/κGA, 1/EI, ρA, ρI of a short fat steel bar in units of its own length and stiffness.
 SHEAR, BEND, MASS, ROTARY = 0.4, 1.3, 0.9, 0.2
@@ -38,8 +38,8 @@ def bending_equation(squared: complex, force: float = 0.0, rotation: complex | N
 
 
 def transfer_of(length: float, force: float, squared: complex, rotation: complex | None = None) -> np.ndarray:
-    table = PieceTable(np.array([length]), coefficients(force)[None, :, None])
-    return table.transfers(squared, rotation)[0, 0, 0]
+    table = ShaftElements(np.array([length]), coefficients(force)[None, :, None])
+    return table.transfer_matrices(squared, rotation)[0, 0, 0]
 
 
 @pytest.mark.parametrize("frequency", [0.0, 0.3, 1.0, CUT_OFF, 1.2 * CUT_OFF, 1.5 * CUT_OFF])
@@ -64,7 +64,7 @@ def test_massless_beam_is_the_myklestad_field() -> None:
     field[0, 1], field[0, 2], field[0, 3] = h, SHEAR * h - BEND * h**3 / 6, BEND * h**2 / 2
     field[1, 2], field[1, 3], field[3, 2] = -BEND * h**2 / 2, BEND * h, -h
     massless = coefficients() * [1, 1, 0, 0, 1, 1]
-    transfer = PieceTable(np.array([h]), massless[None, :, None]).transfers(9.0)[0, 0, 0]
+    transfer = ShaftElements(np.array([h]), massless[None, :, None]).transfer_matrices(9.0)[0, 0, 0]
     np.testing.assert_allclose(transfer, field, rtol=1e-15, atol=1e-16)
 
 
@@ -75,8 +75,8 @@ def test_rod_is_trigonometric() -> None:
         [math.cos(wave * h), flexibility * math.sin(wave * h) / wave],
         [-squared * inertia * math.sin(wave * h) / wave, math.cos(wave * h)],
     ]
-    table = PieceTable(np.array([h]), np.array([[[flexibility], [inertia]]]))
-    np.testing.assert_allclose(table.transfers(squared)[0, 0, 0], expected, rtol=1e-14)
+    table = ShaftElements(np.array([h]), np.array([[[flexibility], [inertia]]]))
+    np.testing.assert_allclose(table.transfer_matrices(squared)[0, 0, 0], expected, rtol=1e-14)
 
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
@@ -105,15 +105,15 @@ def cone_coefficients(cone: Segment, fraction: float) -> np.ndarray:
 
 @pytest.mark.parametrize("cone", CONES)
 def test_cone_is_the_integral_of_its_equation(cone: Segment) -> None:
-    profile = profile_of([cone], np.array([0.0, cone.length]))
+    profile = stiffness_profile([cone], np.array([0.0, cone.length]))
     # Units in which the states are of one size: EI and length of the cone's left end.
     force = 207e9 * cone.section(0.0).second_moment / cone.length**2
     units = np.array([force, force * cone.length**2, cone.length**2 / force, 1 / force, 1.0, 1 / force])
     given = profile.coefficients[:, BENDING] * units[:, None]
-    table = PieceTable(profile.lengths / cone.length, given)
+    table = ShaftElements(profile.lengths / cone.length, given)
     squared = 9.0 / (7850 * cone.section(0.0).area * cone.length**2 / force)
     product = np.eye(4)
-    for transfer in table.transfers(squared)[0, :, 0]:
+    for transfer in table.transfer_matrices(squared)[0, :, 0]:
         product = transfer @ product
 
     def equation(z: float, y: np.ndarray) -> np.ndarray:
@@ -128,7 +128,7 @@ def test_cone_is_the_integral_of_its_equation(cone: Segment) -> None:
 
 @pytest.mark.parametrize("cone", CONES)
 def test_profile_of_a_cone_is_its_sections(cone: Segment) -> None:
-    profile = profile_of([cone], np.array([0.0, cone.length]))
+    profile = stiffness_profile([cone], np.array([0.0, cone.length]))
     for span, (left, right) in enumerate(zip(profile.edges[:-1], profile.edges[1:], strict=True)):
         for fraction in (0.0, 0.21, 0.5, 0.93, 1.0):
             found = np.polynomial.polynomial.polyval(2 * fraction - 1, profile.coefficients[profile.kind[span]].T)
@@ -144,16 +144,16 @@ def test_profile_of_a_cone_is_its_sections(cone: Segment) -> None:
 
 def test_transfer_to_a_fraction_of_a_piece_leads_on_to_its_end() -> None:
     # T(1) = T of the rest · T(f), the rest being a piece of its own.
-    cone = profile_of([CONES[0]], np.array([0.0, CONES[0].length]))
+    cone = stiffness_profile([CONES[0]], np.array([0.0, CONES[0].length]))
     given = cone.coefficients[:1, BENDING]
-    table = PieceTable(np.ones(1), given)
-    rest = PieceTable(np.array([0.6]), restricted(given, np.array([0.4]), np.array([0.6])))
+    table = ShaftElements(np.ones(1), given)
+    rest = ShaftElements(np.array([0.6]), restricted(given, np.array([0.4]), np.array([0.6])))
     table, rest = (
-        PieceTable(t.lengths, t.coefficients * 1e-6 * np.array([1, 1, 1, 1, 1e6, 1])[:, None]) for t in (table, rest)
+        ShaftElements(t.lengths, t.coefficients * 1e-6 * np.array([1, 1, 1, 1, 1e6, 1])[:, None]) for t in (table, rest)
     )
-    at = table.transfers(4.0, fractions=np.array([0.4, 1.0]))[0, 0]
-    np.testing.assert_allclose(rest.transfers(4.0)[0, 0, 0] @ at[0], at[1], rtol=1e-12, atol=1e-12)
-    alone = table.transfers_to(np.zeros(2, dtype=np.intp), np.array([0.4, 1.0]), [4.0])
+    at = table.transfer_matrices(4.0, fractions=np.array([0.4, 1.0]))[0, 0]
+    np.testing.assert_allclose(rest.transfer_matrices(4.0)[0, 0, 0] @ at[0], at[1], rtol=1e-12, atol=1e-12)
+    alone = table.transfer_matrices_to(np.zeros(2, dtype=np.intp), np.array([0.4, 1.0]), [4.0])
     np.testing.assert_allclose(alone[:, 0], at, rtol=1e-14)
 
 

@@ -13,7 +13,7 @@ from rotors import (
     RotorError,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     critical_speeds,
     rest_frequencies,
     solve_lateral_modes,
@@ -136,13 +136,13 @@ def test_attached_loads_make_static_compliance_exact() -> None:
         shape = set_of_modes.evaluate([0.5])[0][:, 0]  # type: ignore[attr-defined]
         return float((shape**2 / set_of_modes.frequencies**2).sum())  # type: ignore[attr-defined]
 
-    attached = attach_loads(modes, forces_at=[0.5], moments_at=[0.25])
+    attached = add_attachment_modes(modes, forces_at=[0.5], moments_at=[0.25])
     assert compliance(modes) < 0.999 * exact
     assert compliance(attached) == pytest.approx(exact, rel=1e-10)
     np.testing.assert_array_equal(attached.frequencies[:3], modes.frequencies)
     np.testing.assert_allclose(attached.displacement[:3], modes.displacement, atol=1e-12)
     # Loads that add nothing new add no vectors.
-    again = attach_loads(attached, forces_at=[0.5, 0.5, 0.0], moments_at=[0.25])
+    again = add_attachment_modes(attached, forces_at=[0.5, 0.5, 0.0], moments_at=[0.25])
     assert again.count == attached.count
 
 
@@ -158,7 +158,7 @@ def test_lumped_rotor_with_all_its_modes_needs_no_attachments() -> None:
     assert rest_frequencies(lumped, bearings).frequencies.size == 12
     with pytest.raises(RotorError, match="at most 16"):
         rest_frequencies(lumped, bearings, count=17)
-    assert attach_loads(modes, forces_at=[0.0, 0.6], moments_at=[0.2]).count == 8
+    assert add_attachment_modes(modes, forces_at=[0.0, 0.6], moments_at=[0.2]).count == 8
 
 
 def test_free_rotor_keeps_its_rigid_motions_and_whirls() -> None:
@@ -175,7 +175,7 @@ def test_support_matrix_takes_the_supports_out_again() -> None:
     shaft = Rotor("s", [Segment(0.3, 0.04, 0.0, STEEL)] * 3, [Disc(0.3, 10.0, 0.05, 0.03)])
     supports = [RadialSupport(0.1, 3e6), RadialSupport(0.8, 2e6)]
     modes = solve_lateral_modes(shaft, supports, count=12)
-    attached = attach_loads(modes, forces_at=[0.1, 0.8])
+    attached = add_attachment_modes(modes, forces_at=[0.1, 0.8])
     without = np.diag(attached.frequencies**2) - attached.support_matrix
     free = solve_lateral_modes(shaft, count=5).frequencies
     found = np.sqrt(np.abs(np.linalg.eigvalsh(without)[:5]))

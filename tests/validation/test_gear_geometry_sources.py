@@ -22,7 +22,7 @@ from coupling.gears import (
     normal_tooth_thickness,
     over_balls,
     profile_shift_sum,
-    shifted_to,
+    shifted_for_centre_distance,
     span_measurement,
 )
 
@@ -73,7 +73,7 @@ def test_shifts_at_a_centre_distance(published: Published) -> None:
     published(SHIFTS, "reference centre distance", 114.3447280708, reference, "mm", abs=0.5e-10)
     shift = profile_shift_sum(pinion, wheel, 116.5e-3)
     published(SHIFTS, "sum of the profile shifts", 0.6518771312, shift, abs=0.5e-10)
-    pair = GearPairGeometry(pinion, shifted_to(pinion, wheel, 116.5e-3))
+    pair = GearPairGeometry(pinion, shifted_for_centre_distance(pinion, wheel, 116.5e-3))
     working = math.degrees(pair.working_pressure_angle)
     published(SHIFTS, "working transverse pressure angle", 23.8707609654, working, "°", abs=0.5e-10)
     published(SHIFTS, "working centre distance", 116.5, 1e3 * pair.working_centre_distance, "mm", abs=1e-9)

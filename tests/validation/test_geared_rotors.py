@@ -24,8 +24,8 @@ from coupling import (
     GearMesh,
     MountedBearing,
     MountedGear,
+    assemble_machine,
     contact_at,
-    couple,
     coupled_modes,
     mesh_error_response,
     rotor_component,
@@ -47,7 +47,7 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    attach_loads,
+    add_attachment_modes,
     solve_lateral_modes,
     solve_torsional_chain,
     solve_torsional_modes,
@@ -86,7 +86,7 @@ def turbo_generator(
         rotor = Rotor(name, [Segment(length, diameter, 0.0, STEEL) for length, diameter in spans[i]], discs[i])
         held = [Bearing(f"{name} {at}", at, np.diag(stiffnesses[i]), 3e3 * np.eye(2)) for at in places[i]]
         modes = solve_lateral_modes(rotor, [bearing.mean_support for bearing in held], frequency_limit=lateral)
-        basis = attach_loads(
+        basis = add_attachment_modes(
             modes,
             forces_at=[*places[i], gears_at[i]],
             moments_at=[disc.at for disc in discs[i]],
@@ -109,7 +109,7 @@ def turbo_generator(
         tooth_contact(pair, ConstantStiffness(1e8)),
     )
     speeds = {"generator": sense * SPEED, "turbine": -sense * SPEED * 328.0 / 23.0}
-    return couple(components, None, speeds=speeds, bearings=bearings, meshes=[mesh])
+    return assemble_machine(components, None, speeds=speeds, bearings=bearings, meshes=[mesh])
 
 
 def oscillating(machine: CoupledMachine) -> FloatArray:

@@ -28,7 +28,7 @@ from gearwhine.case import Case, load_case
 from gearwhine.stages.comparison import compare_housing
 from gearwhine.stages.gears import solve_gears
 from gearwhine.stages.housing import SolvedHousing, solve_housing
-from gearwhine.stages.machine import build_machine, housing_in_machine
+from gearwhine.stages.machine import build_machine, reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
 Runs = Callable[..., "Run"]
@@ -98,7 +98,7 @@ def solved(nominal: Case) -> SolvedHousing:
 @pytest.fixture(scope="module")
 def runs(nominal: Case, solved: SolvedHousing) -> Runs:
     """``runs(speed)`` in rpm, each marched once; ``eight=True`` on the eight dominant modes alone, as in the source."""
-    whole, pairs = housing_in_machine(nominal, solved), solve_gears(nominal)
+    whole, pairs = reduce_housing(nominal, solved), solve_gears(nominal)
     chosen = [pair.mode - 1 for pair in compare_housing(nominal, solved).pairs]
     assert nominal.transient is not None
     given = nominal.transient

@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import Material, ModeSet, Support, assemble, attach, solve_modes
+from housing import Material, ModeSet, Support, assemble, attach_fixtures, solve_modes
 from meshes import ElementBlock, Mesh, read_mesh, write_mesh
 from meshes.files import WRITABLE
 from meshes.gmsh_session import gmsh_session
@@ -207,6 +207,6 @@ def _check_membrane(mesh: Mesh, published: Published, of: str = "") -> None:
     ]
     matrices = assemble(mesh, Material(200e9, 0.3, 8000.0))
     assert matrices.total_mass == pytest.approx(8000.0 * SPAN * (DEEP + SHALLOW) / 2 * THIN / 2, rel=1e-9)
-    modes = solve_modes(attach(matrices, mesh, supports), frequency_limit=2 * np.pi * 400.0)
+    modes = solve_modes(attach_fixtures(matrices, mesh, supports), frequency_limit=2 * np.pi * 400.0)
     assert len(modes.frequencies) == len(FV32_HZ)
     _check(published, FV32, FV32_HZ, modes, rigid=0, rel=0.001, mesh=of)

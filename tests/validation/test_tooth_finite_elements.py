@@ -34,8 +34,8 @@ from coupling.gears import (
     Gear,
     GearPairGeometry,
     PotentialEnergyStiffness,
+    loaded_transmission_error,
     mesh_stiffness,
-    static_transmission_error,
     tooth_contact,
     tooth_outline,
 )
@@ -360,7 +360,7 @@ def test_two_pairs_on_the_same_bodies(two_teeth: Any, published: Any, remark: An
     ours = 1.0 / np.mean(1.0 / mesh_stiffness(contact, elements.phases_two))
     published(source, f"stiffness of two pairs, {name}", 1e-6 * stiffness, 1e-6 * ours, "MN/m", rel=0.06)
     step = force * (elements.one.mean() - elements.two.mean())
-    error = static_transmission_error(contact, force, np.concatenate([elements.phases_two, elements.phases_one]))
+    error = loaded_transmission_error(contact, force, np.concatenate([elements.phases_two, elements.phases_one]))
     ours = float(error.transmission_error[3:].mean() - error.transmission_error[:3].mean())
     published(source, f"step of the transmission error, {name}", 1e6 * step, 1e6 * ours, "µm", rel=0.15)
     # Bodies of their own are far beyond both bars.
@@ -373,7 +373,7 @@ def test_the_swing_of_the_error_does_not_know_the_bore(bore: float) -> None:
     """Under a constant torque the twist about the bore is constant."""
     pair, other = (GearPairGeometry(fifty(size), fifty(size)) for size in (bore, 40e-3))
     swings = [
-        static_transmission_error(tooth_contact(p, ElasticRingStiffness()), 6000.0).peak_to_peak_transmission_error
+        loaded_transmission_error(tooth_contact(p, ElasticRingStiffness()), 6000.0).peak_to_peak_transmission_error
         for p in (pair, other)
     ]
     assert swings[0] == pytest.approx(swings[1], rel=0.02)

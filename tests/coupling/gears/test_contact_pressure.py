@@ -18,8 +18,8 @@ from coupling.gears import (
     contact_modulus,
     contact_pressure,
     face_slices,
+    loaded_transmission_error,
     mesh_pressure,
-    static_transmission_error,
     tooth_contact,
 )
 
@@ -86,7 +86,7 @@ def test_what_has_no_hertzian_pressure() -> None:
 def test_a_mesh_s_pressure_is_that_of_its_loads() -> None:
     pair = GearPairGeometry(gear("a", 28), gear("b", 28))
     contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True)
-    mesh = static_transmission_error(contact, 3000.0)
+    mesh = loaded_transmission_error(contact, 3000.0)
     pressure = mesh_pressure(pair, contact, mesh)
     on_path = (mesh.positions > 0.0) & (mesh.positions < pair.contact_ratio)
     alone = on_path & np.isclose(mesh.pair_forces, 3000.0)
@@ -102,7 +102,7 @@ def test_a_crowned_face_bears_most_in_its_middle() -> None:
     crowned = HelixDeviation(crowning=20e-6)
     pair = GearPairGeometry(gear("a", 28, helix_deviation=crowned), gear("b", 28))
     contact = tooth_contact(pair, PotentialEnergyStiffness(), faces=face_slices(pair, count=21))
-    mesh = static_transmission_error(contact, 2000.0, [0.3])
+    mesh = loaded_transmission_error(contact, 2000.0, [0.3])
     pressure = mesh_pressure(pair, contact, mesh)
     most = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
     assert most[2] == 10

@@ -15,9 +15,9 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     SquareStiffness,
     TipRelief,
-    corner_reach,
-    flank_places,
-    static_transmission_error,
+    corner_contact_range,
+    flank_contact_points,
+    loaded_transmission_error,
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force
@@ -64,23 +64,23 @@ def turn_until_touch(pair: GearPairGeometry, position: float) -> float:
 @pytest.mark.parametrize("pair", [PAIR, GearPairGeometry(WHEEL, PINION), GearPairGeometry(PINION, PINION, 72.6e-3)])
 @pytest.mark.parametrize("beyond", [0.01, 0.08, 0.2])
 def test_gap_is_the_turn_that_brings_a_corner_to_the_flank(pair: GearPairGeometry, beyond: float) -> None:
-    gap = float(flank_places(pair, -beyond).gap[0])
+    gap = float(flank_contact_points(pair, -beyond).gap[0])
     assert gap == pytest.approx(pair.driver.base_radius * turn_until_touch(pair, -beyond), rel=1e-6)
     # Leaving is entering with the gears exchanged.
     other = GearPairGeometry(pair.driven, pair.driver, pair.centre_distance)
-    assert float(flank_places(other, other.contact_ratio + beyond).gap[0]) == pytest.approx(gap, rel=1e-9)
+    assert float(flank_contact_points(other, other.contact_ratio + beyond).gap[0]) == pytest.approx(gap, rel=1e-9)
 
 
 def test_gap_begins_with_the_square_of_the_distance() -> None:
-    gaps = flank_places(PAIR, np.array([-2e-3, -1e-3, 0.0, PAIR.contact_ratio])).gap
+    gaps = flank_contact_points(PAIR, np.array([-2e-3, -1e-3, 0.0, PAIR.contact_ratio])).gap
     assert gaps[0] / gaps[1] == pytest.approx(4.0, rel=1e-2)
     np.testing.assert_array_equal(gaps[2:], 0.0)
 
 
 def test_reach_ends_where_no_load_closes_the_gap() -> None:
-    before, beyond = corner_reach(PAIR)
+    before, beyond = corner_contact_range(PAIR)
     for position in (-before, PAIR.contact_ratio + beyond):
-        assert float(flank_places(PAIR, position).gap[0]) == pytest.approx(0.03 * PINION.module, rel=1e-6)
+        assert float(flank_contact_points(PAIR, position).gap[0]) == pytest.approx(0.03 * PINION.module, rel=1e-6)
 
 
 @pytest.mark.parametrize("relief", [None, TipRelief(12e-6, length=4e-3)])
@@ -90,7 +90,7 @@ def test_load_comes_and_goes_without_steps(relief: TipRelief | None) -> None:
     swings = []
     for corners in (False, True):
         contact = tooth_contact(pair, MODEL, corner_contact=corners)
-        error = static_transmission_error(contact, 6000.0, phases).transmission_error
+        error = loaded_transmission_error(contact, 6000.0, phases).transmission_error
         swings.append(np.abs(np.diff(error)).max() / np.ptp(error))
     assert swings[1] < 0.03
     if relief is None:
@@ -102,7 +102,7 @@ def test_contact_lasts_longer_under_more_load() -> None:
     phases = np.arange(2000) / 2000.0
     lasting = []
     for force in (1.0, 2000.0, 8000.0):
-        mesh = static_transmission_error(contact, force, phases)
+        mesh = loaded_transmission_error(contact, force, phases)
         lasting.append(float((mesh.pair_forces > 0.0).sum()) / phases.size)
     assert lasting[0] == pytest.approx(PAIR.contact_ratio, abs=0.01)
     assert lasting[0] + 0.05 < lasting[1] < lasting[2] - 0.05

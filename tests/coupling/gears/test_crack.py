@@ -13,7 +13,7 @@ from coupling.gears import (
     GearPairGeometry,
     PotentialEnergyStiffness,
     ToothCrack,
-    static_transmission_error,
+    loaded_transmission_error,
     tooth_contact,
     tooth_outline,
 )
@@ -58,7 +58,7 @@ def test_the_mesh_is_softer_while_the_cracked_tooth_carries() -> None:
     cracked = replace(sound, driver=replace(GEAR, faults=(ToothCrack(4, 2e-3),)))
     phases = np.arange(0.0, 30.0, 0.02)
     before, after = (
-        static_transmission_error(tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True), 3000.0, phases)
+        loaded_transmission_error(tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True), 3000.0, phases)
         for pair in (sound, cracked)
     )
     lag = after.transmission_error - before.transmission_error

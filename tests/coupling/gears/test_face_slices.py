@@ -15,12 +15,12 @@ from coupling.gears import (
     Spall,
     TipRelief,
     face_slices,
+    loaded_transmission_error,
     mesh_stiffness,
-    static_transmission_error,
     tooth_contact,
 )
 from coupling.gears.face_coupling import tooth_coupling
-from coupling.gears.face_slices import FaceSlices, load_faces, tooth_stiffness
+from coupling.gears.face_slices import FaceSlices, face_loads, slice_stiffness
 from coupling.gears.kernels import tooth_force
 
 ALPHA = math.radians(20.0)
@@ -44,19 +44,19 @@ def test_even_faces_are_the_spur_law() -> None:
     plain = tooth_contact(SPUR, MODEL, corner_contact=True)
     sliced = tooth_contact(SPUR, MODEL, corner_contact=True, faces=face_slices(SPUR))
     for force in (50.0, FORCE):
-        one, other = (static_transmission_error(contact, force, PHASES) for contact in (plain, sliced))
+        one, other = (loaded_transmission_error(contact, force, PHASES) for contact in (plain, sliced))
         np.testing.assert_allclose(other.transmission_error, one.transmission_error, rtol=1e-9)
         np.testing.assert_allclose(other.pair_forces, one.pair_forces, atol=1e-6 * force)
         np.testing.assert_allclose(other.tangent_stiffness, one.tangent_stiffness, rtol=1e-9)
 
 
 def test_helix_angle_to_nothing_is_a_spur_gear() -> None:
-    spur = static_transmission_error(tooth_contact(SPUR, MODEL, corner_contact=True), FORCE, PHASES)
+    spur = loaded_transmission_error(tooth_contact(SPUR, MODEL, corner_contact=True), FORCE, PHASES)
     apart = []
     for degrees in (1.0, 0.1, 0.01):
         pair = helical(degrees)
         contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
-        error = static_transmission_error(contact, FORCE, PHASES).transmission_error
+        error = loaded_transmission_error(contact, FORCE, PHASES).transmission_error
         apart.append(np.abs(error - spur.transmission_error).max() / spur.mean_transmission_error)
     assert apart[2] < 1e-3
     assert apart[2] < 0.2 * apart[1] < 0.1 * apart[0]
@@ -82,11 +82,11 @@ def test_slices_against_a_dense_solution_of_the_unilateral_problem(seed: int) ->
     flexibility = np.linalg.inv(matrix) + np.eye(n) / slices.flattening
     factor = np.linalg.cholesky(flexibility)
     expected = nnls(factor.T, np.linalg.solve(factor, compression - gap), maxiter=1000)[0]
-    found = load_faces(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression]))
+    found = face_loads(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression]))
     np.testing.assert_allclose(found.line_load[0], expected, atol=1e-8 * expected.max())
     assert (expected == 0.0).any()  # some slices stand clear
     step = 1e-10
-    ahead = load_faces(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression + step]))
+    ahead = face_loads(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression + step]))
     assert (ahead.force[0] - found.force[0]) / step == pytest.approx(found.tangent[0], rel=1e-4)
 
 
@@ -98,7 +98,7 @@ def test_a_point_load_spreads_by_the_foundations_own_length() -> None:
     slices = FaceSlices(z, width, np.zeros(n), np.zeros(n), 1e13, 1.5e5)
     gap = np.where(z == 0.0, 0.0, 1.0)
     meeting = (z == 0.0)[None]
-    load = load_faces(slices, np.full((1, n), k_b), gap[None], meeting, np.array([1e-5]))
+    load = face_loads(slices, np.full((1, n), k_b), gap[None], meeting, np.array([1e-5]))
     length = math.sqrt(slices.coupling / k_b)
     stiffness = 2.0 * math.sqrt(k_b * slices.coupling)  # of a line load at one place of an endless face
     assert load.force[0] / 1e-5 == pytest.approx(stiffness, rel=2.0 * width / length)
@@ -114,16 +114,16 @@ def test_coupling_grows_with_the_square_of_the_size() -> None:
 def test_crowning_brings_the_load_to_the_middle_and_misalignment_to_one_end() -> None:
     crowned = GearPairGeometry(replace(PINION, helix_deviation=HelixDeviation(crowning=12e-6)), WHEEL)
     contact = tooth_contact(crowned, MODEL, corner_contact=True, faces=face_slices(crowned))
-    mesh = static_transmission_error(contact, FORCE, [0.8])
+    mesh = loaded_transmission_error(contact, FORCE, [0.8])
     assert mesh.line_loads is not None
     loads = mesh.line_loads[0].sum(axis=0)
     assert loads.argmax() == loads.size // 2
     np.testing.assert_allclose(loads, loads[::-1], rtol=1e-6, atol=1e-6 * loads.max())
     tilted = tooth_contact(SPUR, MODEL, corner_contact=True, faces=face_slices(SPUR, misalignment=1e-3))
-    mesh = static_transmission_error(tilted, FORCE, [0.8])
+    mesh = loaded_transmission_error(tilted, FORCE, [0.8])
     assert mesh.line_loads is not None
     assert mesh.line_loads[0].sum(axis=0).argmax() == 0  # the gap opens towards +z
-    assert mesh.tangent_stiffness[0] < tooth_contact(SPUR, MODEL).mean_stiffness
+    assert mesh.tangent_stiffness[0] < tooth_contact(SPUR, MODEL).mean_mesh_stiffness
 
 
 def test_a_helix_deviation_undoes_a_misalignment() -> None:
@@ -137,7 +137,7 @@ def test_turning_the_other_way_mirrors_the_face() -> None:
     pair = helical(15.0, helix_deviation=HelixDeviation(slope=9e-6))
     mirrored = helical(-15.0, helix_deviation=HelixDeviation(slope=9e-6))
     errors = [
-        static_transmission_error(
+        loaded_transmission_error(
             tooth_contact(p, MODEL, corner_contact=True, faces=face_slices(p, sense=sense)), FORCE, PHASES
         ).transmission_error
         for p, sense in ((pair, 1), (mirrored, -1), (pair, -1))
@@ -153,7 +153,7 @@ def test_whole_overlap_keeps_the_length_of_contact_and_so_the_error() -> None:
     for degrees in (0.01, 8.0, whole):
         pair = helical(degrees, tip_relief=None)
         contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
-        swings.append(static_transmission_error(contact, FORCE, PHASES).peak_to_peak_transmission_error)
+        swings.append(loaded_transmission_error(contact, FORCE, PHASES).peak_to_peak_transmission_error)
     assert pair.overlap_ratio == pytest.approx(1.0)
     assert swings[0] > swings[1] > 5.0 * swings[2]
 
@@ -161,8 +161,8 @@ def test_whole_overlap_keeps_the_length_of_contact_and_so_the_error() -> None:
 def test_without_load_the_first_slice_touches() -> None:
     pair = helical(14.0, helix_deviation=HelixDeviation(crowning=6e-6, slope=3e-6))
     contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
-    mesh = static_transmission_error(contact, 0.0, PHASES)
-    light = static_transmission_error(contact, 1e-3, PHASES)
+    mesh = loaded_transmission_error(contact, 0.0, PHASES)
+    light = loaded_transmission_error(contact, 1e-3, PHASES)
     np.testing.assert_allclose(mesh.transmission_error, light.transmission_error, atol=1e-9)
     np.testing.assert_array_equal(mesh.pair_forces, 0.0)
     assert np.all(mesh.tangent_stiffness > 0.0)
@@ -172,7 +172,7 @@ def test_mean_mesh_stiffness_is_that_of_the_period() -> None:
     pair = helical(11.0)
     contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair))
     over_period = mesh_stiffness(contact, np.arange(997) / 997.0)
-    assert over_period.mean() == pytest.approx(contact.mean_stiffness, rel=1e-3)
+    assert over_period.mean() == pytest.approx(contact.mean_mesh_stiffness, rel=1e-3)
 
 
 @pytest.fixture(scope="module")
@@ -185,7 +185,7 @@ def test_the_table_carries_what_the_slices_carry(uneven) -> None:  # type: ignor
     random = np.random.default_rng(8)
     law = uneven.with_damping(0.0).kernel_arguments
     for phase, force in zip(random.uniform(0.0, 1.0, 40), random.uniform(100.0, 2.0 * FORCE, 40), strict=True):
-        compression = static_transmission_error(uneven, force, [phase]).transmission_error[0]
+        compression = loaded_transmission_error(uneven, force, [phase]).transmission_error[0]
         assert tooth_force(phase, compression, 0.0, *law)[0] == pytest.approx(force, abs=3e-3 * FORCE)
 
 
@@ -195,7 +195,7 @@ def test_the_table_carries_what_the_slices_carry_beside_a_deep_spall(degrees: fl
     pair = helical(degrees, faults=(Spall(3, middle - 0.02, middle + 0.03, 0.2e-3),))
     contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair, misalignment=2e-4))
     phases = np.arange(2.0, 6.0, 0.013)
-    mesh = static_transmission_error(contact, FORCE, phases)
+    mesh = loaded_transmission_error(contact, FORCE, phases)
     law = contact.kernel_arguments
     found = [tooth_force(at, deep, 0.0, *law)[0] for at, deep in zip(phases, mesh.transmission_error, strict=True)]
     np.testing.assert_allclose(found, FORCE, rtol=miss)
@@ -209,7 +209,7 @@ def test_what_a_table_misses_beside_a_spall_is_what_the_slices_miss() -> None:
     meshes, misses = [], []
     for count in (61, 721):
         contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair, count=count))
-        mesh = static_transmission_error(contact, FORCE, phases)
+        mesh = loaded_transmission_error(contact, FORCE, phases)
         law = contact.kernel_arguments
         found = [tooth_force(at, deep, 0.0, *law)[0] for at, deep in zip(phases, mesh.transmission_error, strict=True)]
         meshes.append(mesh)
@@ -234,7 +234,7 @@ def test_the_tables_force_is_its_energys_slope(uneven, phase: float, depth: floa
 def test_stiffness_without_flattening_gives_the_whole_back() -> None:
     slices = face_slices(SPUR)
     whole = np.array([3e8, 1e12])
-    base = tooth_stiffness(slices, whole)
+    base = slice_stiffness(slices, whole)
     back = slices.face_width / (1.0 / base + 1.0 / slices.flattening)
     assert back[0] == pytest.approx(whole[0], rel=1e-12)
     assert np.all(base > 0.0)

@@ -22,8 +22,8 @@ from coupling.gears import (
     face_slices,
     flank_gap,
     hertz_compliance,
-    hunting_mesh,
-    static_transmission_error,
+    hunting_period_mesh,
+    loaded_transmission_error,
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force
@@ -79,7 +79,7 @@ def test_a_table_of_tip_relief_is_tip_relief() -> None:
     start = FORM + 0.7 * (TIP - FORM)
     by_table = ProfileDeviation(table=((FORM, 0.0), (start, 0.0), (TIP, -15e-6)))
     errors = [
-        static_transmission_error(tooth_contact(GearPairGeometry(gear, WHEEL), MODEL), 3000.0, np.linspace(0, 1, 301))
+        loaded_transmission_error(tooth_contact(GearPairGeometry(gear, WHEEL), MODEL), 3000.0, np.linspace(0, 1, 301))
         for gear in (replace(PINION, profile_deviation=by_table), replace(PINION, tip_relief=TipRelief(15e-6, start)))
     ]
     np.testing.assert_allclose(errors[0].transmission_error, errors[1].transmission_error, atol=1e-12)
@@ -97,7 +97,7 @@ def test_helix_deviation_across_the_face() -> None:
 def test_uniform_wear_of_all_teeth_is_a_shift() -> None:
     phases = np.linspace(0.0, 1.0, 101)
     new, worn = (
-        static_transmission_error(tooth_contact(GearPairGeometry(gear, WHEEL), MODEL), 2000.0, phases)
+        loaded_transmission_error(tooth_contact(GearPairGeometry(gear, WHEEL), MODEL), 2000.0, phases)
         for gear in (PINION, replace(PINION, faults=(Wear(7e-6, shape="uniform"),)))
     )
     np.testing.assert_allclose(worn.transmission_error, new.transmission_error + 7e-6, rtol=1e-9)
@@ -118,10 +118,10 @@ def test_a_missing_tooth_leaves_the_load_to_its_neighbours() -> None:
     contact = tooth_contact(pair, MODEL, corner_contact=True)
     assert contact.hunting_period == 20
     phases = np.arange(0.0, 20.0, 0.01) + 0.003
-    mesh = static_transmission_error(contact, 500.0, phases)
+    mesh = loaded_transmission_error(contact, 500.0, phases)
     number = np.floor(phases)[:, None] - np.floor(mesh.positions)
     np.testing.assert_array_equal(mesh.pair_forces[number % 20 == 3], 0.0)
-    sound = static_transmission_error(
+    sound = loaded_transmission_error(
         tooth_contact(GearPairGeometry(PINION, WHEEL), MODEL, corner_contact=True), 500.0, phases
     )
     apart = np.abs(mesh.transmission_error - sound.transmission_error) > 1e-12
@@ -213,7 +213,7 @@ def test_a_gap_in_the_teeth_wider_than_any_pair_reaches_is_refused(uneven: bool)
         faces = face_slices(pair, misalignment=1e-4, count=5) if uneven else None
         contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=faces)
         if bridged:
-            assert hunting_mesh(contact, 1000.0).transmission_error.max() < 1e-3
+            assert hunting_period_mesh(contact, 1000.0).transmission_error.max() < 1e-3
             continue
         with pytest.raises(GearError, match=r"no teeth meet at phase \d"):
-            hunting_mesh(contact, 1000.0)
+            hunting_period_mesh(contact, 1000.0)

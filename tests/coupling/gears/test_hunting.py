@@ -15,9 +15,9 @@ from coupling.gears import (
     ToothCrack,
     Wear,
     face_slices,
-    hunting_mesh,
+    hunting_period_mesh,
+    loaded_transmission_error,
     mesh_period_phases,
-    static_transmission_error,
     tooth_contact,
 )
 from coupling.gears.hunting import _different_periods
@@ -42,9 +42,9 @@ def contact_of(*, helix: float = 0.0, pitched: bool = False) -> ToothContact:
 @pytest.mark.parametrize(("helix", "pitched"), [(0.0, False), (0.0, True), (math.radians(15.0), False)])
 def test_every_phase_is_that_of_the_mesh_by_itself(helix: float, pitched: bool) -> None:
     contact = contact_of(helix=helix, pitched=pitched)
-    found = hunting_mesh(contact, FORCE, points=7)
+    found = hunting_period_mesh(contact, FORCE, points=7)
     phases = mesh_period_phases(contact, 7, periods=17 * 22)
-    expected = static_transmission_error(contact, FORCE, phases)
+    expected = loaded_transmission_error(contact, FORCE, phases)
     np.testing.assert_array_equal(found.phases, phases)
     for name in ("transmission_error", "positions", "pair_forces", "tangent_stiffness", "secant_stiffness"):
         # A phase in a later mesh period has fewer digits left for where in it the pairs are.
@@ -59,4 +59,4 @@ def test_damage_makes_few_mesh_periods_differ() -> None:
     assert first.size < 40
     none = np.zeros(0, dtype=np.int64)
     sound = replace(contact_of(), variants=(), pair_variants=none, back_pair_variants=none)
-    assert hunting_mesh(sound, FORCE, points=5).phases.size < 2 * 17
+    assert hunting_period_mesh(sound, FORCE, points=5).phases.size < 2 * 17

@@ -13,8 +13,8 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     SquareStiffness,
     face_slices,
+    loaded_transmission_error,
     mesh_friction,
-    static_transmission_error,
     tooth_contact,
 )
 
@@ -28,7 +28,7 @@ def test_the_force_turns_at_the_pitch_point() -> None:
     contact = tooth_contact(PAIR, PotentialEnergyStiffness())
     pitch = PAIR.pitch_point_position
     before, after = (
-        mesh_friction(PAIR, contact, static_transmission_error(contact, 1000.0, [pitch + step]), MU).force[0]
+        mesh_friction(PAIR, contact, loaded_transmission_error(contact, 1000.0, [pitch + step]), MU).force[0]
         for step in (-1e-6, 1e-6)
     )
     assert (before, after) == (pytest.approx(MU * 1000.0), pytest.approx(-MU * 1000.0))
@@ -36,7 +36,7 @@ def test_the_force_turns_at_the_pitch_point() -> None:
 
 def test_moments_and_loss_balance_at_any_speed() -> None:
     contact = tooth_contact(PAIR, PotentialEnergyStiffness(), corner_contact=False)
-    friction = mesh_friction(PAIR, contact, static_transmission_error(contact, 3000.0, PHASES), MU)
+    friction = mesh_friction(PAIR, contact, loaded_transmission_error(contact, 3000.0, PHASES), MU)
     # What friction takes from the driven gear, less what it gives the driver, is lost.
     np.testing.assert_allclose(friction.driven_moment / PAIR.ratio - friction.driver_moment, friction.loss, rtol=1e-12)
     assert np.all(friction.loss >= 0.0)
@@ -48,7 +48,7 @@ def test_loss_of_pairs_that_share_the_load_by_halves() -> None:
     contact = tooth_contact(PAIR, SquareStiffness(3e8))
     force = 2000.0
     friction = mesh_friction(
-        PAIR, contact, static_transmission_error(contact, force, (np.arange(20000) + 0.5) / 20000), MU
+        PAIR, contact, loaded_transmission_error(contact, force, (np.arange(20000) + 0.5) / 20000), MU
     )
     eps, pitch = PAIR.contact_ratio, PAIR.pitch_point_position
     s = np.linspace(0.0, eps, 200001)
@@ -64,7 +64,7 @@ def test_slices_of_an_even_face_are_the_whole() -> None:
     efficiencies = []
     for faces in (None, face_slices(PAIR)):
         contact = tooth_contact(PAIR, PotentialEnergyStiffness(), corner_contact=True, faces=faces)
-        mesh = static_transmission_error(contact, 2500.0, PHASES)
+        mesh = loaded_transmission_error(contact, 2500.0, PHASES)
         efficiencies.append(mesh_friction(PAIR, contact, mesh, MU).efficiency)
     assert efficiencies[1] == pytest.approx(efficiencies[0], rel=1e-9)
 
@@ -72,4 +72,4 @@ def test_slices_of_an_even_face_are_the_whole() -> None:
 def test_a_negative_coefficient_is_refused() -> None:
     contact = tooth_contact(PAIR, PotentialEnergyStiffness())
     with pytest.raises(GearError, match="friction coefficient must be at least 0"):
-        mesh_friction(PAIR, contact, static_transmission_error(contact, 1e3, PHASES), -0.1)
+        mesh_friction(PAIR, contact, loaded_transmission_error(contact, 1e3, PHASES), -0.1)

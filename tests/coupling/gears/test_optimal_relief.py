@@ -18,9 +18,9 @@ from coupling.gears import (
     WeightedHarmonics,
     face_slices,
     harris_map,
+    loaded_transmission_error,
     mesh_period_phases,
     optimal_tip_relief,
-    static_transmission_error,
     tooth_contact,
     transmission_error_harmonics,
 )
@@ -40,7 +40,7 @@ MODEL = PotentialEnergyStiffness()
 def test_harmonics_of_a_square_wave_are_fouriers() -> None:
     # Two pairs share for eps - 1 of the period: a rectangle of height F/(2k).
     contact = tooth_contact(PLAIN, SquareStiffness(1e8))
-    mesh = static_transmission_error(contact, 2000.0)
+    mesh = loaded_transmission_error(contact, 2000.0)
     width = PLAIN.contact_ratio - 1.0
     n = np.arange(1, 6)
     expected = 1e-5 * 2.0 / (np.pi * n) * np.abs(np.sin(np.pi * n * width))
@@ -50,7 +50,7 @@ def test_harmonics_of_a_square_wave_are_fouriers() -> None:
 def test_harmonics_want_one_period() -> None:
     contact = tooth_contact(PLAIN, MODEL)
     with pytest.raises(GearError, match="one mesh period"):
-        transmission_error_harmonics(static_transmission_error(contact, 1e3, np.linspace(0.0, 1.0, 9)))
+        transmission_error_harmonics(loaded_transmission_error(contact, 1e3, np.linspace(0.0, 1.0, 9)))
 
 
 @pytest.mark.parametrize("corners", [False, True])
@@ -80,7 +80,7 @@ def test_the_best_relief_is_not_beaten_on_a_finer_grid(best) -> None:  # type: i
             contact = tooth_contact(GearPairGeometry(gear, gear), MODEL, corner_contact=True)
             # Even phases alone would miss the steps where pairs come and go, which a mesh period has as well.
             phases = mesh_period_phases(contact, 128)
-            swing = static_transmission_error(contact, DESIGN, phases).peak_to_peak_transmission_error
+            swing = loaded_transmission_error(contact, DESIGN, phases).peak_to_peak_transmission_error
             assert swing >= best.peak_to_peak[0] * (1.0 - 1e-9)
     assert best.peak_to_peak[0] < 0.12 * best.unmodified[0]
 
@@ -110,7 +110,7 @@ def test_a_light_load_on_a_face_that_stands_out() -> None:
     """Material that stands out puts the mesh ahead of nominal motion; the relief is sought beyond its first touch."""
     proud = replace(GEAR, profile_deviation=ProfileDeviation(crowning=-20e-6))
     pair = GearPairGeometry(proud, GEAR)
-    assert static_transmission_error(tooth_contact(pair, MODEL), 0.01 * DESIGN).mean_transmission_error < 0.0
+    assert loaded_transmission_error(tooth_contact(pair, MODEL), 0.01 * DESIGN).mean_transmission_error < 0.0
     found = optimal_tip_relief(pair, MODEL, [0.01 * DESIGN])
     assert found.relief.amount >= 0.0
     assert np.all(np.isfinite(found.tried))
@@ -139,7 +139,7 @@ def test_the_answer_is_never_worse_than_none(helix: float) -> None:
     found = optimal_tip_relief(pair, MODEL, [force], corner_contact=True, faces=faces, searched_faces=few)
     assert found.value.max() <= found.value_unmodified.max()
     contact = tooth_contact(found.geometry, MODEL, corner_contact=True, faces=faces)
-    swing = static_transmission_error(contact, force).peak_to_peak_transmission_error
+    swing = loaded_transmission_error(contact, force).peak_to_peak_transmission_error
     assert swing == pytest.approx(found.peak_to_peak[0], rel=2e-2)
 
 
@@ -149,7 +149,7 @@ def test_harmonics_can_be_the_aim(best) -> None:  # type: ignore[no-untyped-def]
     found = optimal_tip_relief(PLAIN, MODEL, [DESIGN], aim=aim)
     assert found.relief is not None
     contacts = [tooth_contact(one.geometry, MODEL, corner_contact=True) for one in (found, best)]
-    second, other = (transmission_error_harmonics(static_transmission_error(c, DESIGN), 2)[1] for c in contacts)
+    second, other = (transmission_error_harmonics(loaded_transmission_error(c, DESIGN), 2)[1] for c in contacts)
     assert second < 0.5 * other
     assert found.value[0] < found.value_unmodified[0]
     assert found.peak_to_peak[0] >= best.peak_to_peak[0]
@@ -157,7 +157,7 @@ def test_harmonics_can_be_the_aim(best) -> None:  # type: ignore[no-untyped-def]
 
 def test_weights_are_of_the_amplitudes() -> None:
     contact = tooth_contact(PLAIN, SquareStiffness(1e8))
-    mesh = static_transmission_error(contact, 2000.0)
+    mesh = loaded_transmission_error(contact, 2000.0)
     first, _, third = transmission_error_harmonics(mesh, 3)
     assert WeightedHarmonics({1: 2.0, 3: 0.5}).of(mesh) == pytest.approx(math.hypot(2.0 * first, 0.5 * third))
 

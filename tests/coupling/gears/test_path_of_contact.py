@@ -16,7 +16,7 @@ from coupling.gears import (
     InterferenceError,
     path_of_contact,
     profile_shift_sum,
-    shifted_to,
+    shifted_for_centre_distance,
     specific_sliding,
     tip_shortening,
     tooth_thickness,
@@ -87,7 +87,9 @@ def test_shifts_give_the_distance_and_the_distance_the_shifts(
     pair = GearPairGeometry(driver, driven)
     distance = pair.working_centre_distance
     assert profile_shift_sum(driver, driven, distance) == pytest.approx(x + y, abs=1e-9)
-    assert shifted_to(driver, replace(driven, profile_shift=0.05), distance).profile_shift == pytest.approx(y, abs=1e-9)
+    assert shifted_for_centre_distance(
+        driver, replace(driven, profile_shift=0.05), distance
+    ).profile_shift == pytest.approx(y, abs=1e-9)
     # The thicknesses fill the working pitch.
     radii = pair.working_pitch_radii
     filled = tooth_thickness(driver, radii[0]) + tooth_thickness(driven, radii[1])

@@ -18,9 +18,9 @@ from coupling.gears import (
     SquareStiffness,
     TipRelief,
     back_flank_pitch_gaps,
+    loaded_transmission_error,
     mesh_period_phases,
     pitch_gaps,
-    static_transmission_error,
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force, tooth_force_history
@@ -105,7 +105,7 @@ def test_idle_flanks_of_a_displaced_tooth_are_behind(tooth: int, shift: float) -
 def test_idle_flanks_meet_the_driven_tooth_that_follows() -> None:
     # The working flank of driver tooth n drives the driven tooth n; behind it stands the driven tooth n + 1.
     numbers = np.arange(PERIOD)
-    drivers, driven = PAIR.meeting_back_teeth(numbers)
+    drivers, driven = PAIR.mating_back_teeth(numbers)
     both = {(int(k), int(i)) for k, i in zip(drivers, driven, strict=True)}
     assert both == {(n % 20, (n + 1) % 30) for n in range(PERIOD)}
     expected = (DRIVER_DEVIATIONS[drivers] + DRIVEN_DEVIATIONS[driven]) * math.cos(ALPHA)
@@ -162,7 +162,7 @@ def test_force_and_parametric_power_are_slopes_of_the_energy(whole: int, part: f
         [tooth_force(phase + side * dp, delta + side * dd, 0.0, *CONTACT.kernel_arguments)[3] for side in (-1.0, 1.0)]
         for dp, dd in ((0.0, steps[0]), (steps[1], 0.0))
     )
-    scale = CONTACT.mean_stiffness * delta
+    scale = CONTACT.mean_mesh_stiffness * delta
     assert (by_delta[1] - by_delta[0]) / (2.0 * steps[0]) == pytest.approx(here[0], rel=1e-6, abs=1e-6 * scale)
     slope = (by_phase[1] - by_phase[0]) / (2.0 * steps[1])
     assert slope == pytest.approx(here[4], rel=1e-4, abs=1e-4 * scale * delta)
@@ -234,7 +234,7 @@ def test_rigid_gears_follow_the_foremost_pair() -> None:
     # With no compliance to speak of the error is the least gap among the pairs on their path of contact.
     contact = tooth_contact(PAIR, SquareStiffness(1e15))
     phases = mesh_period_phases(contact, points=50, periods=PERIOD)
-    found = static_transmission_error(contact, 1000.0, phases).transmission_error
+    found = loaded_transmission_error(contact, 1000.0, phases).transmission_error
     relief = contact.deviation
     expected = []
     for phase in phases:
@@ -248,7 +248,7 @@ def test_a_heavy_load_averages_the_pairs() -> None:
     # All pairs touch: the mean over two of them, one's own where it is alone; unrelieved square pairs.
     pair = GearPairGeometry(replace(DRIVER, tip_relief=None), replace(DRIVEN, tip_relief=None))
     contact = tooth_contact(pair, SquareStiffness(1e8))
-    mesh = static_transmission_error(contact, 1e5, mesh_period_phases(contact, periods=PERIOD))
+    mesh = loaded_transmission_error(contact, 1e5, mesh_period_phases(contact, periods=PERIOD))
     expected = []
     for phase in mesh.phases:
         whole = math.floor(phase)
@@ -262,7 +262,7 @@ def test_a_heavy_load_averages_the_pairs() -> None:
 
 
 def test_equilibrium_of_the_dynamic_law() -> None:
-    mesh = static_transmission_error(CONTACT, 800.0, np.arange(0.02, PERIOD, 0.37))
+    mesh = loaded_transmission_error(CONTACT, 800.0, np.arange(0.02, PERIOD, 0.37))
     history = tooth_force_history(mesh.phases, mesh.transmission_error, 0.0 * mesh.phases, *CONTACT.kernel_arguments)
     np.testing.assert_allclose(history[:, 0], 800.0, rtol=1e-9)
 
@@ -270,7 +270,7 @@ def test_equilibrium_of_the_dynamic_law() -> None:
 def test_phases_over_several_periods_are_the_one_period_repeated() -> None:
     one, three = (mesh_period_phases(PLAIN_CONTACT, points=40, periods=periods) for periods in (1, 3))
     np.testing.assert_allclose(three, np.concatenate([one, one + 1.0, one + 2.0]), rtol=0.0, atol=1e-15)
-    single, triple = (static_transmission_error(PLAIN_CONTACT, 800.0, phases) for phases in (one, three))
+    single, triple = (loaded_transmission_error(PLAIN_CONTACT, 800.0, phases) for phases in (one, three))
     assert triple.mean_transmission_error == pytest.approx(single.mean_transmission_error, rel=1e-9)
 
 

@@ -15,9 +15,9 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     SquareStiffness,
     TipRelief,
+    loaded_transmission_error,
     mesh_period_phases,
     mesh_stiffness,
-    static_transmission_error,
     tooth_contact,
 )
 from coupling.gears.kernels import tooth_force
@@ -32,7 +32,7 @@ EPS = GearPairGeometry(PLAIN, PLAIN).contact_ratio
 
 @pytest.mark.parametrize("force", [1e-6, 10.0, FORCE, 1e5])
 def test_equilibrium_by_root_finding_on_the_dynamic_law(force: float) -> None:
-    mesh = static_transmission_error(CONTACT, force, np.linspace(0.0, 1.0, 23))
+    mesh = loaded_transmission_error(CONTACT, force, np.linspace(0.0, 1.0, 23))
     for phase, delta in zip(mesh.phases, mesh.transmission_error, strict=True):
 
         def surplus(compression: float, phase: float = phase) -> float:
@@ -44,17 +44,17 @@ def test_equilibrium_by_root_finding_on_the_dynamic_law(force: float) -> None:
 def test_square_mesh_in_closed_form() -> None:
     # Without relief: two pairs carry half each for eps - 1 of the period, one carries all for the rest.
     contact = tooth_contact(GearPairGeometry(PLAIN, PLAIN), SquareStiffness(1e8))
-    mesh = static_transmission_error(contact, 2000.0)
+    mesh = loaded_transmission_error(contact, 2000.0)
     assert mesh.mean_transmission_error == pytest.approx(1e-5 * (EPS - 1.0) + 2e-5 * (2.0 - EPS), rel=1e-6)
     assert mesh.peak_to_peak_transmission_error == pytest.approx(1e-5, rel=1e-12)
-    assert mesh.mean_stiffness == pytest.approx(1e8 * EPS, rel=1e-6)
+    assert mesh.mean_mesh_stiffness == pytest.approx(1e8 * EPS, rel=1e-6)
     double = mesh.phases < EPS - 1.0
     np.testing.assert_allclose(mesh.load_shares[double], 0.5, rtol=1e-12)
     np.testing.assert_allclose(mesh.load_shares[~double], [[1.0, 0.0]] * int(np.sum(~double)), atol=1e-15)
 
 
 def test_constant_mesh_has_no_transmission_error_to_hear() -> None:
-    mesh = static_transmission_error(tooth_contact(GearPairGeometry(RELIEVED, PLAIN), ConstantStiffness(1e8)), 1e3)
+    mesh = loaded_transmission_error(tooth_contact(GearPairGeometry(RELIEVED, PLAIN), ConstantStiffness(1e8)), 1e3)
     np.testing.assert_allclose(mesh.transmission_error, 1e-5, rtol=1e-14)
     np.testing.assert_allclose(mesh.secant_stiffness, 1e8, rtol=1e-12)
 
@@ -62,8 +62,8 @@ def test_constant_mesh_has_no_transmission_error_to_hear() -> None:
 def test_relief_hands_the_load_over_gently() -> None:
     # At its entry a relieved pair at this load does not touch yet; unrelieved it takes its share at once.
     entry = np.array([1e-9])
-    gentle = static_transmission_error(CONTACT, FORCE, entry)
-    hard = static_transmission_error(
+    gentle = loaded_transmission_error(CONTACT, FORCE, entry)
+    hard = loaded_transmission_error(
         tooth_contact(GearPairGeometry(PLAIN, PLAIN), PotentialEnergyStiffness()), FORCE, entry
     )
     assert gentle.load_shares[0, 0] == 0.0
@@ -72,7 +72,7 @@ def test_relief_hands_the_load_over_gently() -> None:
 
 
 def test_no_load_leaves_first_touch() -> None:
-    mesh = static_transmission_error(CONTACT, 0.0, np.linspace(0.0, 0.99, 30))
+    mesh = loaded_transmission_error(CONTACT, 0.0, np.linspace(0.0, 0.99, 30))
     np.testing.assert_allclose(
         mesh.transmission_error, np.min(CONTACT.pairs(mesh.phases).deviation, axis=1), atol=1e-18
     )
@@ -81,9 +81,9 @@ def test_no_load_leaves_first_touch() -> None:
 
 
 def test_all_pairs_touch_under_a_great_load() -> None:
-    mesh = static_transmission_error(CONTACT, 1e7)
+    mesh = loaded_transmission_error(CONTACT, 1e7)
     np.testing.assert_allclose(mesh.tangent_stiffness, mesh_stiffness(CONTACT, mesh.phases), rtol=1e-12)
-    assert mesh.mean_stiffness == pytest.approx(CONTACT.mean_stiffness, rel=1e-5)
+    assert mesh.mean_mesh_stiffness == pytest.approx(CONTACT.mean_mesh_stiffness, rel=1e-5)
 
 
 def test_period_phases_stand_beside_every_step() -> None:
@@ -100,4 +100,4 @@ def test_period_phases_stand_beside_every_step() -> None:
 @pytest.mark.parametrize("force", [-1.0, math.nan, math.inf])
 def test_impossible_loads_are_refused(force: float) -> None:
     with pytest.raises(GearError, match="load must be at least 0 N"):
-        static_transmission_error(CONTACT, force)
+        loaded_transmission_error(CONTACT, force)

@@ -20,14 +20,14 @@ from coupling.gears import (
     TipRelief,
     ToothContact,
     equivalent_mass,
+    loaded_transmission_error,
     mesh_damping,
     pair_deviation,
     piecewise,
     runout_error,
-    static_transmission_error,
     tooth_contact,
 )
-from coupling.gears.kernels import ranked_nearness, tooth_force, tooth_force_history
+from coupling.gears.kernels import ranked_penetration, tooth_force, tooth_force_history
 
 ALPHA = math.radians(20.0)
 DEGREE = math.radians(1.0)
@@ -93,10 +93,10 @@ def test_pairs_share_a_compliance_as_one_matrix(shared: float) -> None:
             law = tooth_force(phase, delta, 0.0, *contact.kernel_arguments)
             np.testing.assert_allclose(law[:2] + law[3:4], [forces.sum(), tangent, energy], rtol=1e-7, atol=1e-14)
             for rank in range(1, 4):
-                assert (ranked_nearness(phase, delta, *contact.kernel_arguments, rank) > 0.0) == (law[5] >= rank)
+                assert (ranked_penetration(phase, delta, *contact.kernel_arguments, rank) > 0.0) == (law[5] >= rank)
             # Under that load the mesh is back where it was, as soft as the law says.
             if forces.sum() > 0.0:
-                mesh = static_transmission_error(contact, float(forces.sum()), [phase])
+                mesh = loaded_transmission_error(contact, float(forces.sum()), [phase])
                 assert mesh.transmission_error[0] == pytest.approx(delta, rel=1e-8)
                 assert mesh.tangent_stiffness[0] == pytest.approx(tangent, rel=1e-7)
 
@@ -163,7 +163,7 @@ def test_idle_flanks_run_through_the_same_law_backwards() -> None:
 
 def test_square_mesh_with_a_printed_contact_ratio() -> None:
     contact = tooth_contact(PAIR, SquareStiffness(1e8, contact_ratio=1.6))
-    assert contact.mean_stiffness == pytest.approx(1.6e8)
+    assert contact.mean_mesh_stiffness == pytest.approx(1.6e8)
     assert contact.event_phases == (0.0, pytest.approx(0.6))
 
 
