@@ -12,19 +12,18 @@ import sys
 import numpy as np
 
 import coupling
+from coupling.linear.frequency_response import BasisError, mesh_error_response
 from gearwhine.case import load_case
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import basis_error, build_machine, reduce_housing
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing
+from gearwhine.solve.housing_modes import solve_housing
 
 HERTZ = 2.0 * np.pi
 LIMITS = (2400.0, 3200.0)
 MARKED = 0.03  # told errors above this are marked
 
 
-def machine_of(
-    mesh_size: str, limit: float, *, told: bool
-) -> tuple[coupling.CoupledMachine, coupling.BasisError | None]:
+def machine_of(mesh_size: str, limit: float, *, told: bool) -> tuple[coupling.CoupledMachine, BasisError | None]:
     """The rig's machine on a mesh with a limit [Hz], and where asked its told error."""
     changes = [f'housing.box.mesh_size="{mesh_size} mm"', f"housing.frequency_limit={limit}"]
     case = load_case("nasa-gear-noise-rig", changes).case
@@ -40,8 +39,8 @@ def study(mesh_size: str, limit: float) -> None:
     machine, told = machine_of(mesh_size, limit, told=True)
     assert told is not None
     exact, _ = machine_of(mesh_size, 2.0 * limit, told=False)
-    ours = coupling.mesh_error_response(machine, frequencies).sensor_acceleration
-    true = coupling.mesh_error_response(exact, frequencies).sensor_acceleration
+    ours = mesh_error_response(machine, frequencies).sensor_acceleration
+    true = mesh_error_response(exact, frequencies).sensor_acceleration
     for name, estimate in told.at(frequencies).items():
         error = np.abs(np.abs(ours[name]) / np.abs(true[name]) - 1.0)
         covered = float((error <= estimate).mean())

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing import Material, Support, fixed_freedoms
+from housing import Material, Support
+from housing.model.supports import fixed_freedoms
 from meshes import Bore, BoxGeometry, Mesh, WallThickness, mesh_box
 
 STEEL = Material(2.07e11, 0.3, 7850.0)

@@ -32,7 +32,6 @@ from coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
-    HarmonicLoad,
     MountedBearing,
     MountedGear,
     Torque,
@@ -40,13 +39,14 @@ from coupling import (
     TransientSettings,
     Unbalance,
     assemble_machine,
-    rotor_component,
     simulate,
     static_equilibrium,
 )
 from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
-from coupling.gears.kernels import tooth_force
-from coupling.settings import Method
+from coupling.gears.contact.tooth_force_kernels import tooth_force
+from coupling.machine.components import rotor_component
+from coupling.machine.coupled_system import HarmonicLoad
+from coupling.time.settings import Method
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]

@@ -26,6 +26,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import gearwhine.analyses.machine
+
 LIMIT = 10.0  # seconds of a command
 UNFORESEEN = 70  # exit code of a child that raised what nobody foresaw
 STOPPED = -1
@@ -260,7 +262,7 @@ def damaged(random: random.Random, content: bytes) -> bytes:
 
 def case_outcomes(random: random.Random, count: int, folder: Path) -> Iterator[tuple[str, Path, Outcome]]:
     """Mutated cases through `check`, and those that pass through another command: what ran, on which file, and how."""
-    from gearwhine.case.bundled import bundled_case, bundled_names
+    from gearwhine.case.load import bundled_case, bundled_names
 
     texts = [bundled.read_bytes() for name in bundled_names() if (bundled := bundled_case(name)) is not None]
     documents = [tomllib.loads(text.decode()) for text in texts]
@@ -324,7 +326,6 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="a folder for all files; otherwise only names of faults are told")
     given = parser.parse_args()
-    import gearwhine.analyses.machine  # what children share
 
     assert gearwhine.analyses.machine
     faults, ends, slowest = 0, Counter[tuple[str, int]](), 0.0

@@ -10,10 +10,9 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from gearwhine.stages.bearings import build_bearings
-from gearwhine.stages.build import build_rotor
+from gearwhine.from_case.rotors import build_bearings, build_rotor
 from housing import measured
-from meshes.gmsh_session import gmsh_session
+from meshes.gmsh_meshing import gmsh_session
 from rotors import write_ross
 
 Files = dict[str, bytes]

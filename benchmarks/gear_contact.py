@@ -25,14 +25,14 @@ from coupling.gears import (
     StiffnessModel,
     TipRelief,
     ToothContact,
-    face_slices,
     harris_map,
     loaded_transmission_error,
     mesh_stiffness,
     optimal_tip_relief,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.contact.tooth_force_kernels import tooth_force
 
 PHASES = np.arange(256) / 256.0
 CALLS, STRETCHES = 7000, 40

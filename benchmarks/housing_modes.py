@@ -15,8 +15,8 @@ from scipy.sparse.linalg import eigsh
 from timing import arguments, machine, timed
 
 from housing import ModeSet, assemble, solve_modes
-from housing.factorization import Factorizer
-from housing.free_system import FreeSystem
+from housing.fem.factorization import Factorizer
+from housing.fem.matrices import FreeSystem
 
 
 def ours(problem: Problem, *, limit: float | None, count: int | None) -> ModeSet:

@@ -15,12 +15,13 @@ from collections.abc import Callable
 import numpy as np
 from timing import Result, arguments, machine
 
-import coupling as room
+from coupling import periodic_response, response_curve
+from coupling.periodic.continuation import ResponseCurve
 from gearwhine.case import Case, load_case, mesh_frequencies
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.steady import CURVE_TOLERANCE
-from gearwhine.stages.transient import solve_transient
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.steady_state import CURVE_TOLERANCE
+from gearwhine.solve.transient import solve_transient
 
 RPM = 2.0 * np.pi / 60.0
 BALANCED = "rotor.input.unbalance="
@@ -33,10 +34,10 @@ def processor_seconds(work: Callable[[], Result]) -> tuple[float, Result]:
     return time.process_time() - start, done
 
 
-def curve_of(case: Case, low: float, high: float, points: int) -> room.ResponseCurve:
+def curve_of(case: Case, low: float, high: float, points: int) -> ResponseCurve:
     """The branch between two speeds [rpm]."""
     built = build_machine(case, None, solve_gears(case))
-    return room.response_curve(
+    return response_curve(
         lambda speed: built.at_speed(speed).system, low * RPM, high * RPM, points=points, tolerance=CURVE_TOLERANCE
     )
 
@@ -65,7 +66,7 @@ def main() -> None:
             )
             print(f"  transient, {method:8s} {transients[method]:8.2f} s")
         speed = built.speeds[built.leading_rotor]
-        room.periodic_response(built.at_speed(speed).system)
+        periodic_response(built.at_speed(speed).system)
         seconds, curve = processor_seconds(lambda case=case: curve_of(case, given.low, given.high, given.points))
         told = ", ".join(f"{seconds / taken:.1f} x {method}" for method, taken in transients.items())
         print(f"  curve of {len(curve.speeds)} points, {len(curve.bifurcations)} events: {seconds:8.2f} s   {told}")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from coupling import Shaft as Shaft
     from coupling import ShaftGear as ShaftGear
     from coupling.gears import Gear as Gear
-    from coupling.gears.gear_pair import GearPair as GearPair
+    from coupling.gears.loaded.gear_pair import GearPair as GearPair
     from gearwhine.analyses.result import Result as Result
     from gearwhine.case import Case as Case
     from gearwhine.case import CaseError as CaseError
@@ -57,7 +57,7 @@ except PackageNotFoundError:  # run from a checkout that is not installed
 _HOMES = {
     "coupling": ("Machine", "MountedBearing", "Output", "Shaft", "ShaftGear"),
     "coupling.gears": ("Gear",),
-    "coupling.gears.gear_pair": ("GearPair",),
+    "coupling.gears.loaded.gear_pair": ("GearPair",),
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.study": ("Study", "build", "load"),

@@ -18,8 +18,8 @@ import numpy as np
 
 import gearwhine
 from gearwhine.progress import Progress
-from housing.drawn_shapes import DrawnHousing, DrawnShape
 from housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
+from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 
 _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
 _CAPTIONS = ("name", "title", "note", "quantity", "largest")
@@ -121,8 +121,8 @@ def _tell(document: dict[str, Any]) -> None:
 
 def _draw(desk: Path) -> list[str]:
     """Do the task that lies on the desk."""
-    from housing.animations import animate_shapes
-    from housing.pictures import render_shapes, render_sheet
+    from housing.pictures.animations import animate_shapes
+    from housing.pictures.images import render_shapes, render_sheet
 
     task = json.loads((desk / "task.json").read_text(encoding="utf-8"))
     with np.load(desk / "arrays.npz", allow_pickle=False) as arrays:

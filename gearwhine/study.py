@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from coupling import Machine
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
-    from gearwhine.drawings import ModeFormat
-    from gearwhine.stages.gear_analysis import PairAnalysis
-    from gearwhine.stages.housing import SolvedHousing
-    from gearwhine.stages.rotors import SolvedRotor
-    from gearwhine.stages.steady import SolvedSteady
-    from gearwhine.stages.survey_plan import PlannedSurvey
-    from gearwhine.stages.system import SolvedSystem
-    from gearwhine.stages.updating import SolvedUpdate
-    from gearwhine.sweep.conduct import SweptPoint
-    from housing import Comparison
+    from gearwhine.mode_pictures import ModeFormat
+    from gearwhine.solve.coupled_system import SolvedSystem
+    from gearwhine.solve.gear_pairs import PairAnalysis
+    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.solve.rotors import SolvedRotor
+    from gearwhine.solve.steady_state import SolvedSteady
+    from gearwhine.solve.survey_plan import PlannedSurvey
+    from gearwhine.solve.updating import SolvedUpdate
+    from gearwhine.sweep.run import SweptPoint
+    from housing.correlation.comparison import Comparison
     from meshes import Mesh
 
 
@@ -120,7 +120,7 @@ class Study:
     def housing(self) -> SolvedHousing | None:
         """The solved housing, which the first call meshes and solves; None in a case without one."""
         if self._housing is None and self.case.housing is not None:
-            from gearwhine.stages.housing import solve_housing
+            from gearwhine.solve.housing_modes import solve_housing
 
             self._housing = solve_housing(self.case, self.progress)
         return self._housing
@@ -132,7 +132,7 @@ class Study:
         It has the constant torques of `[operation]`; torques over time, motion of the base and gravity stay in the
         case, and :meth:`simulate` applies them.
         """
-        from gearwhine.stages.machine import describe_machine, reduce_housing
+        from gearwhine.from_case.machine import describe_machine, reduce_housing
 
         solved = self.housing
         part = None if solved is None else reduce_housing(self.case, solved, self.progress).component

@@ -1,115 +1,49 @@
-"""Finite-element meshes: from a geometry, or a file, to nodes and elements with named regions.
+"""Finite-element meshes: from box dimensions, a CAD file or a mesh file to nodes, elements and named regions.
 
-- :class:`Mesh` -- nodes, blocks of solid elements (:class:`ElementBlock`) and named regions, in metres.
-- :class:`BoxGeometry` with :class:`WallThickness`, :class:`Bore`, :class:`Boss`, :class:`Feet`, :class:`Rib`,
-  :class:`Cover` (:class:`Flange`, :class:`CoverBolts`) and :class:`Fillets` -- a gearbox housing described by its
-  dimensions; :func:`mesh_box` meshes it with gmsh, :class:`BoxMorph` moves that mesh to other dimensions.
-- :func:`mesh_cad` -- the solids of a STEP, IGES or BREP file, as a :class:`CadMesh`.
-- :func:`check_mesh_size` -- refuses an element size that cannot be meshed or solved.
-- :func:`box_facets`, :func:`circle_facets`, :func:`plane_facets`, :func:`cylinder_facets`, :func:`find_bores`,
-  :func:`with_bore` -- regions of the surface of any mesh by place; bores by centre and diameter.
-- :func:`read_mesh`, :func:`write_mesh` -- mesh files of every format that meshio knows.
-- :func:`mesh_quality` -- edge lengths and shape numbers of the elements.
-- :func:`diagnose` -- defects of a mesh by name (:class:`MeshDefect`); :func:`resolution_defects` -- elements that are
-  too large for the structural waves.
+- :class:`Mesh` holds nodes [m], blocks of solid elements (:class:`ElementBlock`) and named regions.
+- :class:`BoxGeometry` describes a box housing by its parts (:class:`WallThickness`, :class:`Bore`, :class:`Boss`,
+  :class:`Feet`, :class:`Rib`, :class:`Cover`, :class:`Fillets`). :func:`mesh_box` meshes it with gmsh, and
+  :class:`BoxMorph` moves that mesh to other dimensions.
+- :func:`mesh_cad` meshes the solids of a STEP, IGES or BREP file; :func:`read_mesh` and :func:`write_mesh` exchange
+  mesh files.
+- :func:`box_facets`, :func:`plane_facets`, :func:`circle_facets` and :func:`cylinder_facets` select parts of the
+  surface; :func:`find_bores` and :func:`with_bore` find bores by centre and diameter.
+- :func:`diagnose` lists the defects of a mesh (:class:`MeshDefect`), :func:`mesh_quality` measures its elements, and
+  :func:`resolution_defects` compares their size with the wavelength.
 
-In names, *mesh* is always the finite-element mesh; the gears' is the *gear mesh*.
-gmsh itself is imported only when a mesh is made.
+Sub-packages: ``meshes.box`` (parametric housing), ``meshes.cad`` (CAD import), ``meshes.formats`` (file formats).
+*Mesh* always means the finite-element mesh; the contact of two gears is the *gear mesh*. gmsh is imported when a mesh
+is made, not before.
 """
 
-from meshes.ailments import MeshDefect
-from meshes.bores import CylindricalBore, find_bores
-from meshes.box import (
-    Bolt,
-    Bore,
-    Boss,
-    BoxGeometry,
-    BoxMisfit,
-    BoxMisfitError,
-    BoxMorph,
-    Cover,
-    CoverBolts,
-    Feet,
-    Fillets,
-    Flange,
-    MorphError,
-    Rib,
-    WallThickness,
-    mesh_box,
-)
-from meshes.cad import CadMesh, mesh_cad
-from meshes.diagnosis import diagnose
-from meshes.elements import (
-    KINDS,
-    ElementBlock,
-    ElementKind,
-    Facets,
-    facet_centers,
-    facet_corners,
-    facet_nodes,
-    facet_normals,
-    facets_of,
-    pick_facets,
-)
-from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
-from meshes.files import read_mesh, write_mesh
-from meshes.lengths import UNITS
-from meshes.mesh import Mesh
-from meshes.quality import MeshQuality, mesh_quality
-from meshes.regions import box_facets, circle_facets, cylinder_facets, plane_facets, with_bore
-from meshes.resolution import WaveCarrier, resolution_defects, wall_thickness
-from meshes.tetrahedra import check_mesh_size, expected_elements
-
-__all__ = [
-    "KINDS",
-    "UNITS",
-    "Bolt",
-    "Bore",
-    "Boss",
-    "BoxGeometry",
-    "BoxMisfit",
-    "BoxMisfitError",
-    "BoxMorph",
-    "CadMesh",
-    "Cover",
-    "CoverBolts",
-    "CylindricalBore",
-    "ElementBlock",
-    "ElementKind",
-    "Facets",
-    "Feet",
-    "Fillets",
-    "Flange",
-    "GeometryError",
-    "Mesh",
-    "MeshDefect",
-    "MeshQuality",
-    "MeshSizeError",
-    "MesherUnavailableError",
-    "MorphError",
-    "Rib",
-    "WallThickness",
-    "WaveCarrier",
-    "box_facets",
-    "check_mesh_size",
-    "circle_facets",
-    "cylinder_facets",
-    "diagnose",
-    "expected_elements",
-    "facet_centers",
-    "facet_corners",
-    "facet_nodes",
-    "facet_normals",
-    "facets_of",
-    "find_bores",
-    "mesh_box",
-    "mesh_cad",
-    "mesh_quality",
-    "pick_facets",
-    "plane_facets",
-    "read_mesh",
-    "resolution_defects",
-    "wall_thickness",
-    "with_bore",
-    "write_mesh",
-]
+from meshes.bores import find_bores as find_bores
+from meshes.box.geometry import BoxGeometry as BoxGeometry
+from meshes.box.meshing import mesh_box as mesh_box
+from meshes.box.morph import BoxMorph as BoxMorph
+from meshes.box.parts import Bolt as Bolt
+from meshes.box.parts import Bore as Bore
+from meshes.box.parts import Boss as Boss
+from meshes.box.parts import Cover as Cover
+from meshes.box.parts import CoverBolts as CoverBolts
+from meshes.box.parts import Feet as Feet
+from meshes.box.parts import Fillets as Fillets
+from meshes.box.parts import Flange as Flange
+from meshes.box.parts import Rib as Rib
+from meshes.box.parts import WallThickness as WallThickness
+from meshes.cad.reading import CadMesh as CadMesh
+from meshes.cad.reading import mesh_cad as mesh_cad
+from meshes.diagnosis import diagnose as diagnose
+from meshes.elements import ElementBlock as ElementBlock
+from meshes.errors import GeometryError as GeometryError
+from meshes.formats.files import read_mesh as read_mesh
+from meshes.formats.files import write_mesh as write_mesh
+from meshes.gmsh_meshing import check_mesh_size as check_mesh_size
+from meshes.mesh import Mesh as Mesh
+from meshes.mesh import MeshDefect as MeshDefect
+from meshes.quality import mesh_quality as mesh_quality
+from meshes.quality import resolution_defects as resolution_defects
+from meshes.regions import box_facets as box_facets
+from meshes.regions import circle_facets as circle_facets
+from meshes.regions import cylinder_facets as cylinder_facets
+from meshes.regions import plane_facets as plane_facets
+from meshes.regions import with_bore as with_bore

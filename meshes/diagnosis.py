@@ -1,18 +1,277 @@
-"""Mesh diagnosis: the defects of a mesh by name, with their places and remedies."""
+"""Mesh diagnosis: the defects of a mesh by name, with their places and remedies.
+
+Conformity of a mesh: neighbouring elements share the nodes of their common edges, and none lies within a facet.
+
+Connectivity of a mesh: its bodies, and the defects where elements are not connected as they should be.
+"""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
-from meshes.ailments import MeshDefect, Severity, mesh_defect
-from meshes.connections import connection_defects
-from meshes.elements import FloatArray, IntArray
+from meshes.elements import FloatArray, IntArray, facet_corners, group_rows
 from meshes.lengths import UNITS, length_text, plausible
-from meshes.mapping import determinants, jacobians
-from meshes.mesh import Mesh
+from meshes.mesh import Mesh, MeshDefect, Severity, mesh_defect, place_text
 from meshes.quality import edge_lengths, shape_numbers
-from meshes.shapes import quadrature, shape_functions
+from meshes.shape_functions import determinants, jacobians, quadrature, shape_functions
+
+_NEAR = 1e-6  # part of a facet's longest side: nodes nearer than that coincide, or lie in its plane
+_CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
+
+
+@dataclass(frozen=True)
+class Touching:
+    """Places where the surface touches itself without sharing nodes.
+
+    Attributes
+    ----------
+    across : ndarray of int
+        Corners of the surface at the place of one of another body.
+    within : ndarray of int
+        Corners of the surface at the place of another one of the same body.
+    hanging : ndarray of int
+        Hanging nodes: corners of the surface within facets of other elements, at none of their corners.
+    between_bodies : bool
+        Whether all hanging nodes lie within facets of another body.
+    """
+
+    across: IntArray
+    within: IntArray
+    hanging: IntArray
+    between_bodies: bool
+
+
+def unequal_edges(mesh: Mesh) -> IntArray:
+    """Corners of edges that have a middle node in one element and none, or another, in the next, shape (n, 2)."""
+    ends, middles = [], []
+    for block in mesh.blocks:
+        corners, local = block.of.edges, np.array(block.of.places)
+        edge = block.nodes[:, corners]
+        if block.of.order == 2:
+            halfway = local[corners].mean(axis=1)
+            middle = np.argmin(np.abs(halfway[:, None] - local[None]).max(axis=2), axis=1)
+            middles.append(block.nodes[:, middle].ravel())
+        else:
+            middles.append(np.full(edge.shape[0] * edge.shape[1], -1))
+        ends.append(np.sort(edge.reshape(-1, 2), axis=1))
+    together, middle_node = np.concatenate(ends), np.concatenate(middles)
+    if len(mesh.blocks) == 1 and mesh.order == 1:
+        return np.empty((0, 2), dtype=np.int64)
+    number = group_rows(together)
+    highest, lowest = np.full(number.max() + 1, -2), np.full(number.max() + 1, len(mesh.points))
+    np.maximum.at(highest, number, middle_node)
+    np.minimum.at(lowest, number, middle_node)
+    _, first = np.unique(number, return_index=True)
+    return np.asarray(together[first[highest != lowest]])
+
+
+def covered_quadrilaterals(mesh: Mesh) -> IntArray:
+    """Corners of quadrilaterals of the surface that lie on triangles with the same corners, shape (n, 4)."""
+    quads = [block.corners for block in mesh.boundary if block.of.n_corners == 4]
+    triangles = [block.corners for block in mesh.boundary if block.of.n_corners == 3]
+    if not quads or not triangles:
+        return np.empty((0, 4), dtype=np.int64)
+    corners, known = np.concatenate(quads), np.sort(np.concatenate(triangles), axis=1)
+    halves = np.sort(corners[:, [[0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3]]], axis=2)
+    numbers = group_rows(np.concatenate([known, halves.reshape(-1, 3)]))
+    covered = np.isin(numbers[len(known) :], numbers[: len(known)]).reshape(-1, 4).any(axis=1)
+    return np.asarray(corners[covered])
+
+
+def touching_nodes(mesh: Mesh, body: IntArray) -> Touching:
+    """Find where parts of the surface lie on each other without sharing nodes.
+
+    Corners alone are compared with facets, which are taken as plane triangles between their corners: where curved
+    facets conform, no corner lies within another facet.
+    """
+    from scipy.spatial import KDTree
+
+    corners = facet_corners(mesh.boundary)
+    tree = KDTree(mesh.points[corners])
+    of_node = np.zeros(len(mesh.points), dtype=np.int64)
+    for block, members in zip(mesh.blocks, np.split(body, mesh.block_ends), strict=True):
+        of_node[block.nodes] = members[:, None]
+    triangles = np.concatenate(
+        [block.nodes[:, triangle] for block in mesh.boundary for triangle in _CORNER_TRIANGLES[block.of.n_corners]]
+    )
+    places = mesh.points[triangles]
+    middle = places.mean(axis=1)
+    reach = np.linalg.norm(places - middle[:, None], axis=2).max(axis=1)
+    near = tree.query_ball_point(middle, reach * (1.0 + _NEAR))
+    lengths = np.array([len(found) for found in near])
+    which = np.repeat(np.arange(len(triangles)), lengths)
+    node = corners[np.concatenate([np.asarray(found, dtype=np.int64) for found in near])]
+    foreign = (triangles[which] != node[:, None]).all(axis=1)
+    which, node = which[foreign], node[foreign]
+    within, at_corner = _within(places[which], mesh.points[node])
+    other = of_node[triangles[which, 0]] != of_node[node]
+    # Where a facet's own corner is at the place, the nodes coincide and hang nowhere.
+    matched = np.zeros(len(mesh.points), dtype=bool)
+    matched[node[at_corner]] = True
+    hanging = within & ~at_corner & ~matched[node]
+    return Touching(
+        across=_places(mesh.points, node[at_corner & other]),
+        within=_places(mesh.points, node[at_corner & ~other]),
+        hanging=np.unique(node[hanging]),
+        between_bodies=bool(other[hanging].all()),
+    )
+
+
+def _places(points: FloatArray, nodes: IntArray) -> IntArray:
+    """One node for each place at which some nodes lie."""
+    nodes = np.unique(nodes)
+    if not len(nodes):
+        return nodes
+    extent = max(float(np.ptp(points[nodes], axis=0).max()), 1e-300)
+    _, first = np.unique(np.round(points[nodes] / (_NEAR * extent)), axis=0, return_index=True)
+    return np.asarray(nodes[np.sort(first)])
+
+
+def _within(triangles: FloatArray, points: FloatArray) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Whether each point lies in its triangle, and whether at a corner of it."""
+    a, first, second = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    normal = np.cross(first, second)
+    doubled = np.linalg.norm(normal, axis=1)
+    size = np.sqrt(np.maximum((first**2).sum(axis=1), (second**2).sum(axis=1)))
+    flat = doubled <= 1e-12 * size**2
+    safe = np.where(flat, 1.0, doubled)
+    arm = points - a
+    height = np.abs((arm * normal).sum(axis=1)) / safe
+    u = (np.cross(arm, second) * normal).sum(axis=1) / safe**2
+    v = (np.cross(first, arm) * normal).sum(axis=1) / safe**2
+    inside = ~flat & (u > -_NEAR) & (v > -_NEAR) & (u + v < 1.0 + _NEAR) & (height < _NEAR * size)
+    apart = np.linalg.norm(triangles - points[:, None], axis=2).min(axis=1)
+    return inside, apart < _NEAR * size
+
+
+_LISTED = 5  # bodies that a message lists one by one
+
+
+def bodies(mesh: Mesh) -> IntArray:
+    """Body of each element, 0 the largest; elements that share a node are of one body.
+
+    Returns
+    -------
+    ndarray of int, shape (n_elements,)
+    """
+    return _parts(mesh, mesh.incidence)
+
+
+def connection_defects(mesh: Mesh) -> Iterator[MeshDefect]:
+    """Find the defects of a mesh's connectivity."""
+    yield from _faces(mesh)
+    body = bodies(mesh)
+    mismatches = [*_conformity(mesh, body)]
+    yield from mismatches
+    yield from _bodies(mesh, body)
+    if not any(one.name == "non-conforming" for one in mismatches):
+        yield from _hinges(mesh, body)
+
+
+def _parts(mesh: Mesh, shared: sparse.csr_array) -> IntArray:
+    """Label the connected parts of the mesh, from the largest down.
+
+    ``shared`` is the incidence of elements and nodes, or of elements and faces, by which they are connected.
+    """
+    both = sparse.block_array([[None, shared], [shared.T, None]], format="csr", dtype=np.int8)
+    _, labels = connected_components(both, directed=False)
+    _, part = np.unique(labels[: mesh.n_elements], return_inverse=True)
+    size = np.bincount(part, mesh.corner_volumes)
+    rank = np.empty(len(size), dtype=np.int64)
+    rank[np.argsort(-size, kind="stable")] = np.arange(len(size))
+    return np.asarray(rank[part])
+
+
+def _faces(mesh: Mesh) -> Iterator[MeshDefect]:
+    """Faces of more than two elements, and pairs of elements on the same side of one."""
+    table = mesh.faces
+    crowded = np.flatnonzero(table.sharing > 2)
+    if len(crowded):
+        number = len(np.unique(table.number[crowded]))
+        place = mesh.points[table.corners[crowded[0], :3]].mean(axis=0)
+        what = f"{number} facets are shared by three or more elements"
+        advice = "elements lie in each other, perhaps twice in the file; remove the surplus ones"
+        yield mesh_defect("non-manifold", "error", what, advice, number, place)
+    paired = np.flatnonzero(table.sharing == 2)
+    pairs = paired[np.argsort(table.number[paired], kind="stable")].reshape(-1, 2)
+    same = _turn(table.corners[pairs[:, 0]]) == _turn(table.corners[pairs[:, 1]])
+    if same.any():
+        number = int(same.sum())
+        place = mesh.points[table.corners[pairs[np.argmax(same), 0], :3]].mean(axis=0)
+        what = f"at {number} facets both elements lie on the same side"
+        advice = "one of each is turned inside out or folded over its neighbour; mesh anew"
+        yield mesh_defect("overlapping", "error", what, advice, number, place)
+
+
+def _turn(corners: IntArray) -> npt.NDArray[np.bool_]:
+    """Sense in which facets turn: whether after the least corner comes the smaller of its neighbours."""
+    rows = np.arange(len(corners))
+    count = np.where(corners[:, 3] < 0, 3, 4)
+    least = np.argmin(np.where(corners < 0, np.iinfo(np.int64).max, corners), axis=1)
+    after, before = corners[rows, (least + 1) % count], corners[rows, (least - 1) % count]
+    return np.asarray(after < before)
+
+
+def _bodies(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
+    """Several disconnected bodies."""
+    count = int(body.max()) + 1
+    if count > 1:
+        sizes = np.bincount(body, mesh.corner_volumes)
+        middles = [mesh.centers[body == number].mean(axis=0) for number in range(1, min(count, 1 + _LISTED))]
+        listed = ", ".join(
+            f"one of {100 * sizes[number] / sizes.sum():.3g} % of the volume around {place_text(middle)}"
+            for number, middle in enumerate(middles, start=1)
+        )
+        more = f" and {count - 1 - _LISTED} more" if count > 1 + _LISTED else ""
+        what = f"the mesh falls into {count} bodies that share no node: beside the largest {listed}{more}"
+        yield MeshDefect("disconnected", "warning", f"{what}; what joins them?", count, middles[0])
+
+
+def _hinges(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
+    """Parts that are connected by an edge or a node alone."""
+    faces = mesh.faces
+    ones = np.ones(len(faces.number), dtype=np.int8)
+    shape = (mesh.n_elements, int(faces.number.max()) + 1)
+    part = _parts(mesh, sparse.csr_array((ones, (faces.element, faces.number)), shape=shape))
+    parts, count = int(part.max()) + 1, int(body.max()) + 1
+    if parts > count:
+        what = f"{parts - count} parts hang on by an edge or a node alone"
+        advice = "they turn about it as about a hinge; let them share facets"
+        middle = mesh.centers[part == parts - 1].mean(axis=0)
+        yield mesh_defect("hinged", "warning", what, advice, parts - count, middle, which="the smallest around")
+
+
+def _conformity(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
+    """Neighbours that touch and do not share their nodes."""
+    unequal = unequal_edges(mesh)
+    if len(unequal):
+        what = f"{len(unequal)} edges have a middle node in one element and not in its neighbour"
+        advice = "elements of order 1 and 2 do not fit each other; use one order"
+        yield mesh_defect("non-conforming", "error", what, advice, len(unequal), mesh.points[unequal[0]].mean(axis=0))
+    covered = covered_quadrilaterals(mesh)
+    if len(covered):
+        what = f"{len(covered)} quadrilaterals lie on triangles"
+        advice = "bricks do not fit tetrahedra, nor the ends of wedges; use one kind, or join them along matching faces"
+        yield mesh_defect("non-conforming", "error", what, advice, len(covered), mesh.points[covered[0]].mean(axis=0))
+    touching = touching_nodes(mesh, body)
+    if number := len(touching.across):
+        what = f"the mesh falls into {body.max() + 1} bodies whose nodes coincide at {number} places"
+        advice = "merge them, unless the bodies are meant to be loose"
+        yield mesh_defect("disconnected", "error", what, advice, number, mesh.points[touching.across[0]])
+    if number := len(touching.within):
+        what = f"nodes coincide at {number} places of one body and are not joined"
+        advice = "merge them, unless a slit is meant"
+        yield mesh_defect("slit", "warning", what, advice, number, mesh.points[touching.within[0]])
+    if number := len(touching.hanging):
+        what = f"{number} nodes lie within facets that they are no part of"
+        advice = "the elements on both sides do not match and are not joined; mesh them together"
+        severity: Severity = "warning" if touching.between_bodies else "error"
+        yield mesh_defect("non-conforming", severity, what, advice, number, mesh.points[touching.hanging[0]])
+
 
 LEAST_SHAPE = 0.05
 """Shape number below which an element spoils the stresses around it."""

@@ -1,18 +1,18 @@
-"""Rotors: shafts, discs and bearings; their bending, torsion and whirl by exact transfer matrices.
+"""Rotors: lateral, torsional and axial modes, whirl and responses of shafts by exact transfer matrices.
 
-A shaft is described by what can be measured on it::
+A :class:`Rotor` consists of :class:`Segment`, :class:`Disc` and :class:`Coupling` entries and turns in
+:class:`Bearing` entries::
 
     steel = ShaftMaterial(youngs_modulus=211e9, shear_modulus=81.2e9, density=7810.0)
     shaft = Rotor("shaft", [Segment(0.5, 0.05, 0.0, steel)] * 3,
                   [Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0)])
     bearings = [Bearing.isotropic("left", 0.0, 1e6), Bearing.isotropic("right", 1.5, 1e6)]
 
-and answered for by frozen results, each with the certificate that no mode is missing::
+Each analysis returns a frozen result with the certificate that no mode is missing::
 
     solve_lateral_modes(shaft, [b.mean_support for b in bearings], frequency_limit=5e3)
     solve_torsional_modes(shaft, count=5)
     solve_axial_modes(shaft, [AxisSpring(0.0, 1e8)], count=5)
-    buckling_factor(shaft, [b.mean_support for b in bearings])
     rest_frequencies(shaft, bearings, count=8)
     solve_whirl(shaft, bearings, speed=418.9, count=8)
     critical_speeds(shaft, bearings, speed_limit=1e3)
@@ -20,109 +20,39 @@ and answered for by frozen results, each with the certificate that no mode is mi
     unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
     static_deflection(shaft, bearings).bearing_loads
 
-Segments may be cones, carry an axial force, and stand between flexible couplings; `rotors.rolling` makes bearings from
-the geometry of rolling ones. The compiled parts load when a first question is asked. Lengths are m, frequencies and
-speeds rad/s. The frame is right-handed with z along the shaft; slopes and the gyroscopic sign are those of
-`rotors.whirl`.
+Sub-packages: ``rotors.model`` (description), ``rotors.transfer_matrix`` (Timoshenko segments, Wittrick-Williams count),
+``rotors.modes`` (undamped modes, modal rotor), ``rotors.whirl`` (damped gyroscopic whirl), ``rotors.analyses``,
+``rotors.rolling_bearings``, ``rotors.ross`` (file exchange), ``rotors.numerics``. The compiled kernels load with the
+first analysis. Lengths are in m, frequencies and speeds in rad/s. The frame is right-handed with z along the shaft.
 """
 
-from .attachment import add_attachment_modes, add_rod_attachment_modes
-from .axial import AxialModes, solve_axial_modes
-from .axis_spring import AxisSpring
-from .bearing import Bearing, Pedestal, RadialSupport
-from .buckling import buckling_factor
-from .campbell import Campbell, Crossing, campbell
-from .certificate import ModeCertificate
-from .critical import CriticalSpeeds, critical_speeds
-from .critical_map import CriticalSpeedMap, critical_speed_map
-from .errors import EquilibriumError, IncompleteModesError, RotorError
-from .harmonic import HarmonicResponse, Orbit, frequency_response, harmonic_response, orbit_of
-from .lateral import LateralModes, solve_lateral_modes
-from .loads import Bow, HarmonicForce, Unbalance
-from .material import ShaftMaterial, shear_coefficient
-from .modal import ModalRotor, modal_rotor
-from .participation import Participation, participation
-from .planes import RestFrequencies, rest_frequencies
-from .projection import whirl_basis
-from .ross_files import RossModel, read_ross, write_ross
-from .section import Section
-from .segment import Segment
-from .shaft import Disc, Rotor
-from .shaft_coupling import Coupling
-from .spatial_field import ShaftMotion
-from .statics import StaticDeflection, StaticForce, static_deflection
-from .torsion import TorsionalModes, solve_torsional_chain, solve_torsional_modes
-from .torsional_response import Torque, TorsionalDashpot, TorsionalResponse, torsional_response
-from .unbalance import BowShape, SynchronousResponse, bow_shape, unbalance_response
-from .whirl import MOSTLY_AXIAL, WhirlModes, WhirlSolver, solve_whirl
-from .whirl_energy import StrainShares
-
-__all__ = [
-    "MOSTLY_AXIAL",
-    "AxialModes",
-    "AxisSpring",
-    "Bearing",
-    "Bow",
-    "BowShape",
-    "Campbell",
-    "Coupling",
-    "CriticalSpeedMap",
-    "CriticalSpeeds",
-    "Crossing",
-    "Disc",
-    "EquilibriumError",
-    "HarmonicForce",
-    "HarmonicResponse",
-    "IncompleteModesError",
-    "LateralModes",
-    "ModalRotor",
-    "ModeCertificate",
-    "Orbit",
-    "Participation",
-    "Pedestal",
-    "RadialSupport",
-    "RestFrequencies",
-    "RossModel",
-    "Rotor",
-    "RotorError",
-    "Section",
-    "Segment",
-    "ShaftMaterial",
-    "ShaftMotion",
-    "StaticDeflection",
-    "StaticForce",
-    "StrainShares",
-    "SynchronousResponse",
-    "Torque",
-    "TorsionalDashpot",
-    "TorsionalModes",
-    "TorsionalResponse",
-    "Unbalance",
-    "WhirlModes",
-    "WhirlSolver",
-    "add_attachment_modes",
-    "add_rod_attachment_modes",
-    "bow_shape",
-    "buckling_factor",
-    "campbell",
-    "critical_speed_map",
-    "critical_speeds",
-    "frequency_response",
-    "harmonic_response",
-    "modal_rotor",
-    "orbit_of",
-    "participation",
-    "read_ross",
-    "rest_frequencies",
-    "shear_coefficient",
-    "solve_axial_modes",
-    "solve_lateral_modes",
-    "solve_torsional_chain",
-    "solve_torsional_modes",
-    "solve_whirl",
-    "static_deflection",
-    "torsional_response",
-    "unbalance_response",
-    "whirl_basis",
-    "write_ross",
-]
+from rotors.analyses.campbell import Campbell as Campbell
+from rotors.analyses.campbell import campbell as campbell
+from rotors.analyses.critical_speeds import critical_speeds as critical_speeds
+from rotors.analyses.rest_frequencies import rest_frequencies as rest_frequencies
+from rotors.analyses.statics import static_deflection as static_deflection
+from rotors.analyses.torsional_response import torsional_response as torsional_response
+from rotors.analyses.unbalance import unbalance_response as unbalance_response
+from rotors.errors import EquilibriumError as EquilibriumError
+from rotors.errors import IncompleteModesError as IncompleteModesError
+from rotors.errors import RotorError as RotorError
+from rotors.model.bearing import AxisSpring as AxisSpring
+from rotors.model.bearing import Bearing as Bearing
+from rotors.model.bearing import Pedestal as Pedestal
+from rotors.model.bearing import RadialSupport as RadialSupport
+from rotors.model.loads import Unbalance as Unbalance
+from rotors.model.material import ShaftMaterial as ShaftMaterial
+from rotors.model.segment import Coupling as Coupling
+from rotors.model.segment import Segment as Segment
+from rotors.model.shaft import Disc as Disc
+from rotors.model.shaft import Rotor as Rotor
+from rotors.modes.lateral import solve_lateral_modes as solve_lateral_modes
+from rotors.modes.modal_rotor import ModalRotor as ModalRotor
+from rotors.modes.modal_rotor import modal_rotor as modal_rotor
+from rotors.modes.torsional_and_axial import solve_axial_modes as solve_axial_modes
+from rotors.modes.torsional_and_axial import solve_torsional_modes as solve_torsional_modes
+from rotors.ross.reading import read_ross as read_ross
+from rotors.ross.writing import write_ross as write_ross
+from rotors.whirl.whirl_modes import WhirlModes as WhirlModes
+from rotors.whirl.whirl_modes import WhirlSolver as WhirlSolver
+from rotors.whirl.whirl_modes import solve_whirl as solve_whirl

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .errors import IncompleteModesError
+from rotors.errors import IncompleteModesError
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -35,9 +35,10 @@ class ModeCertificate:
         shape, both integrated along the shaft; zero of rigid motions. Whirl: largest last correction of a root of the
         exact equations, as a part of it.
     method
-        ``"wittrick-williams"``: the root count of `rotors.root_count`. ``"inertia"``: the same count of the Hermitian
-        dynamic stiffness (`rotors.whirl_count`). ``"winding"``: the argument principle (`rotors.winding`).
-        ``"crossings"``: crossings of a Campbell diagram, whose branches are proved.
+        ``"wittrick-williams"``: the root count of `rotors.transfer_matrix.wittrick_williams`. ``"inertia"``: the same
+        count of the Hermitian dynamic stiffness (`rotors.whirl.completeness`). ``"winding"``: the argument principle
+        (`rotors.whirl.argument_principle`). ``"crossings"``: crossings of a Campbell diagram, whose branches are
+        proved.
     orthonormality
         Largest entry of |Φᵀ M Φ − I|; zero of whirl, whose modes have no such products.
     """

@@ -11,10 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from coupling import Component, ContactConnector, CoupledSystem, TransientOutputs, TransientSettings, simulate
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector
 from coupling.periodic import periodic_response
-from coupling.settings import Method
+from coupling.time.settings import Method
 from gearwhine.cli import run_command
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 

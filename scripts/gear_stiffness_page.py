@@ -10,17 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from coupling.gears import (
-    Gear,
-    GearPairGeometry,
-    StiffnessModel,
-    iso6336_stiffness,
-    mesh_period_phases,
-    mesh_stiffness,
-    stiffness_model,
-    tooth_contact,
-)
-from coupling.gears.compliant_teeth import CompliantTeeth
+from coupling.gears import Gear, GearPairGeometry, StiffnessModel, mesh_stiffness, stiffness_model, tooth_contact
+from coupling.gears.loaded.transmission_error import mesh_period_phases
+from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 PAGE = Path(__file__).parent.parent / "docs" / "gear-stiffness.md"
 FIGURE = PAGE.parent / "images" / "gear-stiffness.png"

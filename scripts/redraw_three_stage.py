@@ -13,7 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import gearwhine as gw
-from coupling import amplitude_spectrum, spectrum_peaks
+from coupling import amplitude_spectrum
+from coupling.signals.spectrum import spectrum_peaks
 
 ORBIT_REVOLUTIONS = 5
 LAST_HZ = 1024.0

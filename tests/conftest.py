@@ -13,7 +13,8 @@ import numpy.typing as npt
 import pytest
 from hypothesis import settings
 
-from meshes import KINDS, ElementBlock, ElementKind, Mesh
+from meshes import ElementBlock, Mesh
+from meshes.elements import KINDS, ElementKind
 
 # The same examples in every run, however slow the machine; `--hypothesis-profile=explore` looks for new ones.
 settings.register_profile("fixed", deadline=None, derandomize=True)

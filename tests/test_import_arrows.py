@@ -112,6 +112,6 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
     files = [path for room in ALLOWED for path in sorted((ROOT / room).rglob("*.py")) if path.name != "__init__.py"]
     known = {module_of(path) for path in files}
     arrows = {module_of(path): imported_modules(path, known) for path in files}
-    assert sum(map(len, arrows.values())) > 1000
+    assert sum(map(len, arrows.values())) > 800
     assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == [["b", "c"]]
     assert circles(arrows) == []

@@ -10,12 +10,9 @@
 numba is imported only when a response is computed.
 """
 
-from coupling.periodic.base_period import common_period
-from coupling.periodic.continuation import response_curve
-from coupling.periodic.floquet import FloquetMultipliers
-from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.response_curve import Bifurcation, ResponseCurve
-from coupling.periodic.shooting import periodic_response
+from coupling.periodic.continuation import Bifurcation, ResponseCurve, response_curve
+from coupling.periodic.response import FloquetMultipliers, PeriodicResponse
+from coupling.periodic.shooting import common_period, periodic_response
 from coupling.periodic.superposition import (
     LONGEST_COMMON_PERIOD,
     ExcitationGroup,

@@ -2,14 +2,77 @@
 
 Amplitudes are kept as 2 m real numbers, the real parts and then the imaginary ones. c contacts, s Gauss points in an
 element, h harmonics, k sizes of elements.
+
+Gauss collocation on one element of time: Gauss points, polynomials and quadrature weights.
+
+Gauss points, here called places, and polynomials are in u, which runs from 0 to 1 over the element.
+
+Scratch arrays of a collocation element.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+
+ORDER = 5
+"""Places in an element; the error at its end is of order 2 ORDER + 1 in its size."""
+
+
+def _barycentric(points: FloatArray) -> FloatArray:
+    apart = points[:, None] - points[None, :] + np.eye(len(points))
+    return np.asarray(1.0 / apart.prod(axis=1))
+
+
+def _missing(places: FloatArray) -> FloatArray:
+    """Polynomials that vanish at the places and are 1 and 0 at the ends, and 0 and 1."""
+    whole = np.polynomial.polynomial.polyfromroots(places)
+    first = np.polynomial.polynomial.polymul(whole, [1.0, -1.0]) / whole[0]
+    last = np.polynomial.polynomial.polymul(whole, [0.0, 1.0]) / whole.sum()
+    return np.ascontiguousarray([first, last])
+
+
+PLACES: FloatArray = 0.5 * (1.0 + np.polynomial.legendre.leggauss(ORDER)[0])
+"""Gauss-Legendre points, ascending, shape (ORDER,)."""
+
+MONOMIALS: FloatArray = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, increasing=True)).T)
+"""Coefficients of u⁰, u¹, ... of the polynomial that is 1 at place j and 0 at the others, shape (ORDER, ORDER)."""
+
+GAUSS: FloatArray = np.ascontiguousarray(0.5 * np.polynomial.legendre.leggauss(ORDER)[1])
+"""Weights of an integral over the whole element, shape (ORDER,)."""
+
+POINTS: FloatArray = np.concatenate([[0.0], PLACES, [1.0]])
+"""Both ends and the places: interpolation points of a compression within an element, shape (ORDER + 2,)."""
+
+BARYCENTRIC: FloatArray = _barycentric(POINTS)
+"""Weights of the barycentric formula on these points."""
+
+INSIDE = 1e-6
+"""Part of an element by which evaluations at its ends stand inside, as events and switches are at the ends."""
+
+AT_ENDS: FloatArray = np.ascontiguousarray(np.vander([INSIDE, 1.0 - INSIDE], ORDER, increasing=True) @ MONOMIALS.T)
+"""Weights of the values at the places in their polynomial just inside both ends, shape (2, ORDER)."""
+
+MISSING: FloatArray = _missing(PLACES)
+"""Coefficients of the defect of such a polynomial for a defect of 1 at the start or the end, (2, ORDER + 2)."""
+
+
+BINOMIAL: FloatArray = np.array([[float(math.comb(j, k)) for k in range(ORDER)] for j in range(ORDER)])
+"""Coefficients of (u + v)ʲ, shape (ORDER, ORDER)."""
+
+AT_END: FloatArray = np.ascontiguousarray(MONOMIALS @ BINOMIAL)
+"""Coefficients of (u - 1)⁰, (u - 1)¹, ... of the polynomial that is 1 at place j, shape (ORDER, ORDER)."""
+
+
+def weights_to(part: FloatArray) -> FloatArray:
+    """Weights at the places of an integral from 0 to ``part``, shapes (e,) and (e, ORDER); Gauss's own for 1."""
+    powers = np.arange(1, ORDER + 1)
+    return np.asarray((part[:, None] ** powers / powers) @ MONOMIALS.T)
+
+
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
@@ -154,3 +217,68 @@ def powers_room(size: int, n: int, s: int) -> PowersRoom:
     """Room for as many elements, with ``size`` amplitudes each, as BLAS multiplies in one thread."""
     batch = max(1, min(_LARGEST_BATCH, _BY_ONE_THREAD // (s * size * n)))
     return PowersRoom(np.zeros((batch * s, size)), np.zeros((batch * s, n)), np.zeros(size), np.zeros((batch, s)))
+
+
+class Work(NamedTuple):
+    """Scratch arrays: n = s c unknown forces of an element, m amplitudes, c contacts, s places."""
+
+    base: FloatArray  # (2 n,) compressions and rates without the excess forces
+    excess: FloatArray  # (n,)
+    move: FloatArray  # (n,) Newton's last step
+    slope: FloatArray  # (n,) of the excess by compression ...
+    rate_slope: FloatArray  # (n,) ... and by rate
+    delta: FloatArray  # (s + 2, c) compressions at the places and both ends
+    rate: FloatArray  # (s + 2, c)
+    looked: FloatArray  # (4, c) compressions and rates just after the start, and just before the end
+    laws: FloatArray  # (n + 2 c + 1, 6) at the places, just after the start, at the end, and one for trials
+    matrix: FloatArray  # (n, n)
+    right: FloatArray  # (n, 1)
+    end: FloatArray  # (2 m,) amplitudes
+    end_error: FloatArray  # (2 m,)
+    measure: FloatArray  # (2,)
+    cut_decay: FloatArray  # (1, 2, m) to a part of an element
+    cut_source: FloatArray  # (1, n, 2 m)
+    integral: ComplexArray  # (s + 2,)
+    values: ComplexArray  # (s,)
+    coefficient: FloatArray  # (s, c) of the excess as a power series
+    term: FloatArray  # (2 m,) of the amplitudes' power series
+    shares: FloatArray  # (n, 2 n) of the slopes in the forces
+    feedback: FloatArray  # (n, 2 m) forces by disturbances; of no rows without disturbances ...
+    sent: FloatArray  # (n, 2 m) ... amplitudes at the end by these forces ...
+    decay: FloatArray  # (2, m) ... and the decay of the disturbances
+    moved: FloatArray  # (n,)
+    active: IntArray  # (n,) rows of forces that disturbances change
+
+
+def element_work(m: int, s: int, c: int, *, varied: bool = False) -> Work:
+    """Scratch arrays for elements of some shape, and for their disturbances."""
+    n = s * c
+    rows = n if varied else 0
+    return Work(
+        base=np.zeros(2 * n),
+        excess=np.zeros(n),
+        move=np.zeros(n),
+        slope=np.zeros(n),
+        rate_slope=np.zeros(n),
+        delta=np.zeros((s + 2, c)),
+        rate=np.zeros((s + 2, c)),
+        looked=np.zeros((4, c)),
+        laws=np.zeros((n + 2 * c + 1, 6)),
+        matrix=np.zeros((n, n)),
+        right=np.zeros((n, 1)),
+        end=np.zeros(2 * m),
+        end_error=np.zeros(2 * m),
+        measure=np.zeros(2),
+        cut_decay=np.zeros((1, 2, m)),
+        cut_source=np.zeros((1, n, 2 * m)),
+        integral=np.zeros(s + 2, dtype=np.complex128),
+        values=np.zeros(s, dtype=np.complex128),
+        coefficient=np.zeros((s, c)),
+        term=np.zeros(2 * m),
+        shares=np.zeros((rows, 2 * n)),
+        feedback=np.zeros((rows, 2 * m)),
+        sent=np.zeros((rows, 2 * m)),
+        decay=np.zeros((2, m)),
+        moved=np.zeros(n),
+        active=np.zeros(n, dtype=np.int64),
+    )

@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import PeriodicError
+from coupling.machine.coupled_system import CoupledSystem
 from coupling.periodic.orbit import Elements, Pass, one_pass
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import Problem, problem, response_of
-from coupling.system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 

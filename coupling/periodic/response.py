@@ -1,22 +1,88 @@
-"""Periodic response: the motion over one period with its proof, and its record at sensors, gears and bearings."""
+"""Periodic response: the motion over one period with its proof, and its record at sensors, gears and bearings.
+
+Floquet multipliers: stability of a periodic motion.
+
+Summary of a periodic motion on a branch: its figures, and the states at the starts of its segments.
+"""
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
-from coupling.kernel_arrays import Contacts
-from coupling.periodic.arrays import Trace
-from coupling.periodic.collocation import MONOMIALS, ORDER, weights_to
-from coupling.periodic.element_work import element_work
-from coupling.periodic.floquet import FloquetMultipliers
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.periodic.arrays import MONOMIALS, ORDER, Trace, element_work, weights_to
 from coupling.periodic.linear_part import LinearPart
-from coupling.settings import MotionRecord, TransientOutputs
-from coupling.system import CoupledSystem
+from coupling.time.kernel_arrays import Contacts
+from coupling.time.settings import MotionRecord, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+Loss = Literal["fold", "period doubling", "Neimark-Sacker"]
+
+STABLE_WITHIN = 1e-7
+"""Tolerance of a stable multiplier beyond one, for the rounding of an undamped motion."""
+
+
+@dataclass(frozen=True, eq=False)
+class FloquetMultipliers:
+    """Eigenvalues of the monodromy, the largest first.
+
+    Attributes
+    ----------
+    values : ndarray of complex, shape (2 N,)
+        A disturbance along the eigenvector number i is multiplied by values[i] every period.
+    period : float
+        [s].
+    """
+
+    values: ComplexArray
+    period: float
+
+    @property
+    def exponents(self) -> ComplexArray:
+        """ln(multiplier) / period [1/s], the frequency within half the driving one; -inf for a multiplier of zero."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(self.values.astype(np.complex128)) / self.period)
+
+    @property
+    def largest(self) -> float:
+        """Largest modulus; 0 where there is nothing to disturb."""
+        return float(np.abs(self.values).max(initial=0.0))
+
+    @property
+    def stable(self) -> bool:
+        """Whether no disturbance grows."""
+        return self.largest <= 1.0 + STABLE_WITHIN
+
+    @property
+    def growing(self) -> int:
+        """Number of multipliers outside the unit circle."""
+        return int(np.count_nonzero(np.abs(self.values) > 1.0 + STABLE_WITHIN))
+
+    @property
+    def leaving(self) -> Loss | None:
+        """Kind of instability, by the place where the largest multiplier left the unit circle; None if stable.
+
+        At +1 the motion has a fold and jumps; at -1 a motion of twice the period replaces it; a pair elsewhere brings a
+        second frequency (Neimark and Sacker).
+        """
+        if self.stable:
+            return None
+        worst = self.values[np.argmax(np.abs(self.values))]
+        if abs(worst.imag) > 1e-9 * abs(worst):
+            return "Neimark-Sacker"
+        return "fold" if worst.real > 0.0 else "period doubling"
+
+
+def multipliers(monodromy: FloatArray, period: float) -> FloquetMultipliers:
+    """Eigenvalues of a monodromy matrix."""
+    values = np.linalg.eigvals(monodromy).astype(np.complex128)
+    return FloquetMultipliers(values[np.argsort(-np.abs(values), kind="stable")], period)
+
 
 _LOOKS = 16  # at each element for the peak
 _MAY_MISS = 0.02  # error of the peak of a force's polynomial, relative to its range in an element
@@ -155,12 +221,12 @@ class PeriodicResponse:
         return np.asarray(np.einsum("es,esc->c", weights, values) / self.period)
 
     def _amplitudes(self, times: FloatArray) -> FloatArray:
-        from coupling.periodic.dense import amplitudes_at
+        from coupling.periodic.integration_kernels import amplitudes_at
 
         return np.asarray(amplitudes_at(self.part.reference, self.trace, times))
 
     def _contacts(self, times: FloatArray, amplitudes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        from coupling.periodic.dense import forces_at
+        from coupling.periodic.integration_kernels import forces_at
 
         reference = self.part.reference
         delta, rate = amplitudes @ reference.displacement.T, amplitudes @ reference.rate.T
@@ -181,3 +247,77 @@ def _near_peaks(trace: Trace) -> npt.NDArray[np.int64]:
     highest = np.maximum(along.max(axis=1), top[near])
     reach = highest + _MAY_MISS * (highest - bottom[near])
     return near[np.any(reach > np.maximum(top.max(axis=0), highest.max(axis=0, initial=0.0)), axis=1)]
+
+
+@dataclass(frozen=True, eq=False)
+class BranchMotion:
+    """Summary of a :class:`coupling.PeriodicResponse`; n coordinates, c contacts, K segments.
+
+    The whole motion takes a hundred times the memory; :meth:`coupling.ResponseCurve.motion` computes it again.
+
+    Attributes
+    ----------
+    period, floquet, residual, error, elements, switches, level, newton_steps
+        Of the response.
+    displacements, velocities : ndarray, shape (K, n)
+        At the starts of the segments, the first at t = 0.
+    mean_force, peak_force : ndarray, shape (c,)
+        Of each contact over the period [N].
+    mean_compression, rms_compression : ndarray, shape (c,)
+        The mean, and the root mean square about it [m].
+    contact_loss : ndarray, shape (c,)
+        Part of the period in which the flanks are apart.
+    """
+
+    period: float
+    floquet: FloquetMultipliers
+    residual: float
+    error: float
+    elements: int
+    switches: int
+    level: int
+    newton_steps: int
+    displacements: FloatArray = field(repr=False)
+    velocities: FloatArray = field(repr=False)
+    mean_force: FloatArray
+    peak_force: FloatArray
+    mean_compression: FloatArray
+    rms_compression: FloatArray
+    contact_loss: FloatArray
+
+    @property
+    def stable(self) -> bool:
+        """Whether no small disturbance grows."""
+        return self.floquet.stable
+
+    @property
+    def displacement(self) -> FloatArray:
+        """At t = 0, shape (n,)."""
+        return np.asarray(self.displacements[0])
+
+    @property
+    def velocity(self) -> FloatArray:
+        """At t = 0, shape (n,)."""
+        return np.asarray(self.velocities[0])
+
+
+def motion_summary(response: PeriodicResponse, segments: int) -> BranchMotion:
+    """Summary of a response whose period is cut into some segments."""
+    displacements, velocities = response.at_nodes(segments)
+    return BranchMotion(
+        period=response.period,
+        floquet=response.floquet,
+        residual=response.residual,
+        error=response.error,
+        elements=response.elements,
+        switches=response.switches,
+        level=response.level,
+        newton_steps=response.newton_steps,
+        displacements=displacements,
+        velocities=velocities,
+        mean_force=response.mean_force,
+        peak_force=response.peak_force,
+        mean_compression=response.mean_compression,
+        rms_compression=response.rms_compression,
+        contact_loss=response.contact_loss,
+    )

@@ -11,8 +11,8 @@ law, contact loss included; every other mesh h is linear about its mean load,
 
     F_h = F0_h + k_h (delta_h - delta0_h) + c_h delta_h',
 
-with the mean F0 and k of :mod:`coupling.mean_mesh`; q0 is the rest position of the machine with all meshes so. A. H.
-Nayfeh and D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapters 2 and 5.
+with the mean F0 and k of :mod:`coupling.statics.mean_mesh`; q0 is the rest position of the machine with all meshes so.
+A. H. Nayfeh and D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapters 2 and 5.
 
 The sum satisfies every linear part of the equations of motion exactly. What it leaves is a force in each mesh,
 
@@ -29,15 +29,15 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector import ContactConnector
 from coupling.errors import CouplingError, PeriodicError
-from coupling.gears import ToothContact, piecewise
-from coupling.mean_mesh import MeanMesh, mean_meshes
-from coupling.periodic.base_period import common_period, driving_frequencies
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.connectors import ContactConnector
+from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import periodic_response
-from coupling.step import contact_arrays
-from coupling.system import CoupledSystem, HarmonicLoad
+from coupling.periodic.shooting import common_period, driving_frequencies, periodic_response
+from coupling.statics.mean_mesh import MeanMesh, mean_meshes
+from coupling.time.step_matrices import contact_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -112,8 +112,8 @@ class SuperposedResponse:
     @cached_property
     def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Compression, force by the law and assumed force over the phases of all groups, shape (s, c) each."""
-        from coupling.periodic.dense import forces_at
-        from coupling.periodic.element_work import element_work
+        from coupling.periodic.arrays import element_work
+        from coupling.periodic.integration_kernels import forces_at
 
         slowest = max(motion.response.period for motion in self.motions)
         times = slowest * _SPACING * np.arange(_PHASES, dtype=np.float64)
@@ -305,7 +305,7 @@ def _linear_mesh(contact: ContactConnector, mean: MeanMesh) -> ContactConnector:
 
 def _rest_position(linear: CoupledSystem) -> FloatArray:
     """q0, shape (n,): under the constant load, all meshes linear; zero in motions that nothing resists."""
-    from coupling.statics import static_equilibrium
+    from coupling.statics.static_equilibrium import static_equilibrium
 
     still = tuple(replace(contact, errors=np.zeros((0, 3))) for contact in linear.contacts)
     return static_equilibrium(replace(linear, contacts=still))

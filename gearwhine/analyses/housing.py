@@ -6,25 +6,26 @@ from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
-from gearwhine.comparison_files import draw_comparison_figures, write_comparison, write_response_correlation
-from gearwhine.doubtful import warning
-from gearwhine.drawings import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
+from gearwhine.from_case import mesh as geometry_stage
+from gearwhine.from_case import mesh_health
+from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
+from gearwhine.output.warnings import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import COMPARISON, comparison_document, responses_document, survey_document
+from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison, write_response_correlation
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
-from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import geometry as geometry_stage
-from gearwhine.stages import housing as housing_stage
-from gearwhine.stages import mesh_health, survey_plan
-from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.response_comparison import ResponseCorrelation, compare_responses_document
-from housing import Comparison
+from gearwhine.solve import comparison as comparison_stage
+from gearwhine.solve import housing_modes as housing_stage
+from gearwhine.solve import survey_plan
+from gearwhine.solve.comparison import ResponseCorrelation, compare_responses_document
+from gearwhine.solve.housing_modes import SolvedHousing
+from housing.correlation.comparison import Comparison
 from meshes import Mesh
 
 if TYPE_CHECKING:
-    from gearwhine.stages.survey_plan import PlannedSurvey
-    from gearwhine.stages.updating import SolvedUpdate
+    from gearwhine.solve.survey_plan import PlannedSurvey
+    from gearwhine.solve.updating import SolvedUpdate
 
 
 def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Result[Mesh]:
@@ -215,8 +216,8 @@ def update(
         Where the case has nothing to fit, or its housing cannot be solved.
     """
     from gearwhine.results.update import update_arrays, update_document
-    from gearwhine.stages import updating
-    from gearwhine.stages.updated_case import updated_case
+    from gearwhine.solve import updating
+    from gearwhine.solve.updating import updated_case
 
     solved = updating.update_housing(case, progress, null=null, held_back=held_back)
 

@@ -7,36 +7,33 @@ from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, swept_keys
-from gearwhine.doubtful import add_warnings, joined, warning
+from gearwhine.from_case import gear_pairs as gear_stage
+from gearwhine.from_case import machine as machine_stage
 from gearwhine.output.dataset import labelled
+from gearwhine.output.warnings import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.rotors import ROTORS, rotors_document
-from gearwhine.results.steady import STEADY, steady_document
+from gearwhine.results.steady_state import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
-from gearwhine.stages import (
-    gear_analysis,
-    gear_torques,
-    relief_aims,
-)
-from gearwhine.stages import gears as gear_stage
-from gearwhine.stages import machine as machine_stage
-from gearwhine.stages import rotors as rotor_stage
-from gearwhine.stages import steady as steady_stage
-from gearwhine.stages import system as system_stage
-from gearwhine.stages.gear_analysis import PairAnalysis
-from gearwhine.stages.housing import SolvedHousing
-from gearwhine.stages.instability import machine_warnings, unstable_modes_warnings
-from gearwhine.stages.rotors import SolvedRotor
-from gearwhine.stages.steady import SolvedSteady
-from gearwhine.stages.system import SolvedSystem
-from gearwhine.stages.uncertainty import add_uncertainty
+from gearwhine.solve import coupled_system as system_stage
+from gearwhine.solve import gear_pairs as gear_analysis
+from gearwhine.solve import gear_pairs as gear_torques
+from gearwhine.solve import relief_aims
+from gearwhine.solve import rotors as rotor_stage
+from gearwhine.solve import steady_state as steady_stage
+from gearwhine.solve.coupled_system import SolvedSystem
+from gearwhine.solve.gear_pairs import PairAnalysis
+from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.plausibility import add_uncertainty, machine_warnings, unstable_modes_warnings
+from gearwhine.solve.rotors import SolvedRotor
+from gearwhine.solve.steady_state import SolvedSteady
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.sweep.conduct import SweptPoint
+    from gearwhine.sweep.run import SweptPoint
 
 
 def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent) -> Result[tuple[SolvedRotor, ...]]:

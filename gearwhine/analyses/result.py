@@ -9,10 +9,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from gearwhine.analyses.results_folder import store_results
 from gearwhine.case import Case
-from gearwhine.doubtful import add_warnings
 from gearwhine.output import COMMANDS, finite, json_text, staging
+from gearwhine.output.store import store_results
+from gearwhine.output.warnings import add_warnings
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearwhine.output.dataset import LabelledArrays
-    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.solve.housing_modes import SolvedHousing
 
 # Lists of parts that are proved one by one; modes and lines of a spectrum have one proof together.
 _LISTED = ("rotors", "pairs", "motions")

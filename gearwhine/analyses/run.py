@@ -12,52 +12,43 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
-from gearwhine.comparison_files import draw_comparison_figures, write_comparison
-from gearwhine.doubtful import add_warnings, joined
-from gearwhine.drawings import draw_modes
-from gearwhine.march_files import stored_record
+from gearwhine.from_case import gear_pairs as gear_stage
+from gearwhine.from_case import machine as machine_stage
+from gearwhine.from_case.machine import require_machine
+from gearwhine.mode_pictures import draw_modes
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
+from gearwhine.output.warnings import add_warnings, joined
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import comparison_document
+from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
-from gearwhine.results.run import (
-    RUN_SIGNATURE,
-    TRANSIENT,
-    HistoryStream,
-    run_signature_document,
-    transient_document,
-)
+from gearwhine.results.run import RUN_SIGNATURE, TRANSIENT, HistoryStream, run_signature_document, transient_document
 from gearwhine.results.system import SYSTEM, system_document
-from gearwhine.stages import comparison as comparison_stage
-from gearwhine.stages import gear_analysis
-from gearwhine.stages import gears as gear_stage
-from gearwhine.stages import housing as housing_stage
-from gearwhine.stages import machine as machine_stage
-from gearwhine.stages import rotors as rotor_stage
-from gearwhine.stages import run_up as run_up_stage
-from gearwhine.stages import signature as signature_stage
-from gearwhine.stages import system as system_stage
-from gearwhine.stages import transient as transient_stage
-from gearwhine.stages.bearing_loads import bearing_load_warnings
-from gearwhine.stages.housing import write_mode_cache
-from gearwhine.stages.instability import unstable_modes_warnings
-from gearwhine.stages.kept_modes import MODE_CACHE_FILE
-from gearwhine.stages.machine import require_machine
-from gearwhine.stages.uncertainty import add_uncertainty
+from gearwhine.solve import comparison as comparison_stage
+from gearwhine.solve import coupled_system as system_stage
+from gearwhine.solve import gear_pairs as gear_analysis
+from gearwhine.solve import housing_modes as housing_stage
+from gearwhine.solve import rotors as rotor_stage
+from gearwhine.solve import run_up as run_up_stage
+from gearwhine.solve import signature as signature_stage
+from gearwhine.solve import transient as transient_stage
+from gearwhine.solve.housing_modes import MODE_CACHE_FILE, write_mode_cache
+from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, unstable_modes_warnings
+from gearwhine.solve.transient_record import stored_record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.stages.gear_analysis import PairAnalysis
-    from gearwhine.stages.housing import SolvedHousing
-    from gearwhine.stages.rotors import SolvedRotor
-    from gearwhine.stages.run_up import RunSignature
-    from gearwhine.stages.signature import SolvedSignature
-    from gearwhine.stages.system import SolvedSystem
-    from gearwhine.stages.transient import SolvedTransient
+    from gearwhine.solve.coupled_system import SolvedSystem
+    from gearwhine.solve.gear_pairs import PairAnalysis
+    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.solve.rotors import SolvedRotor
+    from gearwhine.solve.run_up import RunSignature
+    from gearwhine.solve.signature import SolvedSignature
+    from gearwhine.solve.transient import SolvedTransient
     from housing.correlation import Comparison
 
 
@@ -246,7 +237,7 @@ def run_into(
 
 def _require_renderer() -> None:
     from housing.errors import RendererUnavailableError
-    from housing.renderer import find_renderer
+    from housing.pictures.scene import find_renderer
 
     try:
         find_renderer()

@@ -20,16 +20,24 @@ What the room offers:
 Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in rad/s; frequencies are in Hz.
 """
 
-from gearwhine.case.analysed_speeds import campbell_speeds, response_speeds, table_range, whirl_speeds
-from gearwhine.case.analysis import (
-    Probe,
-    RotorAnalysis,
-    StiffnessMap,
-    TorsionalAnalysis,
-    TorsionProbe,
-    UnbalanceResponse,
+from gearwhine.case.bearings import (
+    Bearing,
+    BearingLoad,
+    Catalogue,
+    MatrixDamping,
+    MatrixStiffness,
+    Pedestal,
+    RadialDamping,
+    RadialStiffness,
+    RollingCatalogue,
+    RollingGeometry,
+    RollingStiffness,
+    StopStiffness,
 )
-from gearwhine.case.attachments import (
+from gearwhine.case.box import Box, Feet, Walls
+from gearwhine.case.errors import CaseError, Problem, did_you_mean
+from gearwhine.case.fields import Patch
+from gearwhine.case.fixtures import (
     AxialDashpots,
     AxialSprings,
     Bushing,
@@ -41,65 +49,65 @@ from gearwhine.case.attachments import (
     SixSprings,
     amounts,
 )
-from gearwhine.case.base_motion import Base, BaseHarmonic, BaseHistory
-from gearwhine.case.box import Box, Feet, Walls
-from gearwhine.case.bundled import bundled_case, bundled_cases
-from gearwhine.case.dump import case_document, dump_case
-from gearwhine.case.flanks import Fault, GearErrors, HelixErrors, ProfileErrors, Relief
-from gearwhine.case.gears import Gear, GearPair, ToothStiffness
-from gearwhine.case.housing import (
-    Boss,
-    CadFile,
-    Dashpots,
-    Housing,
-    Material,
-    MeshFile,
-    Seat,
-    Sensor,
-    Springs,
-    Support,
+from gearwhine.case.gears import (
+    Fault,
+    Gear,
+    GearErrors,
+    GearPair,
+    HelixErrors,
+    ProfileErrors,
+    Relief,
+    ToothStiffness,
+    shaft_of,
 )
-from gearwhine.case.load import LoadedCase, load_case, parse_case
-from gearwhine.case.measured import Align, Landmark, Measured
-from gearwhine.case.model import Case
-from gearwhine.case.motion import (
-    AppliedTorque,
-    applied_torques,
-    gears_on,
-    mesh_frequencies,
-    pair_torques,
-    rotor_speeds,
-    speed_ratios,
+from gearwhine.case.housing import Boss, CadFile, Dashpots, Housing, Material, MeshFile, Seat, Sensor, Springs, Support
+from gearwhine.case.load import LoadedCase, bundled_case, bundled_cases, load_case, parse_case
+from gearwhine.case.measured import Align, Landmark, Measured, ModelModes, Update, UpdateParameter
+from gearwhine.case.model import Case, case_document, dump_case, require
+from gearwhine.case.operation import (
+    Base,
+    BaseHarmonic,
+    BaseHistory,
+    Operation,
+    Output,
+    Run,
+    SpeedRange,
+    Sweep,
+    TorqueHistory,
+    TorqueLine,
+    TorqueRipple,
+    Transient,
 )
-from gearwhine.case.patches import Patch
-from gearwhine.case.problems import CaseError, Problem, did_you_mean
-from gearwhine.case.require import require
-from gearwhine.case.rolling import BearingLoad, Catalogue, RollingCatalogue, RollingGeometry
 from gearwhine.case.rotors import (
     Bow,
     Coupling,
     CouplingSegment,
     Disc,
+    Probe,
     Rotor,
+    RotorAnalysis,
     RoundDisc,
     Segment,
+    StiffnessMap,
+    TorsionalAnalysis,
+    TorsionProbe,
     Unbalance,
+    UnbalanceResponse,
 )
-from gearwhine.case.running import Operation, Output, SpeedRange, Sweep, Transient
-from gearwhine.case.shafts import (
-    Bearing,
-    MatrixDamping,
-    MatrixStiffness,
-    Pedestal,
-    RadialDamping,
-    RadialStiffness,
-    RollingStiffness,
-    StopStiffness,
+from gearwhine.case.speeds_and_torques import (
+    AppliedTorque,
+    applied_torques,
+    campbell_speeds,
+    gears_on,
+    mesh_frequencies,
+    pair_torques,
+    response_speeds,
+    rotor_speeds,
+    speed_ratios,
+    table_range,
+    whirl_speeds,
 )
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
-from gearwhine.case.torques import Run, TorqueHistory, TorqueLine, TorqueRipple
-from gearwhine.case.train import shaft_of
-from gearwhine.case.updating import ModelModes, Update, UpdateParameter
 
 __all__ = [
     "SPEED_KEY",

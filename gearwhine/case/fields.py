@@ -1,17 +1,35 @@
-"""Field types of a case: quantities with unit and range, names, files, and the base class of all tables."""
+"""Field types of a case: quantities with unit and range, names, files, and the base class of all tables.
+
+Directions in a case: an axis by its letter, or a vector of any length.
+
+Coefficients over speed: one quantity, or a list with one for each speed of a table.
+
+Patches of the housing surface: a named surface, or the surface in a box or on a plane.
+"""
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, ValidationInfo
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    GetCoreSchemaHandler,
+    Tag,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearwhine.case import units
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
+from housing import Patch as HousingPatch
 
 MOST_ENTRIES = 10_000
 """Most entries a list may hold; beyond it a case is a mistake, not a gearbox."""
@@ -231,3 +249,115 @@ class Table(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", populate_by_name=True, hide_input_in_errors=True, protected_namespaces=()
     )
+
+
+UnitVector = tuple[float, float, float]
+
+
+def _direction_form(value: Any) -> str:
+    return "~list" if isinstance(value, (list, tuple)) else "~axis"
+
+
+def _has_length(vector: UnitVector) -> UnitVector:
+    if not 1e-100 < math.hypot(*vector) < 1e100:
+        raise wrong("a vector with a direction")
+    return vector
+
+
+Vector = Annotated[tuple[PlainNumber, PlainNumber, PlainNumber], AfterValidator(_has_length)]
+"""A vector of some length."""
+
+Direction = Annotated[
+    Annotated[Literal["x", "y", "z"], Tag("~axis")] | Annotated[Vector, Tag("~list")],
+    Discriminator(_direction_form),
+]
+"""'x', 'y', 'z' or a vector of some length."""
+
+
+def unit_vector(direction: str | UnitVector) -> UnitVector:
+    """Return a direction as a unit vector."""
+    if isinstance(direction, str):
+        return (float(direction == "x"), float(direction == "y"), float(direction == "z"))
+    x, y, z = direction
+    length = math.hypot(x, y, z)
+    return (x / length, y / length, z / length)
+
+
+Coefficient = float | tuple[float, ...]
+"""A constant, or one value for each of some speeds."""
+
+
+@dataclass(frozen=True)
+class OverSpeed:
+    """Validates a quantity, or a list with one for each speed of a table; to stand in `Annotated`."""
+
+    each: Quantity
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Schema for pydantic: validation and serialisation of this field."""
+        writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
+        return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
+
+    @property
+    def expected(self) -> str:
+        """Expected value, in words."""
+        return self.each.expected
+
+    def write(self, given: Coefficient) -> str | float | list[str | float]:
+        """Return the quantity, or each of the list, as text with its unit."""
+        return [self.each.write(number) for number in given] if isinstance(given, tuple) else self.each.write(given)
+
+    def validate(self, value: object) -> Coefficient:
+        """Return the quantity or quantities in SI, or raise pydantic's error with what was expected and where."""
+        if isinstance(value, (list, tuple)):
+            if len(value) > MOST_ENTRIES:
+                raise wrong(f"at most {MOST_ENTRIES} entries")
+            return tuple(self.each.validate_at(entry, place) for place, entry in enumerate(value))
+        return self.each.validate(value)
+
+
+class Plane(Table):
+    """A plane at right angles to an axis, where it meets it [m]."""
+
+    axis: Literal["x", "y", "z"]
+    at: Length
+
+
+class Patch(Table):
+    """Patch of the housing surface for a fixture: exactly one of the keys in `places`."""
+
+    places: ClassVar[tuple[str, ...]] = ("box", "surface", "plane")
+    """The keys that can say where; exactly one of them must."""
+
+    box: tuple[Point, Point] | None = None
+    surface: Name | None = None
+    plane: Plane | None = None
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Patch:
+        if sum(getattr(self, key) is not None for key in self.places) != 1:
+            *first, last = (f"'{key}'" for key in self.places)
+            raise wrong(f"exactly one of {', '.join(first)} and {last}")
+        return self
+
+    @property
+    def corners(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """The box's corners of least and of greatest x, y, z [m], whichever two opposite ones were given."""
+        if self.box is None:
+            return None
+        (x1, y1, z1), (x2, y2, z2) = self.box
+        return (min(x1, x2), min(y1, y2), min(z1, z2)), (max(x1, x2), max(y1, y2), max(z1, z2))
+
+    @property
+    def point_and_normal(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """A point of the plane [m] and its unit normal."""
+        if self.plane is None:
+            return None
+        x, y, z = (float(axis == self.plane.axis) for axis in "xyz")
+        return (x * self.plane.at, y * self.plane.at, z * self.plane.at), (x, y, z)
+
+    def build_patch(self) -> HousingPatch:
+        """The patch of the mesh's surface."""
+        from housing import Patch as BuiltPatch
+
+        return BuiltPatch(self.surface, self.corners, self.point_and_normal)

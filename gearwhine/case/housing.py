@@ -1,19 +1,19 @@
 """Housing of a case, `[housing]`: geometry, seats, supports, sensors and fixtures; and the materials.
 
 Attributes are named as the keys of the case file and are in SI; frequencies are in Hz.
+
+Material regions of the housing, `[[housing.region]]`.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator, model_validator
 
 from gearwhine.case import units
-from gearwhine.case.attachments import Joint, LumpedMass, Mount
 from gearwhine.case.box import FACES, FOOT_SURFACES, Box
-from gearwhine.case.directions import Direction, UnitVector, unit_vector
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
@@ -21,23 +21,41 @@ from gearwhine.case.fields import (
     DampingFromZero,
     DampingRatio,
     Density,
+    Direction,
     ElasticModulus,
     Name,
+    Patch,
     Point,
     PositiveFrequency,
     PositiveLength,
     Quantity,
     StiffnessFromZero,
     Table,
+    UnitVector,
     Whole,
+    unit_vector,
     wrong,
 )
-from gearwhine.case.patches import Patch
-from gearwhine.case.region import Region
+from gearwhine.case.fixtures import Joint, LumpedMass, Mount
 from gearwhine.case.units import QuantityError, parse_quantity
+from housing import Seat as HousingSeat
+from housing import Sensor as HousingSensor
+from housing import Support as HousingSupport
 
-if TYPE_CHECKING:
-    import housing
+
+class Region(Table):
+    """The elements of a named volume of the mesh, or those whose middle is in a box [m], and their material."""
+
+    name: Name
+    material: Name
+    volume: Name | None = None
+    box: tuple[Point, Point] | None = None
+
+    @model_validator(mode="after")
+    def _one_of_each(self) -> Region:
+        if (self.box is None) == (self.volume is None):
+            raise wrong("exactly one of 'volume' and 'box'")
+        return self
 
 
 def _shape(value: Any) -> str:
@@ -193,7 +211,7 @@ class Seat(Table):
             raise wrong(f"a boss wider than its bore of {self.diameter:g} m", "boss", "diameter")
         return self
 
-    def build(self) -> housing.Seat:
+    def build(self) -> HousingSeat:
         """The seat, by its surface in the mesh."""
         from housing import Seat as BuiltSeat
 
@@ -241,7 +259,7 @@ class Support(Patch):
         """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
         return self.fixed is not None or self.stiffness is not None
 
-    def build(self) -> housing.Support:
+    def build(self) -> HousingSupport:
         """The support."""
         from housing import Support as BuiltSupport
 
@@ -269,7 +287,7 @@ class Sensor(Table):
         """The direction as a unit vector; None where it is the surface normal."""
         return None if self.direction is None else unit_vector(self.direction)
 
-    def build(self) -> housing.Sensor:
+    def build(self) -> HousingSensor:
         """The sensor."""
         from housing import Sensor as BuiltSensor
 

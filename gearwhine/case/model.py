@@ -1,21 +1,35 @@
-"""Case: all tables of the file, in SI."""
+"""Case: all tables of the file, in SI.
+
+Readable tables of a case, sound or not, so that the checks see all of them at once.
+
+Required tables: the error for a table that a command needs and a case lacks.
+
+Resolved case as TOML: defaults written out, every quantity with its unit.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Annotated, Protocol, TypeVar
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 
-from pydantic import Field
+import tomli_w
+from pydantic import Field, ValidationError
 
-from gearwhine.case.analysis import RotorAnalysis
+from gearwhine.case.bearings import Bearing
+from gearwhine.case.box import Box
+from gearwhine.case.errors import NOTHING, CaseError, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table
-from gearwhine.case.gears import Gear, GearPair
-from gearwhine.case.housing import Housing, Material, Seat
-from gearwhine.case.measured import Measured
-from gearwhine.case.rotors import Rotor
-from gearwhine.case.running import Operation, Sweep, Transient
-from gearwhine.case.shafts import Bearing
-from gearwhine.case.updating import Update
+from gearwhine.case.fixtures import Joint, LumpedMass, Mount
+from gearwhine.case.gears import Gear, GearPair, readable_pairs, train_of_pairs
+from gearwhine.case.housing import Housing, Material, Seat, Sensor, Support
+from gearwhine.case.measured import Measured, Update
+from gearwhine.case.operation import Operation, Sweep, Transient
+from gearwhine.case.rotors import Rotor, RotorAnalysis
+
+if TYPE_CHECKING:
+    from coupling.machine.gear_train import GearTrain
 
 Text = Annotated[str, Field(max_length=10_000)]
 
@@ -92,3 +106,188 @@ class Case(Table):
         if name is None and len(self.material) == 1:
             return next(iter(self.material.values()))
         return self.material[name] if name is not None else None
+
+
+AnyTable = TypeVar("AnyTable", bound=Table)
+Entries = tuple[tuple[int, AnyTable], ...]
+"""The entries of a list that could be read, each with its place in the list."""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """The readable parts of a case.
+
+    Attributes
+    ----------
+    document
+        The nested tables and lists of the case file.
+    broken
+        Top-level tables in which something could not be read; what they lack proves nothing.
+    box, operation, transient, sweep, analysis
+        None where there is none or it could not be read.
+    """
+
+    document: Mapping[str, Any]
+    broken: frozenset[str]
+    box: Box | None
+    seats: Entries[Seat]
+    supports: Entries[Support]
+    mounts: Entries[Mount]
+    joints: Entries[Joint]
+    masses: Entries[LumpedMass]
+    sensors: Entries[Sensor]
+    rotors: Entries[Rotor]
+    bearings: Entries[Bearing]
+    gears: Entries[Gear]
+    gear_pairs: Entries[GearPair]
+    operation: Operation | None
+    transient: Transient | None
+    sweep: Sweep | None
+    analysis: RotorAnalysis | None
+
+    @cached_property
+    def readable_pairs(self) -> list[tuple[int, Gear, Gear]]:
+        """Driver and driven gear of each pair on two shafts, with its place in the list."""
+        return readable_pairs([gear for _, gear in self.gears], self.gear_pairs)
+
+    @cached_property
+    def train(self) -> GearTrain | None:
+        """The gear train of these pairs; None where there are none."""
+        return train_of_pairs(self.readable_pairs) if self.readable_pairs else None
+
+    def rotor(self, name: str | None) -> Rotor | None:
+        """Return the rotor of this name, if it could be read."""
+        return next((rotor for _, rotor in self.rotors if rotor.name == name), None)
+
+    def gear(self, name: str) -> Gear | None:
+        """Return the gear of this name, if it could be read."""
+        return next((gear for _, gear in self.gears if gear.name == name), None)
+
+    def raw_entries(self, *keys: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+        """Yield the tables of a list as they stand in the document, readable or not, each with its place."""
+        entries = look_up(self.document, keys)
+        for index, entry in enumerate(entries if isinstance(entries, (list, tuple)) else ()):
+            if isinstance(entry, Mapping):
+                yield index, entry
+
+    def names(self, *keys: str) -> tuple[str, ...]:
+        """Return the names given in a list of tables, in order, whether the entries are sound or not."""
+        return tuple(e["name"] for _, e in self.raw_entries(*keys) if isinstance(e.get("name"), str))
+
+
+_DRAFT_TABLES: dict[str, tuple[type[Table], tuple[str, ...]]] = {
+    "box": (Box, ("housing", "box")),
+    "operation": (Operation, ("operation",)),
+    "transient": (Transient, ("transient",)),
+    "sweep": (Sweep, ("sweep",)),
+    "analysis": (RotorAnalysis, ("rotor_analysis",)),
+}
+_DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
+    "seats": (Seat, ("housing", "seat")),
+    "supports": (Support, ("housing", "support")),
+    "mounts": (Mount, ("housing", "mount")),
+    "joints": (Joint, ("housing", "joint")),
+    "masses": (LumpedMass, ("housing", "mass")),
+    "sensors": (Sensor, ("housing", "sensor")),
+    "rotors": (Rotor, ("rotor",)),
+    "bearings": (Bearing, ("bearing",)),
+    "gears": (Gear, ("gear",)),
+    "gear_pairs": (GearPair, ("gear_pair",)),
+}
+"""Where the tables and lists of a draft stand in a case, and the class of each."""
+
+
+def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
+    """Return a sound case as a draft; `document` is what it was read from."""
+
+    def at(keys: tuple[str, ...]) -> Any:
+        found: Any = case
+        for key in keys:
+            found = getattr(found, key, None)
+        return found
+
+    tables = {name: at(keys) for name, (_, keys) in _DRAFT_TABLES.items()}
+    lists: dict[str, Any] = {name: tuple(enumerate(at(keys) or ())) for name, (_, keys) in _DRAFT_LISTS.items()}
+    return Draft(document=document, broken=frozenset(), **tables, **lists)
+
+
+def draft_of_document(document: Mapping[str, Any], broken: frozenset[str], context: Mapping[str, Any]) -> Draft:
+    """Read what can be read of a document in which something is wrong, entry by entry."""
+
+    def entries(kind: type[AnyTable], keys: tuple[str, ...]) -> Entries[AnyTable]:
+        raw = look_up(document, keys)
+        read = ((i, _read(kind, e, context)) for i, e in enumerate(raw if isinstance(raw, list) else ()))
+        return tuple((index, entry) for index, entry in read if entry is not None)
+
+    tables: dict[str, Any] = {
+        name: _read(kind, look_up(document, keys), context) for name, (kind, keys) in _DRAFT_TABLES.items()
+    }
+    lists: dict[str, Any] = {name: entries(kind, keys) for name, (kind, keys) in _DRAFT_LISTS.items()}
+    return Draft(document=document, broken=broken, **tables, **lists)
+
+
+def _read(kind: type[AnyTable], raw: object, context: Mapping[str, Any]) -> AnyTable | None:
+    """Read one table; None where it is not sound."""
+    if not isinstance(raw, Mapping):
+        return None
+    try:
+        return kind.model_validate(raw, context=dict(context))
+    except ValidationError:
+        return None
+
+
+_LISTS = ("rotor", "bearing", "gear", "gear_pair")
+_PURPOSES = {
+    "housing": "the box, CAD or mesh file whose modes are wanted",
+    "rotor": "at least one shaft",
+    "bearing": "at least one bearing",
+    "gear": "at least one gear",
+    "gear_pair": "at least one pair of gears",
+    "operation": "a speed such as speed = '5500 rpm'",
+    "transient": "a length of run such as revolutions = 40",
+    "sweep": "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }",
+    "measured": "frequencies such as ['658 Hz', '1049 Hz'], or a file of them",
+    "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
+}
+
+
+def require(case: Case, *tables: str, command: str) -> None:
+    """Raise where a case lacks tables that a command needs.
+
+    Parameters
+    ----------
+    case
+        The case.
+    tables
+        Keys of the top level, such as ``"housing"``.
+    command
+        Command that needs them, for the message.
+
+    Raises
+    ------
+    CaseError
+        With a problem for each table that is missing.
+    """
+    missing = [table for table in tables if not getattr(case, table)]
+    if missing:
+        raise CaseError(_lacking(table, command) for table in missing)
+
+
+def _lacking(table: str, command: str) -> Problem:
+    shown = f"[[{table}]]" if table in _LISTS else f"[{table}]"
+    purpose = _PURPOSES.get(table, "its table")
+    return Problem(table, NOTHING, f"{purpose}: '{command}' needs {shown}, which this case does not have")
+
+
+def case_document(case: Case) -> dict[str, Any]:
+    """Return a case as nested tables and lists with quantities as text; what is None or empty is left out."""
+    document = case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    return {key: value for key, value in document.items() if value not in ("", [], {})}
+
+
+def dump_case(case: Case) -> str:
+    """Return a case as TOML that loads back to an equal case.
+
+    Quantities are in SI units, or in degrees and rpm where these give back the very same number.
+    """
+    return tomli_w.dumps(case_document(case))

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
-from gearwhine.case.problems import NOTHING, CaseError, Location, Problem, did_you_mean, key_of, look_up
+from gearwhine.case.errors import NOTHING, CaseError, Location, Problem, did_you_mean, key_of, look_up
 
 _STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))""")
 

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 
 from gearwhine.case import units
-from gearwhine.case.dump import case_document
+from gearwhine.case.errors import NOTHING, CaseError, Problem, key_of
 from gearwhine.case.fields import MOST_ENTRIES
-from gearwhine.case.model import Case
+from gearwhine.case.model import Case, case_document
 from gearwhine.case.overrides import matching_places, parse_key_path
-from gearwhine.case.problems import NOTHING, CaseError, Problem, key_of
 
 SPEED_KEY = "operation.speed"
 

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from gearwhine.cli.on_case import hand_over, on_case, results_folder
-from gearwhine.cli.options import NONE_GIVEN, CaseName, Common, FreshRun
+from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, FreshRun, hand_over, on_case, results_folder
 
 if TYPE_CHECKING:
     from gearwhine.case import Case

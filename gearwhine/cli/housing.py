@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from gearwhine.cli.on_case import on_case, results_folder, written
-from gearwhine.cli.options import NONE_GIVEN, CaseName, Common, Fresh
+from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, Fresh, on_case, results_folder, written
 
 if TYPE_CHECKING:
     from gearwhine.case import Case

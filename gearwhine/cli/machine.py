@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from gearwhine.cli.on_case import on_case, results_folder, written
-from gearwhine.cli.options import NONE_GIVEN, CaseName, Common, Fresh
+from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, Fresh, on_case, results_folder, written
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
@@ -130,7 +129,7 @@ def steady(
     """Periodic steady state by shooting, its stability by Floquet multipliers, and its continuation over speed."""
     from gearwhine.analyses import machine as analyses
     from gearwhine.output.terminal import shown_by
-    from gearwhine.results.steady import sections
+    from gearwhine.results.steady_state import sections
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.steady(

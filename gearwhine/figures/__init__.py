@@ -9,36 +9,36 @@ figure for print, 160 mm wide, that :func:`save` writes::
     save(draw_lateral_modes(assembly, solve_lateral_modes(rotor, supports)), Path("modes.png"))
 """
 
-from .assembly import DrawnGear, DrawnProbe, DrawnUnbalance, RotorAssembly
-from .campbell import draw_campbell
-from .comparison import draw_comparison
-from .contact_path import draw_contact_path
-from .contact_pattern import draw_contact_pattern
-from .coordinate_criteria import draw_coordinate_criteria
-from .critical_map import draw_critical_map
-from .flank_charts import draw_flank_charts
-from .gear_pairs import draw_gear_pairs
-from .harris_map import draw_harris_map
-from .mac_matrix import draw_mac_matrix
-from .measured_shapes import ShapePair, draw_measured_shapes
-from .mesh_stiffness import draw_mesh_stiffness
-from .mode_shapes import draw_lateral_modes, draw_torsional_modes
-from .rotors import draw_rotors
-from .run_up import draw_order_slices, draw_run, draw_run_up_waterfall
-from .shaft import draw_shaft
-from .static_deflection import draw_static_deflection
-from .steady import draw_response_curve, draw_steady
-from .style import save, save_all
-from .sweep import draw_sweep
-from .system import draw_system
-from .system_campbell import draw_system_campbell
-from .tooth_pair import draw_tooth_pair
-from .torsional_response import TorsionalReading, draw_torsional_response
-from .transient import draw_transient
-from .transmissibility import draw_transmissibility
-from .transmission_error import draw_transmission_error
-from .unbalance import ProbeResponse, draw_unbalance_response
-from .whirl_shapes import draw_whirl_modes
+from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern
+from gearwhine.figures.gears.figure_set import draw_gear_pairs
+from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair
+from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
+from gearwhine.figures.housing import (
+    ShapePair,
+    draw_comparison,
+    draw_coordinate_criteria,
+    draw_mac_matrix,
+    draw_measured_shapes,
+)
+from gearwhine.figures.machine.run_up import draw_order_slices, draw_run, draw_run_up_waterfall
+from gearwhine.figures.machine.steady_state import draw_response_curve, draw_steady
+from gearwhine.figures.machine.sweep import draw_sweep
+from gearwhine.figures.machine.system import draw_system, draw_system_campbell, draw_transmissibility
+from gearwhine.figures.machine.transient import draw_transient
+from gearwhine.figures.rotors.assembly import DrawnGear, DrawnProbe, DrawnUnbalance, RotorAssembly
+from gearwhine.figures.rotors.campbell import draw_campbell
+from gearwhine.figures.rotors.critical_speed_map import draw_critical_map
+from gearwhine.figures.rotors.figure_set import draw_rotors
+from gearwhine.figures.rotors.mode_shapes import draw_lateral_modes, draw_static_deflection, draw_torsional_modes
+from gearwhine.figures.rotors.responses import (
+    ProbeResponse,
+    TorsionalReading,
+    draw_torsional_response,
+    draw_unbalance_response,
+)
+from gearwhine.figures.rotors.shaft import draw_shaft
+from gearwhine.figures.rotors.whirl_shapes import draw_whirl_modes
+from gearwhine.figures.style import save, save_all
 
 __all__ = [
     "DrawnGear",

@@ -1,6 +1,13 @@
-"""Files that appear whole or not at all."""
+"""Files that appear whole or not at all.
+
+Locks on folders, for runs that share a results folder.
+
+Content digests: files by their content, libraries by version, own code by its text.
+"""
 
 import errno
+import fcntl
+import hashlib
 import json
 import os
 import re
@@ -8,10 +15,135 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
-from gearwhine.locks import exclusive_lock, held_lock, is_locked
+
+@contextmanager
+def exclusive_lock(folder: Path) -> Iterator[None]:
+    """Make a folder where it is missing and hold its lock; waits for another run that holds it.
+
+    The lock is on the folder itself: it leaves no file behind, and the system lets go of it when a process dies. Where
+    a file system knows no locks the work goes on without.
+    """
+    while True:
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            handle = os.open(folder, os.O_RDONLY)
+        except FileNotFoundError:  # another run has just removed it, empty
+            continue
+        try:
+            _take(handle, wait=True)
+            if folder.exists() and os.path.samestat(os.fstat(handle), folder.stat()):
+                yield
+                return
+        finally:
+            os.close(handle)
+
+
+@contextmanager
+def held_lock(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder that is this run's own, so that others see that it is in use."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        _take(handle, wait=False)
+        yield
+    finally:
+        os.close(handle)
+
+
+def is_locked(folder: Path) -> bool:
+    """Whether a living process holds a folder's lock, or the lock cannot be read."""
+    try:
+        handle = os.open(folder, os.O_RDONLY)
+    except OSError:
+        return True
+    try:
+        return not _take(handle, wait=False)
+    finally:
+        os.close(handle)
+
+
+def _take(handle: int, *, wait: bool) -> bool:
+    """Take a lock; False where another process has it or there are no locks."""
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except OSError:
+        return False
+    return True
+
+
+def file_contents(table: Any) -> dict[str, Any]:
+    """Each file that a table names, however deep: from its name to a digest of its bytes and its ending.
+
+    The ending counts because a file's reader is chosen by it.
+    """
+    return {str(path): _file_content(path) for path in _paths(table)}
+
+
+def with_contents(value: Any, files: Mapping[str, Any]) -> Any:
+    """The same table with each file's content in place of its name."""
+    if isinstance(value, Mapping):
+        return {key: with_contents(inner, files) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [with_contents(inner, files) for inner in value]
+    return files.get(value, value) if isinstance(value, str) else value
+
+
+def texts_in(value: Any) -> set[str]:
+    """Every text in a table, however deep: the names of its materials are among them."""
+    if isinstance(value, str):
+        return {value}
+    return set().union(*(texts_in(inner) for inner in _inner(value)))
+
+
+@cache
+def installed(library: str) -> str | None:
+    """The version of a library; None where it is not there."""
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return None
+
+
+def source_digest(*packages: ModuleType) -> str:
+    """SHA-256 of the text of whole packages, which changes between releases under one version number.
+
+    What does not bear on the result counts too: that costs a solution now and then, and forgets nothing.
+    """
+    return _source_digest(tuple(str(package.__file__) for package in packages))
+
+
+@cache
+def _source_digest(files: tuple[str, ...]) -> str:
+    total = hashlib.sha256()
+    for file in files:
+        folder = Path(file).parent
+        for path in sorted(folder.rglob("*.py")):
+            total.update(f"{path.relative_to(folder.parent).as_posix()}\0".encode())
+            total.update(path.read_bytes())
+    return total.hexdigest()
+
+
+def _paths(value: Any) -> set[Path]:
+    if isinstance(value, Path):
+        return {value}
+    return set().union(*(_paths(inner) for inner in _inner(value)))
+
+
+def _inner(value: Any) -> list[Any]:
+    if isinstance(value, Mapping):
+        return list(value.values())
+    return list(value) if isinstance(value, list | tuple) else []
+
+
+def _file_content(path: Path) -> dict[str, str]:
+    with path.open("rb") as file:
+        return {"sha256": hashlib.file_digest(file, "sha256").hexdigest(), "ending": path.suffix.lower()}
+
 
 SUMMARY = "summary.json"
 COMMANDS = ("run", "modes", "rotors", "gears", "system", "steady", "sweep", "compare", "survey", "update", "render")

@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine import __version__
-from gearwhine.analyses.results_folder import stored_results
 from gearwhine.case import Case, CaseError, Problem, dump_case
-from gearwhine.output.files import SUMMARY
+from gearwhine.output.files import SUMMARY, file_contents
 from gearwhine.output.sections import NOTHING, Document, Section, Table, is_number
-from gearwhine.stages.contents import file_contents
+from gearwhine.output.store import stored_results
 
 _DIFFERENCES = 6  # keys of the case that are named
 _REMARKS = "provenance."  # says where a value is from, and changes none

@@ -4,7 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 from gearwhine.output.sections import Document, Section
-from gearwhine.results import comparison, gears, housing, rotors, run, steady, sweep, system, update
+from gearwhine.results import comparison, gears, housing, rotors, run, sweep, system, update
+from gearwhine.results import steady_state as steady
 
 
 def chapters_of(document: Document) -> tuple[Section, ...]:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
+from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEOMETRY
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, kinds_of_elements
-from gearwhine.stages.geometry import bores_along_axes
-from gearwhine.stages.summary import check_case
+from gearwhine.solve.case_summary import check_case
 
 if TYPE_CHECKING:
     from gearwhine.case import Joint, Mount

@@ -12,9 +12,9 @@ from gearwhine.output.sections import Column, Document, Section, columns_of, cou
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from gearwhine.stages.housing import SolvedHousing
-    from gearwhine.stages.response_comparison import ResponseCorrelation
-    from housing import Comparison
+    from gearwhine.solve.comparison import ResponseCorrelation
+    from gearwhine.solve.housing_modes import SolvedHousing
+    from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
 
 PAIR = (

@@ -8,35 +8,37 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import coupling.gears
+from coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of_contact
+from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
+from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
+from gearwhine.from_case.gear_pairs import backlash_warnings
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
-from gearwhine.stages.gear_shapes import geometry_warnings
-from gearwhine.stages.gears import backlash_warnings
+from gearwhine.results.gear_documents import geometry_warnings
 
 if TYPE_CHECKING:
-    from gearwhine.stages.gear_analysis import PairAnalysis
+    from gearwhine.solve.gear_pairs import PairAnalysis
 
 _MOST_YIELDING = 0.1
 """In modules: teeth break before they yield so much."""
 
 
-def _start(gear: coupling.gears.Gear, relief: coupling.gears.TipRelief) -> float:
+def _start(gear: Gear, relief: TipRelief) -> float:
     """Roll angle at which a tip relief begins, however that is given [rad]."""
     return relief.start(gear.roll_angle(gear.tip_radius), gear.base_radius)
 
 
 def _span(row: Any) -> dict[str, Any] | None:
     # Not every gear can be measured in every way: a face too narrow, teeth too short.
-    with suppress(coupling.gears.GearError):
-        span = coupling.gears.span_measurement(row[1])
+    with suppress(GearError):
+        span = span_measurement(row[1])
         return {"teeth": span.teeth, "length_m": span.length}
     return None
 
 
 def _over_balls(row: Any) -> dict[str, Any] | None:
-    with suppress(coupling.gears.GearError):
-        balls = coupling.gears.over_balls(row[1])
+    with suppress(GearError):
+        balls = over_balls(row[1])
         return {"ball_diameter_m": balls.diameter, "length_m": balls.length}
     return None
 
@@ -76,8 +78,8 @@ GEAR = (
     Quantity(
         "normal_thickness_m",
         lambda row: {
-            "reference": coupling.gears.normal_tooth_thickness(row[1], row[1].pitch_radius),
-            "tip": coupling.gears.normal_tooth_thickness(row[1], row[1].tip_radius),
+            "reference": normal_tooth_thickness(row[1], row[1].pitch_radius),
+            "tip": normal_tooth_thickness(row[1], row[1].tip_radius),
         },
     ),
     Quantity("tip_clearance_m", lambda row: row[0].tip_clearance(row[1]), heading="clearance", shown=".3f", scale=_MM),
@@ -111,10 +113,10 @@ _PATH_KEYS = {
 }
 
 
-def _points(path: coupling.gears.PathOfContact) -> list[dict[str, Any]]:
+def _points(path: PathOfContact) -> list[dict[str, Any]]:
     return [
         {"point": point} | {key: getattr(path, name)[row] for key, name in _PATH_KEYS.items()}
-        for row, point in enumerate(coupling.gears.POINTS_OF_CONTACT)
+        for row, point in enumerate(POINTS_OF_CONTACT)
     ]
 
 
@@ -133,7 +135,7 @@ def _of_sides(name: str, unit: str, what: str) -> Quantity:
 PATH = (
     Quantity(
         "",
-        lambda path: list(coupling.gears.POINTS_OF_CONTACT),
+        lambda path: list(POINTS_OF_CONTACT),
         "contact_point",
         ("contact_point",),
         "",
@@ -156,14 +158,14 @@ PATH = (
 """Of a path of contact: its named points on both gears."""
 
 
-def _gears(geometry: coupling.gears.GearPairGeometry, widths_given: tuple[bool, bool] = (True, True)) -> list[Any]:
+def _gears(geometry: GearPairGeometry, widths_given: tuple[bool, bool] = (True, True)) -> list[Any]:
     gears = (geometry.driver, geometry.driven)
     return [(geometry, gear, wide) for gear, wide in zip(gears, widths_given, strict=True)]
 
 
 GEOMETRY = (
     Rows("gears", _gears, GEAR),
-    Quantity("path_of_contact", lambda geometry: _points(coupling.gears.path_of_contact(geometry))),
+    Quantity("path_of_contact", lambda geometry: _points(path_of_contact(geometry))),
 )
 """Of a pair's geometry: the shape of both gears, and the named points of their path of contact."""
 
@@ -371,8 +373,8 @@ PAIR = (
     Quantity("torque_n_m", lambda pair: pair.solved.torque),
     Quantity("mean_force_n", lambda pair: pair.solved.static.force),
     Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
-    Quantity("path_of_contact", lambda pair: _points(coupling.gears.path_of_contact(pair.solved.geometry))),
-    Part("", lambda pair: coupling.gears.path_of_contact(pair.solved.geometry), PATH),
+    Quantity("path_of_contact", lambda pair: _points(path_of_contact(pair.solved.geometry))),
+    Part("", lambda pair: path_of_contact(pair.solved.geometry), PATH),
     Part("", lambda pair: pair.curves(), CURVES),
     Part(
         "",

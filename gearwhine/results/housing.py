@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from gearwhine.stages.housing import SolvedHousing
+    from gearwhine.solve.housing_modes import SolvedHousing
 
 
 class _Mode(NamedTuple):

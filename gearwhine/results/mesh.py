@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section
 from gearwhine.results.housing import MESH_SIZE
-from gearwhine.stages.geometry import bores_along_axes
 from meshes import Mesh, mesh_quality
 
 BORE = (

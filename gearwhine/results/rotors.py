@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearwhine.doubtful import warning
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.output.warnings import warning
 
 if TYPE_CHECKING:
-    from gearwhine.stages.rotors import Crossings, SolvedRotor
-    from rotors.rolling import RollingState
+    from gearwhine.solve.rotors import Crossings, SolvedRotor
+    from rotors.rolling_bearings import RollingState
 
 _ROTATING = (
     "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "

@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 import h5netcdf
 import numpy as np
 
-from coupling.histories import HISTORY_QUANTITIES
-from coupling.histories import Quantity as History
+from coupling.signals.histories import HISTORY_QUANTITIES
+from coupling.signals.histories import Quantity as History
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
 from gearwhine.results import comparison
 from gearwhine.results.housing import modes_sentence
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
-from housing.netcdf import Variables
+from housing.storage.netcdf import Variables
 
 if TYPE_CHECKING:
-    from gearwhine.stages.march_record import Signals
-    from gearwhine.stages.run_up import RunSignature
-    from gearwhine.stages.signature import SolvedSignature
-    from gearwhine.stages.transient import SolvedTransient
+    from gearwhine.solve.run_up import RunSignature
+    from gearwhine.solve.signature import SolvedSignature
+    from gearwhine.solve.transient import SolvedTransient
+    from gearwhine.solve.transient_record import Signals
 
 MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
 _HERTZ_LONG = ("Hz", "frequency")

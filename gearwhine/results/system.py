@@ -12,7 +12,7 @@ from gearwhine.output.sections import Column, Document, Section, Table, columns_
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
 
 if TYPE_CHECKING:
-    from gearwhine.stages.system import SolvedSystem
+    from gearwhine.solve.coupled_system import SolvedSystem
 
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}
 

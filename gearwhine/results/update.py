@@ -4,15 +4,15 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.case.problems import key_of
-from gearwhine.doubtful import warning
+from gearwhine.case.errors import key_of
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes
 from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.output.warnings import warning
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
-    from gearwhine.stages.updating import SolvedUpdate
+    from gearwhine.solve.updating import SolvedUpdate
 
 
 def _known(value: float) -> float | None:

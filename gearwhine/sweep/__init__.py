@@ -7,12 +7,12 @@
 
 A point is known again by its content (:mod:`gearwhine.sweep.points`), is solved by :mod:`gearwhine.sweep.solution`
 wherever a worker is (:mod:`gearwhine.sweep.workers`), and lives in a file of its own
-(:mod:`gearwhine.sweep.point_files`).
+(:mod:`gearwhine.sweep.solution`).
 """
 
-from gearwhine.sweep.conduct import SweptPoint, run_sweep
-from gearwhine.sweep.gather import collected_sweep, sweep_document
+from gearwhine.sweep.collect import collected_sweep, sweep_document
 from gearwhine.sweep.points import Point, axis_name, sweep_points
+from gearwhine.sweep.run import SweptPoint, run_sweep
 from gearwhine.sweep.solution import PointFailure, PointResult
 from gearwhine.sweep.workers import default_workers
 

@@ -14,9 +14,10 @@ import meshes
 import rotors
 from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_document, load_case, require
 from gearwhine.output import file_stems
-from gearwhine.stages.contents import file_contents, installed, source_digest, with_contents
-from gearwhine.stages.kept_modes import mode_cache_inputs
-from gearwhine.stages.sampling import transient_duration
+from gearwhine.output.files import file_contents, installed, source_digest, with_contents
+from gearwhine.solve.housing_modes import mode_cache_inputs
+from gearwhine.solve.transient_record import transient_duration
+from housing.storage.netcdf import content_key
 
 # Tables that no transient depends on.
 _WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
@@ -107,7 +108,7 @@ def axis_name(key: str) -> str:
 
 def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str) -> Point:
     document = {name: table for name, table in case_document(case).items() if name not in _WITHOUT_EFFECT}
-    key = housing.content_key(
+    key = content_key(
         {
             "case": with_contents(document, file_contents(case.model_dump())),
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
@@ -117,9 +118,9 @@ def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str
     modes_key = housing_key = None
     if case.housing is not None:
         inputs = mode_cache_inputs(case)
-        modes_key = housing.content_key(inputs)
+        modes_key = content_key(inputs)
         whole: dict[str, Any] = {"modes": modes_key, "housing": case.housing.model_dump(mode="json")}
-        housing_key = housing.content_key(whole)
+        housing_key = content_key(whole)
     return Point(place, texts, case, key, modes_key, housing_key, f"{stem}-{key[:12]}.nc", transient_duration(case))
 
 

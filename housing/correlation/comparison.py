@@ -1,10 +1,143 @@
-"""Comparison of model and measured modes: pairs, frequency errors, and confidence of the pairing."""
+"""Comparison of model and measured modes: pairs, frequency errors, and confidence of the pairing.
 
+Shape correlation beyond the pairs: all MACs, unpaired and double modes, close modes, quality of the survey.
+
+Pairing by dominance: measured frequencies without shapes, compared with the model's dominant modes.
+
+When 25 model modes fill 3 kHz, any measured frequency has one within a few per cent, so the nearest one proves
+nothing. Where the measurement gives frequencies alone, the n dominant modes of the model, in order of frequency,
+are paired with the n measured ones; see :mod:`housing.modes.dominance`.
+
+Comparison by shapes: pairing of measured and model shapes, with all correlation criteria.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from housing.correlation.evidence import ShapeCorrelation
+from housing.correlation.complexity import phase_collinearity
+from housing.correlation.modal_assurance_criterion import (
+    ComplexArray,
+    ShapeArray,
+    auto_mac,
+    comac,
+    enhanced_comac,
+    largest_off_diagonal,
+    modal_assurance_criterion,
+    two_sets,
+)
+from housing.correlation.orthogonality import cross_orthogonality, outside_span
+from housing.correlation.pairing import PairingRule, ShapePair, pair_modes
+from housing.correlation.subspaces import nearest_in_span, principal_angles
+from housing.errors import HousingError
+from housing.measured import MeasuredModes
+from housing.modes.dominance import Dominance
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LookAlikes:
+    """Two modes of one set whose shapes the survey finds alike.
+
+    Attributes
+    ----------
+    first, second : int
+        Their numbers, from 1.
+    mac : float
+        Of one with the other.
+    one_frequency : bool
+        Whether they are as close in frequency as close modes are, or an estimate's scatter: then of a test they are
+        most likely one mode found twice. Otherwise the survey has too few points, or in the wrong places, to tell
+        them apart.
+    """
+
+    first: int
+    second: int
+    mac: float
+    one_frequency: bool
+
+
+@dataclass(frozen=True)
+class CloseModes:
+    """Modes close to each other, of the model or of the test, and their partners, compared as spaces.
+
+    Attributes
+    ----------
+    model, measured : tuple of int
+        Their numbers, from 1.
+    largest_angle : float
+        Between the spaces that they span [rad]: 0 where the measured ones are combinations of the model's; NaN where
+        they were measured at too few degrees of freedom in common.
+    """
+
+    model: tuple[int, ...]
+    measured: tuple[int, ...]
+    largest_angle: float
+
+
+@dataclass(frozen=True)
+class ShapeCorrelation:
+    """Correlation of all model shapes with all measured ones.
+
+    Attributes
+    ----------
+    model_frequencies, measured_frequencies : ndarray, shapes (a,) and (b,)
+        [rad/s].
+    mac : ndarray, shape (a, b)
+    model_auto_mac, measured_auto_mac : ndarray, shapes (a, a) and (b, b)
+        The survey cannot distinguish modes with large values off the diagonal.
+    unpaired_measured : tuple of int
+        Numbers of measured modes that no model mode is like: the model lacks them, or they are no modes.
+    unpaired_model : tuple of int
+        Numbers of model modes between the first and the last measured frequency that no measured mode is: the test
+        missed them, or they are wrong.
+    measured_look_alikes, model_look_alikes : tuple of LookAlikes
+    close : tuple of CloseModes
+    comac, enhanced_comac : ndarray, shape (n_dofs,), or None
+        Over the pairs, close modes turned to each other; None without pairs.
+    collinearity : ndarray, shape (b,)
+        Modal phase collinearity of each measured shape: 1 where it is real.
+    cross_orthogonality : ndarray, shape (c, b), or None
+        Of the measured shapes with the model's modes in ``orthogonality_modes``, in the SEREP-reduced mass.
+    orthogonality_modes : tuple of int
+        Numbers of the model's modes, c of them.
+    outside : ndarray, shape (b,), or None
+        Part of each measured shape that these modes do not span.
+    no_orthogonality : str
+        Reason where there is no cross-orthogonality; else empty.
+    """
+
+    model_frequencies: FloatArray
+    measured_frequencies: FloatArray
+    mac: FloatArray
+    model_auto_mac: FloatArray
+    measured_auto_mac: FloatArray
+    unpaired_measured: tuple[int, ...]
+    unpaired_model: tuple[int, ...]
+    measured_look_alikes: tuple[LookAlikes, ...]
+    model_look_alikes: tuple[LookAlikes, ...]
+    close: tuple[CloseModes, ...]
+    comac: FloatArray | None
+    enhanced_comac: FloatArray | None
+    collinearity: FloatArray
+    cross_orthogonality: FloatArray | None
+    orthogonality_modes: tuple[int, ...]
+    outside: FloatArray | None
+    no_orthogonality: str = ""
+
+    @property
+    def largest_measured_likeness(self) -> float:
+        """Largest MAC between different measured modes."""
+        return largest_off_diagonal(self.measured_auto_mac)
+
+    @property
+    def largest_model_likeness(self) -> float:
+        """Largest MAC between different modes of the model in the band: those far outside need not be told apart."""
+        which = np.array(self.orthogonality_modes, dtype=np.int64) - 1
+        return largest_off_diagonal(self.model_auto_mac[np.ix_(which, which)]) if which.size else 0.0
 
 
 @dataclass(frozen=True)
@@ -83,3 +216,207 @@ class Comparison:
     def max_error_percent(self) -> float:
         """Largest absolute error; NaN without pairs."""
         return max((abs(pair.error_percent) for pair in self.pairs), default=float("nan"))
+
+
+# Ends of the band of dominant modes, as parts of the first and the last measured frequency.
+_BAND = (0.75, 1.05)
+
+
+def dominance_band(measured: FloatArray) -> tuple[float, float]:
+    """Band of the dominant modes: 0.75 of the first to 1.05 of the last measured frequency, in their unit."""
+    return _BAND[0] * float(measured[0]), _BAND[1] * float(measured[-1])
+
+
+def compare_by_dominance(
+    measured: FloatArray, strengths: Dominance, *, band: tuple[float, float] | None = None
+) -> Comparison:
+    """Pair the measured modes with as many dominant modes of the model, in order of frequency.
+
+    Parameters
+    ----------
+    measured : ndarray, shape (n,)
+        Measured circular frequencies, ascending [rad/s].
+    strengths : Dominance
+        Of the model's modes.
+    band : tuple of float, optional
+        Where to look for dominant modes [rad/s]; by default that of :func:`dominance_band`.
+
+    Raises
+    ------
+    HousingError
+        Where nothing was measured, the measured frequencies do not ascend, or the model has fewer modes in the band.
+    """
+    if len(measured) == 0 or measured[0] <= 0.0 or np.any(np.diff(measured) <= 0.0):
+        raise HousingError(f"measured frequencies {measured} rad/s must be positive and ascending")
+    low, high = band or dominance_band(measured)
+    chosen = strengths.strongest(len(measured), (low, high))
+    if len(chosen) < len(measured):
+        hertz = 2.0 * np.pi
+        raise HousingError(
+            f"{len(measured)} measured modes, but the model has only {len(chosen)} between {low / hertz:.0f} and "
+            f"{high / hertz:.0f} Hz; raise the housing's frequency_limit or correct the model"
+        )
+    pairs = tuple(
+        ModePair(
+            float(frequency),
+            float(strengths.frequencies[mode]),
+            number,
+            int(mode) + 1,
+            float(strengths.acceleration[mode]),
+        )
+        for number, (frequency, mode) in enumerate(zip(measured, chosen, strict=True), start=1)
+    )
+    return Comparison(
+        pairs=pairs,
+        pairing="dominance in order of frequency",
+        band=(low, high),
+        gap=strengths.gap(len(measured), (low, high)),
+        measures_agree=strengths.measures_agree(len(measured), (low, high)),
+    )
+
+
+_ONE_FREQUENCY = 0.02  # parts of it by which two estimates of one mode may scatter
+
+
+def compare_by_shapes(
+    frequencies: FloatArray,
+    shapes: npt.ArrayLike,
+    measured: MeasuredModes,
+    *,
+    rule: PairingRule | None = None,
+    strengths: Dominance | None = None,
+) -> Comparison:
+    """Pair measured modes with the model's by their shapes; see :mod:`housing.correlation.pairing`.
+
+    Parameters
+    ----------
+    frequencies : ndarray, shape (n_modes,)
+        Of the model, ascending [rad/s].
+    shapes : array_like, shape (n_modes, n_dofs)
+        The model's mass-normalised shapes at the measured degrees of freedom [1/√kg].
+    measured : MeasuredModes
+        With shapes.
+    rule : PairingRule, optional
+    strengths : Dominance, optional
+        Of the model's modes, to stand beside each pair.
+
+    Raises
+    ------
+    HousingError
+        Where nothing was measured but frequencies, sets do not fit together, or shapes have too few degrees of freedom.
+    """
+    if measured.shapes is None:
+        raise HousingError("measured modes without shapes are paired by dominance, not by shape")
+    rule = rule or PairingRule()
+    phi, psi = two_sets(shapes, measured.shapes, ("the model's", "the measured"))
+    pairs = pair_modes(frequencies, phi, measured.frequencies, psi, rule)
+    reach = np.exp(rule.window * np.array([-1.0, 1.0]))
+    band = (float(reach[0] * measured.frequencies[0]), float(reach[1] * measured.frequencies[-1]))
+    return Comparison(
+        pairs=tuple(_named(pair, frequencies, measured.frequencies, strengths) for pair in pairs),
+        pairing=f"MAC and frequency, best assignment, MAC at least {rule.least_mac:g}",
+        band=band,
+        shapes=_evidence(frequencies, phi, measured.frequencies, psi, pairs, rule, band),
+    )
+
+
+def _named(pair: ShapePair, model: FloatArray, measured: FloatArray, strengths: Dominance | None) -> ModePair:
+    return ModePair(
+        measured=float(measured[pair.measured]),
+        model=float(model[pair.model]),
+        measured_mode=pair.measured + 1,
+        mode=pair.model + 1,
+        strength=None if strengths is None else float(strengths.acceleration[pair.model]),
+        mac=pair.mac,
+        confidence=pair.confidence,
+        close_modes=tuple(other + 1 for other in pair.close_model),
+        mixed=pair.mixed,
+    )
+
+
+def _evidence(
+    model: FloatArray,
+    phi: ShapeArray,
+    measured: FloatArray,
+    psi: ShapeArray,
+    pairs: Sequence[ShapePair],
+    rule: PairingRule,
+    band: tuple[float, float],
+) -> ShapeCorrelation:
+    within = np.flatnonzero((model >= band[0]) & (model <= band[1]))
+    auto_model, auto_measured = auto_mac(phi), auto_mac(psi)
+    paired_model, paired_measured = {pair.model for pair in pairs}, {pair.measured for pair in pairs}
+    between = np.flatnonzero((model >= measured[0]) & (model <= measured[-1]))
+    crossed, outside, refused = _orthogonality(phi[within], psi)
+    nearest, partners = _partners(phi, psi, pairs)
+    return ShapeCorrelation(
+        model_frequencies=model,
+        measured_frequencies=measured,
+        mac=modal_assurance_criterion(phi, psi),
+        model_auto_mac=auto_model,
+        measured_auto_mac=auto_measured,
+        unpaired_measured=tuple(j + 1 for j in range(len(psi)) if j not in paired_measured),
+        unpaired_model=tuple(int(i) + 1 for i in between if int(i) not in paired_model),
+        measured_look_alikes=_look_alikes(auto_measured, measured, np.arange(len(psi)), rule.duplicate_mac),
+        model_look_alikes=_look_alikes(auto_model, model, within, rule.duplicate_mac),
+        close=_close(phi, psi, pairs),
+        comac=comac(nearest, partners) if pairs else None,
+        enhanced_comac=enhanced_comac(nearest, partners) if pairs else None,
+        collinearity=phase_collinearity(psi),
+        cross_orthogonality=crossed,
+        orthogonality_modes=tuple(int(i) + 1 for i in within),
+        outside=outside,
+        no_orthogonality=refused,
+    )
+
+
+def _look_alikes(
+    auto: FloatArray, frequencies: FloatArray, which: npt.NDArray[np.int64], least: float
+) -> tuple[LookAlikes, ...]:
+    found = []
+    for place, i in enumerate(which):
+        for j in which[place + 1 :]:
+            if auto[i, j] >= least:
+                near = bool(frequencies[j] - frequencies[i] <= _ONE_FREQUENCY * frequencies[j])
+                found.append(LookAlikes(int(i) + 1, int(j) + 1, float(auto[i, j]), near))
+    return tuple(found)
+
+
+def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[CloseModes, ...]:
+    """Each group of close modes, of the model or of the test, with its partners, and the angle between both spaces."""
+    found: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
+    for pair in pairs:
+        mates = [mate for mate in pairs if _together(pair, mate)]
+        model = tuple(sorted({pair.model, *pair.close_model, *(mate.model for mate in mates)}))
+        measured = tuple(sorted({pair.measured, *(mate.measured for mate in mates)}))
+        if len(model) > 1 and (model, measured) not in found:
+            seen = ~np.isnan(psi[list(measured)]).any(axis=0)
+            known = seen.sum() > max(len(model), len(measured))
+            angle = float(principal_angles(phi[list(model)], psi[list(measured)])[0]) if known else float("nan")
+            numbers = tuple(i + 1 for i in model), tuple(j + 1 for j in measured)
+            found[model, measured] = CloseModes(*numbers, angle)
+    return tuple(found.values())
+
+
+def _together(pair: ShapePair, other: ShapePair) -> bool:
+    return other.model in pair.close_model or other.measured in pair.close_measured
+
+
+def _partners(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[ComplexArray, ComplexArray]:
+    """Shapes of the pairs, row by row; close modes of the model combined as they are nearest to the test's."""
+    model = np.empty((len(pairs), phi.shape[1]), dtype=np.complex128)
+    measured = np.empty_like(model)
+    for row, pair in enumerate(pairs):
+        model[row], measured[row] = phi[pair.model], psi[pair.measured]
+        if pair.close_model:
+            model[row] = nearest_in_span(phi[list(pair.close_model)], psi[pair.measured])[0]
+    return model, measured
+
+
+def _orthogonality(phi: ShapeArray, psi: ShapeArray) -> tuple[FloatArray | None, FloatArray | None, str]:
+    if len(phi) == 0:
+        return None, None, "the model has no mode in the band"
+    try:
+        return cross_orthogonality(phi, psi), outside_span(phi, psi), ""
+    except HousingError as error:  # of the survey: the pairs stand without it
+        return None, None, str(error)

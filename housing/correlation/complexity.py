@@ -14,7 +14,7 @@ s vanishes the entries have no direction: a travelling wave.
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.shape_sets import ComplexArray, FloatArray, filled, shape_set
+from housing.correlation.modal_assurance_criterion import ComplexArray, FloatArray, filled, shape_set
 
 
 def phase_collinearity(shapes: npt.ArrayLike) -> FloatArray:

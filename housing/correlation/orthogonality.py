@@ -14,7 +14,14 @@ part of a measured shape outside their span has no mass; :func:`outside_span` gi
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.shape_sets import ComplexArray, FloatArray, ShapeArray, alike_measured, shape_set, two_sets
+from housing.correlation.modal_assurance_criterion import (
+    ComplexArray,
+    FloatArray,
+    ShapeArray,
+    alike_measured,
+    shape_set,
+    two_sets,
+)
 from housing.errors import HousingError
 
 # Beyond this condition of the shapes, rounding and noise of a part in a thousand decide the coordinates.

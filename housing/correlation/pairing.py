@@ -13,6 +13,8 @@ Close modes, of the model or of the test, mix. Each is then scored by the part o
 other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
 group the members' own MACs decide where each is most of that score; where not, the members cannot be distinguished and
 the order of frequency is kept.
+
+Linear assignment of rows to columns by their scores, and its margin over the next best assignment.
 """
 
 from dataclasses import dataclass
@@ -21,13 +23,59 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from housing.correlation.assignment import best_assignment, margin
-from housing.correlation.assurance import modal_assurance_criterion
-from housing.correlation.shape_sets import ShapeArray, two_sets
+from housing.correlation.modal_assurance_criterion import ShapeArray, modal_assurance_criterion, two_sets
 from housing.correlation.subspaces import close_modes, span_mac
 from housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:
+    """Rows and columns, each at most once, with the largest sum of scores; pairs without a score are left out.
+
+    Parameters
+    ----------
+    scores : ndarray, shape (n, m)
+        Zero or above; zero forbids.
+
+    Returns
+    -------
+    list of (row, column)
+        Ascending in the rows.
+    """
+    rows, columns = linear_sum_assignment(scores, maximize=True)
+    return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True) if scores[i, j] > 0.0]
+
+
+def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
+    """Relative loss of the best assignment where a row may not take any of some columns.
+
+    The best sum with the row in one of these columns, less the best sum with it in none of them, over the row's score
+    in the former; clipped to 0. 1: the other rows gain nothing. 0: another assignment is as good.
+
+    It measures the clearness of the choice, not its probability: a row with one poor partner and no other has 1.
+
+    Parameters
+    ----------
+    scores : ndarray, shape (n, m)
+        Zero or above.
+    row : int
+    columns : ndarray of bool, shape (m,)
+        In one of which it scores above zero.
+    """
+    within, without = scores.copy(), scores.copy()
+    # A bonus larger than any sum keeps the row in these columns, and is taken off again.
+    bonus = 1.0 + float(scores.sum())
+    within[row] = np.where(columns & (scores[row] > 0.0), scores[row] + bonus, 0.0)
+    without[row, columns] = 0.0
+    pairs = best_assignment(within)
+    own = next(scores[i, j] for i, j in pairs if i == row)
+    kept = sum(scores[i, j] for i, j in pairs)
+    lost = kept - sum(scores[i, j] for i, j in best_assignment(without))
+    return float(np.clip(lost / own, 0.0, 1.0))
+
+
 IntArray = npt.NDArray[np.int64]
 
 _CLEAR = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
@@ -87,7 +135,7 @@ class ShapePair:
         mixed.
     confidence : float
         Margin of the best assignment with this pair over the best without it, as a part of the pair's score, from 0
-        (another is as good) to 1; see :func:`housing.correlation.assignment.margin`. Not a probability.
+        (another is as good) to 1; see :func:`housing.correlation.pairing.margin`. Not a probability.
     close_model, close_measured : tuple of int
         The modes close to each other that the pair's are among; empty where one stands apart.
     mixed : bool

@@ -8,28 +8,28 @@
 - :func:`candidate_points`, :func:`plan_survey`, :func:`planned_geometry` -- sensor placement, as a :class:`SurveyPlan`.
 """
 
+from housing.fem.surface import outer_facets as outer_facets
 from housing.measured.alignment import Alignment as Alignment
+from housing.measured.alignment import RigidMotion as RigidMotion
 from housing.measured.alignment import align_landmarks as align_landmarks
 from housing.measured.alignment import align_to_surface as align_to_surface
-from housing.measured.geometry import MeasuredGeometry as MeasuredGeometry
 from housing.measured.identification import IdentifiedModes as IdentifiedModes
+from housing.measured.identification import StabilityRule as StabilityRule
 from housing.measured.identification import identify_modes as identify_modes
 from housing.measured.mapping import MappedSurvey as MappedSurvey
 from housing.measured.mapping import map_survey as map_survey
-from housing.measured.modes import MeasuredModes as MeasuredModes
-from housing.measured.outer_surface import outer_facets as outer_facets
-from housing.measured.planning import SurveyPlan as SurveyPlan
-from housing.measured.planning import candidate_points as candidate_points
-from housing.measured.planning import plan_survey as plan_survey
-from housing.measured.planning import planned_geometry as planned_geometry
-from housing.measured.responses import MeasuredResponses as MeasuredResponses
-from housing.measured.responses import Motion as Motion
-from housing.measured.rigid_fit import RigidMotion as RigidMotion
-from housing.measured.stable_poles import StabilityRule as StabilityRule
+from housing.measured.survey_data import MeasuredGeometry as MeasuredGeometry
+from housing.measured.survey_data import MeasuredModes as MeasuredModes
+from housing.measured.survey_data import MeasuredResponses as MeasuredResponses
+from housing.measured.survey_data import Motion as Motion
 from housing.measured.survey_data import SurveyData as SurveyData
-from housing.measured.survey_file import read_survey as read_survey
-from housing.measured.survey_file import write_survey as write_survey
-from housing.measured.tables import read_table as read_table
-from housing.measured.tables import write_table as write_table
+from housing.measured.survey_files import read_survey as read_survey
+from housing.measured.survey_files import read_table as read_table
+from housing.measured.survey_files import write_survey as write_survey
+from housing.measured.survey_files import write_table as write_table
+from housing.measured.survey_planning import SurveyPlan as SurveyPlan
+from housing.measured.survey_planning import candidate_points as candidate_points
+from housing.measured.survey_planning import plan_survey as plan_survey
+from housing.measured.survey_planning import planned_geometry as planned_geometry
 from housing.measured.universal_reading import read_universal as read_universal
 from housing.measured.universal_writing import write_universal as write_universal

@@ -7,11 +7,10 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import MeasuredDataError
+from housing.fem.surface import NearestOnSurface, outer_facets
 from housing.measured.alignment import Alignment, size_hint
-from housing.measured.geometry import MeasuredGeometry
-from housing.measured.outer_surface import outer_facets
-from housing.patches import point_matrix
-from housing.surface import NearestOnSurface
+from housing.measured.survey_data import MeasuredGeometry
+from housing.model.patches import point_matrix
 from meshes import Mesh
 from meshes.lengths import length_text
 

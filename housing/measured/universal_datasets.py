@@ -3,10 +3,17 @@
 pyuff also reads files that break the format: a truncated block comes back as arrays of unlike lengths, a binary block
 of the other byte order as meaningless numbers, a last block without its end not at all. So everything is checked
 against the numbers that the file itself states.
+
+Points of a universal file, with the three directions of motion of each.
+
+Mode shapes of a universal file: dataset 55, real or complex.
+
+Frequency response functions of a universal file: dataset 58, ASCII or binary.
 """
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from housing.errors import MeasuredDataError
+from housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, Motion
 
 Dataset = dict[str, Any]
 
@@ -163,3 +171,230 @@ def _is_sane(numbers: npt.NDArray[Any], size: int) -> bool:
     sizes = np.abs(numbers[numbers != 0.0])
     limit = _SANE[size]
     return bool(np.all(np.isfinite(sizes)) and np.all((sizes < limit) & (sizes > 1.0 / limit)))
+
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SurveyPoints:
+    """The points of a universal file.
+
+    Attributes
+    ----------
+    labels : tuple of str
+    positions : ndarray, shape (n_points, 3)
+        [m].
+    directions : ndarray, shape (n_points, 3, 3)
+        The point's own three directions of motion, as rows.
+    lines : tuple of tuple of int
+    """
+
+    labels: tuple[str, ...]
+    positions: FloatArray
+    directions: FloatArray
+    lines: tuple[tuple[int, ...], ...]
+
+    def index(self, node: float, where: str) -> int:
+        """The place of a node in the list; an error where it is not there."""
+        try:
+            return self.labels.index(str(int(node)))
+        except ValueError:
+            raise MeasuredDataError(f"{where} names node {int(node)}, which is not among the survey's points") from None
+
+    def geometry(self, points: list[int], directions: list[FloatArray]) -> MeasuredGeometry:
+        """These points with some degrees of freedom."""
+        return MeasuredGeometry(
+            self.labels,
+            self.positions,
+            np.array(points, dtype=np.int64),
+            np.array(directions, dtype=np.float64).reshape(-1, 3),
+            self.lines,
+        )
+
+
+NORMAL, COMPLEX_FIRST, COMPLEX_SECOND = 2, 3, 7  # analysis types that are modes
+_COMPONENTS = ("r1", "r2", "r3")
+
+
+def read_shapes(
+    datasets: list[Dataset], points: SurveyPoints, directions: FloatArray, remarks: list[str]
+) -> MeasuredModes | None:
+    """The modes of some datasets 55; None where none of them is a mode.
+
+    A direction in which every mode is exactly zero was not measured: the format has no other way to say so. A point
+    left out of a mode, but not of all, is zero in it.
+
+    Parameters
+    ----------
+    datasets : list of dict
+    points : SurveyPoints
+    directions : ndarray, shape (n_points, 3, 3)
+        The directions, as rows, that the three components of a point stand along.
+    remarks : list of str
+        Is added to.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where a node is unknown, or an eigenvalue is none of a vibration.
+    """
+    kept = [one for one in datasets if one["analysis_type"] in (NORMAL, COMPLEX_FIRST, COMPLEX_SECOND)]
+    if len(kept) < len(datasets):
+        remarks.append(f"{len(datasets) - len(kept)} of dataset 55 not read: no modes")
+    if any("r4" in one for one in kept):
+        remarks.append("rotations of the shapes not read")
+    if not kept:
+        return None
+    components = np.zeros((len(kept), len(points.labels), 3), dtype=np.complex128)
+    frequencies, ratios = np.empty(len(kept)), np.empty(len(kept))
+    for number, dataset in enumerate(kept):
+        where = f"mode {number + 1}"
+        frequencies[number], ratios[number] = _pole(dataset, where)
+        rows = [points.index(node, where) for node in dataset["node_nums"]]
+        components[number, rows] = np.stack([dataset[key] for key in _COMPONENTS], axis=-1)
+    order = np.argsort(frequencies, kind="stable")
+    measured = np.argwhere(np.any(components != 0.0, axis=0))
+    if not len(measured):
+        raise MeasuredDataError("every shape of the file is zero everywhere")
+    geometry = points.geometry(measured[:, 0].tolist(), [directions[point, component] for point, component in measured])
+    return MeasuredModes(
+        frequencies=frequencies[order],
+        damping_ratios=ratios[order] if np.any(ratios != 0.0) else None,
+        shapes=components[order][:, measured[:, 0], measured[:, 1]],
+        geometry=geometry,
+    )
+
+
+def _pole(dataset: Dataset, where: str) -> tuple[float, float]:
+    """Natural frequency [rad/s] and damping ratio of one mode."""
+    if dataset["analysis_type"] == NORMAL:
+        frequency, ratio = 2.0 * np.pi * float(dataset["freq"]), float(dataset["modal_damp_vis"])
+    else:
+        eigenvalue = complex(dataset["eig"])
+        frequency = abs(eigenvalue)
+        ratio = -eigenvalue.real / frequency if frequency else 0.0
+    if not (np.isfinite(frequency) and frequency > 0.0 and abs(ratio) < 1.0):
+        raise MeasuredDataError(
+            f"{where} has frequency {frequency / (2.0 * np.pi):g} Hz and damping ratio {ratio:g}; expected those of a "
+            "vibration"
+        )
+    return frequency, ratio
+
+
+RESPONSE_FUNCTION = 4  # function type of a frequency response
+FORCE = 13  # specific data type of an excitation force
+MOTIONS: dict[int, Motion] = {8: "displacement", 11: "velocity", 12: "acceleration"}
+"""Measured quantity, by specific data type."""
+
+_SPACING = 1e-6  # largest difference of two functions' frequencies, as a part of the highest: six digits are written
+_GRAVITY = 9.80665
+_LABELS = {
+    "m": 1.0,
+    "mm": 1e-3,
+    "in": 0.0254,
+    "m/s": 1.0,
+    "mm/s": 1e-3,
+    "in/s": 0.0254,
+    "m/s^2": 1.0,
+    "m/s2": 1.0,
+    "mm/s^2": 1e-3,
+    "mm/s2": 1e-3,
+    "in/s^2": 0.0254,
+    "g": _GRAVITY,
+    "n": 1.0,
+    "kn": 1e3,
+    "lbf": 4.4482216152605,
+}  # units as their labels are written
+
+_Key = tuple[int, int]
+
+
+def read_functions(
+    datasets: list[Dataset], points: SurveyPoints, length: float, force: float, remarks: list[str]
+) -> MeasuredResponses | None:
+    """The frequency responses to forces among some functions; None where there are none.
+
+    Parameters
+    ----------
+    datasets : list of dict
+    points : SurveyPoints
+    length, force : float
+        Metres and newtons in the file's units; an axis that names its own unit goes before them.
+    remarks : list of str
+        Is added to.
+
+    Raises
+    ------
+    MeasuredDataError
+        Where a node is unknown, a pair stands twice, or functions have different frequencies or kinds of motion.
+    """
+    kept = [one for one in datasets if _is_response(one)]
+    if len(kept) < len(datasets):
+        remarks.append(f"{len(datasets) - len(kept)} of dataset 58 not read: no frequency responses of motion to force")
+    if not kept:
+        return None
+    places = 2.0 * np.pi * np.asarray(kept[0]["x"], dtype=np.float64)
+    motion = _motion(kept, remarks)
+    rows: dict[_Key, int] = {}
+    columns: dict[_Key, int] = {}
+    cells: dict[tuple[int, int], FloatArray] = {}
+    for dataset in kept:
+        here = 2.0 * np.pi * np.asarray(dataset["x"], dtype=np.float64)
+        name = f"the function {dataset['rsp_node']}:{dataset['rsp_dir']} by {dataset['ref_node']}:{dataset['ref_dir']}"
+        if len(here) != len(places) or np.abs(here - places).max() > _SPACING * places[-1]:
+            raise MeasuredDataError(f"{name} has other frequencies than the first of the file")
+        row = rows.setdefault((points.index(dataset["rsp_node"], name), int(dataset["rsp_dir"])), len(rows))
+        column = columns.setdefault((points.index(dataset["ref_node"], name), int(dataset["ref_dir"])), len(columns))
+        if (row, column) in cells:
+            raise MeasuredDataError(f"{name} stands twice in the file")
+        cells[row, column] = np.asarray(dataset["data"]) * _factor(dataset, length, force, remarks)
+    values = np.full((len(rows), len(columns), len(places)), np.nan, dtype=np.complex128)
+    for (row, column), cell in cells.items():
+        values[row, column] = cell
+    return MeasuredResponses(
+        geometry=points.geometry([point for point, _ in rows], [_direction(points, key) for key in rows]),
+        reference_points=np.array([point for point, _ in columns], dtype=np.int64),
+        reference_directions=np.array([_direction(points, key) for key in columns]),
+        frequencies=places,
+        values=values,
+        motion=motion,
+    )
+
+
+def _is_response(dataset: Dataset) -> bool:
+    """Whether a function is the frequency response of a translation to a force; a denominator not named is one."""
+    translations = all(1 <= abs(int(dataset[key])) <= 3 for key in ("rsp_dir", "ref_dir"))
+    by_force = int(dataset.get("orddenom_spec_data_type", 0)) in (0, FORCE)
+    return bool(dataset["func_type"] == RESPONSE_FUNCTION and translations and by_force)
+
+
+def _direction(points: SurveyPoints, key: _Key) -> FloatArray:
+    point, component = key
+    return np.asarray(np.sign(component) * points.directions[point, abs(component) - 1])
+
+
+def _motion(datasets: list[Dataset], remarks: list[str]) -> Motion:
+    found = {int(one.get("ordinate_spec_data_type", 0)) for one in datasets}
+    if len(found) > 1:
+        raise MeasuredDataError(
+            f"the functions are of several kinds (specific data types {sorted(found)}); expected one"
+        )
+    number = found.pop()
+    if number not in MOTIONS:
+        remarks.append(f"functions of specific data type {number} taken for accelerations")
+    return MOTIONS.get(number, "acceleration")
+
+
+def _factor(dataset: Dataset, length: float, force: float, remarks: list[str]) -> float:
+    """From the function's unit to SI."""
+    factors = []
+    for axis, by_system in (("ordinate", length), ("orddenom", force)):
+        label = str(dataset.get(f"{axis}_axis_units_lab", "")).strip().lower().replace(" ", "").replace("**", "^")
+        own = _LABELS.get(label, by_system)
+        if not np.isclose(own, by_system, rtol=1e-6):
+            remark = f"functions taken in {label}, as their axis says, and not in the file's system of units"
+            if remark not in remarks:
+                remarks.append(remark)
+        factors.append(own)
+    return float(factors[0] / factors[1])

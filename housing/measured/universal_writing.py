@@ -11,14 +11,10 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from housing.atomic_file import atomic_file
 from housing.errors import MeasuredDataError
-from housing.measured.geometry import MeasuredGeometry
-from housing.measured.modes import MeasuredModes
-from housing.measured.responses import MeasuredResponses
-from housing.measured.survey_data import SurveyData
-from housing.measured.universal_functions import FORCE, MOTIONS, RESPONSE_FUNCTION
-from housing.measured.universal_shapes import COMPLEX_FIRST, NORMAL
+from housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData
+from housing.measured.universal_datasets import COMPLEX_FIRST, FORCE, MOTIONS, NORMAL, RESPONSE_FUNCTION
+from housing.storage.atomic_file import atomic_file
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -9,8 +9,8 @@ Penalties exclude faults that a good sum would hide: an unclear choice of domina
 disagree, and a number of modes other than the known one.
 
 Where shapes were measured, modes are paired by the assignment of greatest MAC, else in order of frequency: during a
-search with the modes of least cost (:mod:`housing.updating.choice`), which at a good end are the dominant ones; with
-the dominant ones themselves where a model is judged.
+search with the modes of least cost (:mod:`housing.updating.mode_choice`), which at a good end are the dominant ones;
+with the dominant ones themselves where a model is judged.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from scipy.optimize import linear_sum_assignment
 
 from housing.correlation import modal_assurance_criterion
 from housing.errors import HousingError
-from housing.updating.choice import ChoiceShortfall, choice_shortfall, choose_modes
+from housing.updating.mode_choice import ChoiceShortfall, choice_shortfall, choose_modes
 from housing.updating.surrogate import ModalState, Neighbour
 
 FloatArray = npt.NDArray[np.float64]

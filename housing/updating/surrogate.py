@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from housing.dominance import Dominance, dominance
-from housing.updating.rates import ModalSensitivities
+from housing.modes.dominance import Dominance, dominance
+from housing.updating.sensitivities import ModalSensitivities
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

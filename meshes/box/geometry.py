@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from meshes.box import layout
-from meshes.box.fit import misfits
-from meshes.box.misfit import BoxMisfit
+from meshes.box.fit import BoxMisfit, misfits
 from meshes.box.parts import FACES, FOOT_NAMES, OPPOSITE_FACES, Bolt, Bore, Cover, Feet, Fillets, Rib, WallThickness
 from meshes.errors import GeometryError
 

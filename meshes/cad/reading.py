@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.cad.units import stated_unit
+from meshes.cad.shape import stated_unit
 from meshes.cad.worker import FORESEEN, JOINING, MESHING, READING, STARTING, Request
 from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
+from meshes.gmsh_meshing import Tetrahedra, check_mesh_request
 from meshes.mesh import Mesh
-from meshes.tetrahedra import Tetrahedra, check_mesh_request
 
 _LONGEST = 3600.0  # seconds that a file is given in all
 # Seconds to read and join solids, and more by the byte: a sound file of 20 kB takes a tenth of a second, a damaged one

@@ -17,11 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from meshes.cad.shape import Shape, conforming, extent, read_solids
-from meshes.cad.units import choose_unit
+from meshes.cad.shape import Shape, choose_unit, conforming, extent, read_solids
 from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
-from meshes.gmsh_session import gmsh_session
-from meshes.tetrahedra import Tetrahedra, check_mesh_size, collect, mesh_solids
+from meshes.gmsh_meshing import Tetrahedra, check_mesh_size, collect, gmsh_session, mesh_solids
 
 STARTING, READING, JOINING, MESHING = "starting", "reading it", "joining its solids", "meshing it"
 FORESEEN = "foreseen"  # the file with the number of elements to come
@@ -43,7 +41,7 @@ class Request:
         [m].
     order : {1, 2}
     stated, given : float or None
-        Units of length [m], as of :func:`meshes.cad.units.choose_unit`.
+        Units of length [m], as of :func:`meshes.cad.shape.choose_unit`.
     glue : bool
         Whether solids that touch become one piece.
     places : list of (x, y, z, diameter)

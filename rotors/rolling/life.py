@@ -9,10 +9,8 @@ between whose entries one interpolates.
 import numpy as np
 
 from rotors.errors import require_finite
-
-from .ball_row import BallRow
-from .roller_row import RollerRow
-from .state import RollingState
+from rotors.rolling_bearings.equilibrium import RollingState
+from rotors.rolling_bearings.rows import BallRow, RollerRow
 
 _MILLION = 1e6
 # Deep-groove balls: relative axial load F_a / (Z D_w²) [Pa], e, and Y; X is the same for all.

@@ -3,8 +3,9 @@
 import numpy as np
 
 import gearwhine as gw
-from coupling import coupled_modes, mesh_error_response
+from coupling import coupled_modes
 from coupling.gears import ConstantStiffness
+from coupling.linear.frequency_response import mesh_error_response
 from meshes import Bore, BoxGeometry, WallThickness
 
 AXES = {"input": (-0.045, 0.1), "output": (0.045, 0.1)}  # x, y [m]: 90 mm apart

@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 
-from coupling import CoupledMachine, GearMesh, MountedBearing, MountedGear, Torque, assemble_machine, rotor_component
-from coupling.gears import Gear, GearPairGeometry, SquareStiffness, face_slices, tooth_contact
+from coupling import CoupledMachine, GearMesh, MountedBearing, MountedGear, Torque, assemble_machine
+from coupling.gears import Gear, GearPairGeometry, SquareStiffness, tooth_contact
+from coupling.gears.contact.face_slices import face_slices
+from coupling.machine.components import rotor_component
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
 
 TORQUE = 150.0

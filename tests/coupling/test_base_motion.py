@@ -6,8 +6,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from coupling import (
-    BaseHarmonic,
-    BaseHistory,
     BaseMotion,
     CoupledMachine,
     CouplingError,
@@ -15,11 +13,11 @@ from coupling import (
     TransientOutputs,
     TransientSettings,
     assemble_machine,
-    rotor_component,
     simulate,
     static_equilibrium,
 )
-from coupling.base_motion import participations
+from coupling.machine.components import rotor_component
+from coupling.machine.loads import BaseHarmonic, BaseHistory, participations
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, static_deflection
 
 FloatArray = npt.NDArray[np.float64]

@@ -12,19 +12,17 @@ from coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
-    HousingComponent,
     MountedBearing,
     MountedGear,
-    RotorComponent,
     Torque,
     Unbalance,
     assemble_machine,
     coupled_modes,
-    mean_contact,
-    rotor_component,
     static_equilibrium,
 )
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from coupling.machine.components import HousingComponent, RotorComponent, rotor_component
+from coupling.statics.mean_mesh import mean_contact
 from rotors import (
     Bearing,
     Disc,
@@ -32,11 +30,11 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    add_attachment_modes,
     solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_modes,
 )
+from rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

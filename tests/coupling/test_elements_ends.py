@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.periodic.arrays import Reference
-from coupling.periodic.collocation import MONOMIALS, ORDER, PLACES
-from coupling.periodic.element_matrices import advance_to, carry_on
+from coupling.periodic.arrays import MONOMIALS, ORDER, PLACES, Reference
+from coupling.periodic.element_kernels import advance_to, carry_on
 
 
 @settings(deadline=None)

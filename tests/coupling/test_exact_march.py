@@ -13,23 +13,22 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from coupling import (
-    Component,
-    ContactConnector,
     CoupledSystem,
     CouplingError,
-    HarmonicLoad,
     SpeedProfile,
-    TimedLoad,
     TransientError,
     TransientOutputs,
-    TransientResult,
     TransientSettings,
-    integrate_blocks,
-    integration_method,
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact, piecewise
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector
+from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from coupling.time.exponential_collocation import integration_method
+from coupling.time.transient import TransientResult, integrate_blocks
 
 FloatArray = npt.NDArray[np.float64]
 

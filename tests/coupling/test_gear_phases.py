@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from coupling import CouplingError
-from coupling.gear_phases import mesh_phases
-from coupling.gears import Gear, GearPairGeometry, pair_outlines
+from coupling.gears import Gear, GearPairGeometry
+from coupling.gears.geometry.profile import pair_outlines
+from coupling.machine.gear_train import mesh_phases
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,16 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from coupling import (
-    GearMesh,
-    MountedBearing,
-    MountedGear,
-    Torque,
-    assemble_machine,
-    rotor_component,
-    static_equilibrium,
-)
-from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, face_slices, tooth_contact
+from coupling import GearMesh, MountedBearing, MountedGear, Torque, assemble_machine, static_equilibrium
+from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from coupling.gears.contact.face_slices import face_slices
+from coupling.machine.components import rotor_component
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)

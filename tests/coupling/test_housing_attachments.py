@@ -8,21 +8,22 @@ import pytest
 from scipy import linalg, sparse
 
 from coupling import (
-    Component,
     CoupledSystem,
     CouplingError,
-    HarmonicLoad,
-    HousingComponent,
-    LinearConnector,
     TransientOutputs,
     TransientSettings,
     coupled_modes,
-    housing_component,
     simulate,
     static_equilibrium,
 )
-from coupling.condensation import condensed
-from housing import Material, Matrices, ModeSet, Sensor, Support, assemble, fixed_freedoms, sensor_port, solve_modes
+from coupling.machine.components import Component, HousingComponent, housing_component
+from coupling.machine.connectors import LinearConnector
+from coupling.machine.coupled_system import HarmonicLoad
+from coupling.time.condensation import condensed
+from housing import Material, ModeSet, Sensor, Support, assemble, solve_modes
+from housing.fem.matrices import Matrices
+from housing.model.seats import sensor_port
+from housing.model.supports import fixed_freedoms
 from meshes import BoxGeometry, Mesh, WallThickness, mesh_box
 
 FloatArray = npt.NDArray[np.float64]

@@ -4,7 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import CouplingError, HousingComponent, assemble_machine, coupled_modes, housing_component
+from coupling import CouplingError, assemble_machine, coupled_modes
+from coupling.machine.components import HousingComponent, housing_component
 from housing import Certificate, ModeSet
 
 FloatArray = npt.NDArray[np.float64]

@@ -12,38 +12,23 @@ import numpy.typing as npt
 import pytest
 
 from coupling import (
-    BaseHarmonic,
-    BaseHistory,
     BaseMotion,
-    BowReactions,
     CoupledMachine,
-    Drive,
     GearMesh,
-    HousingComponent,
     MountedBearing,
     MountedGear,
-    ShaftDashpots,
     Torque,
-    TorqueRipple,
     Unbalance,
     assemble_machine,
-    mesh_error_response,
     receptance,
-    rotor_component,
-    unbalance_response,
 )
-from coupling.component import pedestal_component
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from rotors import (
-    Bearing,
-    Disc,
-    Pedestal,
-    Rotor,
-    Segment,
-    ShaftMaterial,
-    frequency_response,
-    modal_rotor,
-)
+from coupling.linear.frequency_response import mesh_error_response, unbalance_response
+from coupling.machine.components import HousingComponent, pedestal_component, rotor_component
+from coupling.machine.connectors import ShaftDashpots
+from coupling.machine.loads import BaseHarmonic, BaseHistory, BowReactions, Drive, TorqueRipple
+from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor
+from rotors.analyses.harmonic_response import frequency_response
 
 FloatArray = npt.NDArray[np.float64]
 

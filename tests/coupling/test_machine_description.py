@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coupling import CouplingError, HousingComponent, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
-from coupling.gear_train import GearedShafts, gear_train
+from coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
 from coupling.gears import ConstantStiffness, Gear, GearError
-from coupling.gears.gear_pair import GearPair
+from coupling.gears.loaded.gear_pair import GearPair
+from coupling.machine.components import HousingComponent
+from coupling.machine.gear_train import GearedShafts, gear_train
 from rotors import Bearing, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)

@@ -6,22 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling import (
-    Checkpoint,
-    Component,
-    ContactConnector,
-    CoupledSystem,
-    CouplingError,
-    HarmonicLoad,
-    LinearConnector,
-    SpeedProfile,
-    TransientOutputs,
-    TransientSettings,
-    integrate_blocks,
-    integration_key,
-    simulate,
-)
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledSystem, CouplingError, SpeedProfile, TransientOutputs, TransientSettings, simulate
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector
+from coupling.machine.coupled_system import HarmonicLoad
+from coupling.time.integration import Checkpoint
+from coupling.time.transient import integrate_blocks, integration_key
 
 BLOCK = 64
 RECORD = ("times", "displacement", "velocity", "acceleration", "compression", "force")
@@ -86,7 +78,7 @@ def test_blocks_change_no_more_than_the_tolerance() -> None:
 
 def test_a_cache_that_forgets_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     before = simulate(SYSTEM, SETTINGS, ROWS)
-    monkeypatch.setattr("coupling.step.StepCache._MOST_BYTES", 1)
+    monkeypatch.setattr("coupling.time.step_matrices.StepCache._MOST_BYTES", 1)
     after = simulate(SYSTEM, SETTINGS, ROWS)
     assert all(getattr(before, name).tobytes() == getattr(after, name).tobytes() for name in RECORD)
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from coupling import CoupledMachine, CouplingError, modal_rows
+from coupling import CoupledMachine, CouplingError
+from coupling.signals.histories import modal_rows
 from gearwhine.case import load_case
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
 
 
 @pytest.fixture(scope="module")

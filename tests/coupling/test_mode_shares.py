@@ -4,24 +4,20 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
-    Component,
-    ContactConnector,
+from coupling import CoupledSystem, CouplingError, coupled_modes, stability
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.linear.complex_modes import Part, mode_shares
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector
+from coupling.statics.mean_mesh import (
     ContactState,
-    CoupledSystem,
-    CouplingError,
-    LinearConnector,
-    Part,
     contact_at,
-    coupled_modes,
     linear_matrices,
     mean_contact,
-    stability,
     time_of_phase,
     unloaded_contact,
 )
-from coupling.gears import ToothContact, piecewise
-from coupling.shares import mode_shares
 
 FloatArray = npt.NDArray[np.float64]
 

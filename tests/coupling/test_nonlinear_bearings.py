@@ -8,31 +8,28 @@ import numpy.typing as npt
 import pytest
 
 from coupling import (
-    Component,
     CoupledMachine,
     CoupledSystem,
     CouplingError,
     GapLaw,
-    LinearConnector,
     MountedBearing,
-    NonlinearConnector,
     PeriodicError,
     RollingLaw,
     TransientOutputs,
-    TransientResult,
     TransientSettings,
     amplitude_spectrum,
     assemble_machine,
-    histories,
     periodic_response,
-    rotor_component,
     simulate,
     static_equilibrium,
-    transient_outputs,
 )
-from coupling.bearing_arrays import bearing_arrays
+from coupling.machine.components import Component, rotor_component
+from coupling.machine.connectors import LinearConnector, NonlinearConnector
+from coupling.signals.histories import histories, transient_outputs
+from coupling.time.kernel_arrays import bearing_arrays
+from coupling.time.transient import TransientResult
 from rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
-from rotors.rolling import (
+from rotors.rolling_bearings import (
     BallRow,
     RollerRow,
     RollingBearing,
@@ -81,7 +78,7 @@ def everything(n: int) -> TransientOutputs:
 @ALL
 def test_the_compiled_law_is_that_of_the_room_of_rotors(bearing: RollingBearing) -> None:
     """Forces and tangent by the rolling room's own code; energy and its slopes by differences."""
-    from coupling.bearing_kernels import bearing_force
+    from coupling.time.bearing_kernels import bearing_force
 
     q = np.array([8e-6, -12e-6, 3e-6 if bearing.has_axial_stiffness else 0.0, 2e-4, -1e-4])
     state = rolling_reaction(bearing, q, cage_angle=0.3)

@@ -12,13 +12,10 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from coupling import (
-    Component,
-    ContactConnector,
     CoupledMachine,
     CoupledSystem,
     CouplingError,
     GearMesh,
-    HarmonicLoad,
     MountedBearing,
     MountedGear,
     Torque,
@@ -26,24 +23,17 @@ from coupling import (
     TransientSettings,
     Unbalance,
     assemble_machine,
-    histories,
-    rotor_component,
     simulate,
-    transient_outputs,
 )
-from coupling.gears import Gear, GearPairGeometry, SquareStiffness, ToothContact, piecewise, tooth_contact
+from coupling.gears import Gear, GearPairGeometry, SquareStiffness, ToothContact, tooth_contact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component, rotor_component
+from coupling.machine.connectors import ContactConnector
+from coupling.machine.coupled_system import HarmonicLoad
 from coupling.periodic import PeriodicResponse, common_period, periodic_response
-from rotors import (
-    Bearing,
-    Disc,
-    ModalRotor,
-    Rotor,
-    Segment,
-    ShaftMaterial,
-    add_attachment_modes,
-    solve_lateral_modes,
-    solve_torsional_modes,
-)
+from coupling.signals.histories import histories, transient_outputs
+from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
+from rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 Errors = Sequence[tuple[float, float, float]]

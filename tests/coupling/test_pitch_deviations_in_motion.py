@@ -9,16 +9,7 @@ import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
-from coupling import (
-    Component,
-    ContactConnector,
-    CoupledSystem,
-    TransientOutputs,
-    TransientResult,
-    TransientSettings,
-    simulate,
-    static_equilibrium,
-)
+from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate, static_equilibrium
 from coupling.gears import (
     Gear,
     GearPairGeometry,
@@ -30,6 +21,9 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector
+from coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

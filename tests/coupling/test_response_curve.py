@@ -8,19 +8,14 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
-from coupling import (
-    Component,
-    ContactConnector,
-    CoupledSystem,
-    CouplingError,
-    HarmonicLoad,
-    PeriodicResponse,
-    TransientOutputs,
-    TransientSettings,
-    simulate,
-)
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledSystem, CouplingError, TransientOutputs, TransientSettings, simulate
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector
+from coupling.machine.coupled_system import HarmonicLoad
 from coupling.periodic import periodic_response, response_curve
+from coupling.periodic.response import PeriodicResponse
 
 FloatArray = npt.NDArray[np.float64]
 

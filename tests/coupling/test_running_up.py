@@ -9,25 +9,21 @@ import pytest
 from coupling import (
     CoupledMachine,
     CouplingError,
-    Drive,
     GearMesh,
     MountedBearing,
     MountedGear,
     SpeedProfile,
     Torque,
-    TorqueHistory,
-    TorqueRipple,
-    TorqueSlope,
     TransientOutputs,
-    TransientResult,
     TransientSettings,
     assemble_machine,
-    histories,
-    rotor_component,
     simulate,
-    transient_outputs,
 )
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from coupling.machine.components import rotor_component
+from coupling.machine.loads import Drive, TorqueHistory, TorqueRipple, TorqueSlope
+from coupling.signals.histories import histories, transient_outputs
+from coupling.time.transient import TransientResult
 from rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]

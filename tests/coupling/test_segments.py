@@ -4,12 +4,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import Component, ContactConnector, CoupledSystem, CouplingError, PeriodicError
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledSystem, CouplingError, PeriodicError
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector
 from coupling.periodic import periodic_response, response_curve
 from coupling.periodic.branch import Branch, interpolation
-from coupling.periodic.orbit import one_pass
-from coupling.periodic.segments import bordered_correction, correction, product
+from coupling.periodic.orbit import bordered_correction, correction, one_pass, product
 from coupling.periodic.shooting import problem
 
 FloatArray = npt.NDArray[np.float64]

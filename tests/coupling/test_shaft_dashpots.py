@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from coupling import CoupledMachine, MountedBearing, ShaftDashpots, assemble_machine, coupled_modes, rotor_component
-from coupling.shaft_dashpots import shaft_dashpots
+from coupling import CoupledMachine, MountedBearing, assemble_machine, coupled_modes
+from coupling.machine.components import rotor_component
+from coupling.machine.connectors import ShaftDashpots, shaft_dashpots
 from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)

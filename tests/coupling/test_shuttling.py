@@ -7,8 +7,9 @@ import pytest
 from helical_pairs import couple_pairs, helical
 
 from coupling import static_equilibrium
-from coupling.gears import SquareStiffness, face_slices, tooth_contact
-from coupling.shuttling import load_arms
+from coupling.gears import SquareStiffness, tooth_contact
+from coupling.gears.contact.face_slices import face_slices
+from coupling.machine.thrust import load_arms
 
 FORCE = 4000.0
 

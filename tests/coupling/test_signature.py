@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import jv
 
-from coupling import CouplingError, SpeedProfile, amplitude_spectrum, lines_at, signal_parts
-from coupling.signature import (
+from coupling import CouplingError, SpeedProfile, amplitude_spectrum
+from coupling.signals import (
     decibels,
     from_decibels,
     order_map,
@@ -21,6 +21,7 @@ from coupling.signature import (
     sidebands,
     spectrogram,
 )
+from coupling.signals.spectrum import lines_at, signal_parts
 
 INTERVAL = 1e-4
 TIMES = INTERVAL * np.arange(10_000)  # one second

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling import BaseHistory, HousingComponent
-from coupling.base_motion import _rates, participations
-from coupling.component import rotor_component
-from coupling.gears import Gear, GearPairGeometry, iso6336_stiffness, line_contact
-from coupling.shuttling import load_arms, shuttling_loads
-from coupling.spectrum import averaged_spectrum
-from coupling.thrust import ThrustPair, axial_forces
+from coupling.gears import Gear, GearPairGeometry
+from coupling.gears.stiffness.hertz import line_contact
+from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from coupling.machine.components import HousingComponent, rotor_component
+from coupling.machine.loads import BaseHistory, _rates, participations
+from coupling.machine.thrust import ThrustPair, axial_forces, load_arms, shuttling_loads
+from coupling.signals.spectrum import averaged_spectrum
 from rotors import Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -69,7 +69,7 @@ def test_shuttling_goes_through_the_mesh_period_with_the_rotation(rate: float, m
         return 1e-4 * (0.7 + np.cos(turned - 0.4) + 0.5 * np.cos(2.0 * turned + 1.1))
 
     monkeypatch.setattr(
-        "coupling.shuttling.load_arms", lambda *given: np.column_stack([arm(given[3]), np.zeros(len(given[3]))])
+        "coupling.machine.thrust.load_arms", lambda *given: np.column_stack([arm(given[3]), np.zeros(len(given[3]))])
     )
     assert callable(load_arms)
     contact: Any = SimpleNamespace(faces=SimpleNamespace(face_width=0.02))

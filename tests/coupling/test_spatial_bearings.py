@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coupling import CouplingError, MountedBearing, assemble_machine, coupled_modes, housing_component, rotor_component
-from coupling.component import HousingComponent
+from coupling import CouplingError, MountedBearing, assemble_machine, coupled_modes
+from coupling.machine.components import HousingComponent, housing_component, rotor_component
 from rotors import Bearing, Disc, ModalRotor, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, solve_whirl
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)

@@ -5,7 +5,8 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from coupling import Spectrum, amplitude_spectrum, spectrum_peaks
+from coupling import amplitude_spectrum
+from coupling.signals.spectrum import Spectrum, spectrum_peaks
 
 INTERVAL = 1e-3
 

@@ -9,19 +9,18 @@ import pytest
 from coupling import (
     CoupledMachine,
     CouplingError,
-    ExcitationLine,
     GearMesh,
     MountedBearing,
     MountedGear,
     assemble_machine,
     coupled_modes,
-    excitation_lines,
-    rotor_component,
     system_campbell,
 )
-from coupling.branches import ModesAtSpeed, likeness, matched
-from coupling.eigenpairs import quadratic_eigenpairs
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from coupling.linear.campbell import ModesAtSpeed, likeness, matched
+from coupling.linear.eigenpairs import quadratic_eigenpairs
+from coupling.machine.components import rotor_component
+from coupling.signals.excitation import ExcitationLine, excitation_lines
 from rotors import (
     Bearing,
     Disc,
@@ -29,11 +28,11 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    add_attachment_modes,
     campbell,
     solve_lateral_modes,
     solve_torsional_modes,
 )
+from rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

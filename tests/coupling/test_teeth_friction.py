@@ -13,26 +13,19 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from coupling import (
-    Component,
-    ContactConnector,
     CoupledMachine,
     CoupledSystem,
     GearMesh,
     MountedBearing,
     MountedGear,
     PeriodicError,
-    Sliding,
     Torque,
     TransientOutputs,
-    TransientResult,
     TransientSettings,
     assemble_machine,
-    histories,
     periodic_response,
-    rotor_component,
     simulate,
     static_equilibrium,
-    transient_outputs,
 )
 from coupling.gears import (
     ConstantStiffness,
@@ -41,18 +34,20 @@ from coupling.gears import (
     GearPairGeometry,
     HelixDeviation,
     PotentialEnergyStiffness,
-    SlidingFriction,
     TipRelief,
     ToothContact,
-    face_slices,
     loaded_transmission_error,
-    mesh_friction,
-    mesh_period_phases,
-    piecewise,
-    sliding_friction,
     tooth_contact,
 )
-from coupling.gears.sliding import sliding_direction_means
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.contact.sliding_friction import SlidingFriction, sliding_direction_means, sliding_friction
+from coupling.gears.loaded.mesh_friction import mesh_friction
+from coupling.gears.loaded.transmission_error import mesh_period_phases
+from coupling.machine.components import Component, rotor_component
+from coupling.machine.connectors import ContactConnector, Sliding
+from coupling.signals.histories import histories, transient_outputs
+from coupling.time.transient import TransientResult
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
@@ -144,7 +139,7 @@ def test_a_contact_line_turns_piece_by_piece(half_line: float) -> None:
 @given(st.floats(0.0, 30.0), st.floats(1e-7, 1e-4), st.floats(0.1, 400.0))
 def test_the_nominal_rotation_always_heats_the_flanks(phase: float, compression: float, speed: float) -> None:
     """Σ E_j |w_j| of the pairs, the sliding speeds from the roll angles."""
-    from coupling.gears.friction_kernels import friction_shares
+    from coupling.gears.contact.tooth_force_kernels import friction_shares
 
     law = sliding_friction(PAIR, CONTACT, COEFFICIENT)
     place = law.pitch_point, law.path_end
@@ -168,7 +163,7 @@ def test_the_nominal_rotation_always_heats_the_flanks(phase: float, compression:
 @pytest.mark.parametrize("helix", [2.0, 15.0])
 def test_helical_faces_turn_slice_by_slice(helix: float) -> None:
     """Force across and heat of the law against sums over the loaded slices, which no table is behind."""
-    from coupling.gears.friction_kernels import friction_shares
+    from coupling.gears.contact.tooth_force_kernels import friction_shares
 
     angle = np.radians(helix)
     crowned = HelixDeviation(crowning=5e-6)

@@ -5,23 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling import (
-    CoupledMachine,
-    CouplingError,
-    HousingComponent,
-    MountedBearing,
-    Torque,
-    assemble_machine,
-    coupled_modes,
-    mesh_error_response,
-    modal_record,
-    transient_outputs,
-    with_modal_rows,
-)
-from coupling.signature import housing_paths, line_names, mode_parts
+from coupling import CoupledMachine, CouplingError, MountedBearing, Torque, assemble_machine, coupled_modes
+from coupling.linear.frequency_response import mesh_error_response
+from coupling.machine.components import HousingComponent
+from coupling.signals import housing_paths, line_names, mode_parts
+from coupling.signals.histories import modal_record, transient_outputs, with_modal_rows
 from gearwhine.case import load_case
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
 
 MODES = 4
 

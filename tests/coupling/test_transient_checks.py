@@ -11,24 +11,22 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from coupling import (
-    Checkpoint,
-    Component,
-    ContactConnector,
     CoupledSystem,
     CouplingError,
-    HarmonicLoad,
-    LinearConnector,
-    TimedLoad,
     TransientError,
     TransientOutputs,
-    TransientResult,
     TransientSettings,
     coupled_modes,
-    integrate_blocks,
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact, piecewise
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector
+from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from coupling.time.integration import Checkpoint
+from coupling.time.transient import TransientResult, integrate_blocks
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,20 +5,13 @@ import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
-from coupling import (
-    Component,
-    ContactConnector,
-    CoupledSystem,
-    HarmonicLoad,
-    LinearConnector,
-    TransientError,
-    TransientOutputs,
-    TransientResult,
-    TransientSettings,
-    simulate,
-    static_equilibrium,
-)
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledSystem, TransientError, TransientOutputs, TransientSettings, simulate, static_equilibrium
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector
+from coupling.machine.coupled_system import HarmonicLoad
+from coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,40 +7,32 @@ import numpy.typing as npt
 import pytest
 
 from coupling import (
-    Component,
-    ContactConnector,
     CoupledMachine,
     CoupledSystem,
     CouplingError,
     GearMesh,
-    HousingComponent,
     MountedBearing,
     MountedGear,
     Unbalance,
     assemble_machine,
-    contact_at,
     coupled_modes,
-    mesh_error_response,
     receptance,
+)
+from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, tooth_contact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.linear.frequency_response import (
+    mesh_error_response,
     resonance_grid,
-    rotor_component,
     sensor_force_response,
     unbalance_response,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, piecewise, tooth_contact
-from rotors import (
-    Bearing,
-    Disc,
-    ModalRotor,
-    Rotor,
-    Segment,
-    ShaftMaterial,
-    add_attachment_modes,
-    solve_lateral_modes,
-    solve_torsional_modes,
-)
+from coupling.machine.components import Component, HousingComponent, rotor_component
+from coupling.machine.connectors import ContactConnector
+from coupling.statics.mean_mesh import contact_at
+from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
 from rotors import Unbalance as RotorUnbalance
 from rotors import unbalance_response as rotor_unbalance_response
+from rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,22 +11,20 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
 from coupling import (
-    Component,
-    ContactConnector,
     CoupledSystem,
     CouplingError,
-    HarmonicLoad,
-    LinearConnector,
     SpeedProfile,
-    SpeedTable,
-    TimedLoad,
     TransientOutputs,
-    TransientResult,
     TransientSettings,
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact, piecewise
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector, SpeedTable
+from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

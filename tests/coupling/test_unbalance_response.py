@@ -13,9 +13,9 @@ from coupling import (
     Unbalance,
     assemble_machine,
     coupled_modes,
-    rotor_component,
     simulate,
 )
+from coupling.machine.components import rotor_component
 from rotors import (
     Bearing,
     Disc,
@@ -23,11 +23,11 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    add_attachment_modes,
     solve_lateral_modes,
     solve_torsional_modes,
     solve_whirl,
 )
+from rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

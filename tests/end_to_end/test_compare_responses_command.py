@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
-from gearwhine.stages.housing import solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 from housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, map_survey, write_survey
 
 CASE = """

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from meshes import read_mesh, write_mesh
-from meshes.gmsh_session import gmsh_session
+from meshes.gmsh_meshing import gmsh_session
 
 STEEL = """
 [material.steel]

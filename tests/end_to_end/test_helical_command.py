@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coupling import coupled_modes, mesh_error_response
+from coupling import coupled_modes
+from coupling.linear.frequency_response import mesh_error_response
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import mean_bearing_forces, solve_transient
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.transient import mean_bearing_forces, solve_transient
 
 SHORTER = ("transient.revolutions=3", "transient.discard=1")
 

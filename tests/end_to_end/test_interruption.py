@@ -14,14 +14,14 @@ import xarray as xr
 
 from gearwhine.analyses.run import RunSolution, run_arrays
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.rotors import solve_rotors
-from gearwhine.stages.signature import solve_signature
-from gearwhine.stages.system import solve_system
-from gearwhine.stages.transient import solve_transient
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.coupled_system import solve_system
+from gearwhine.solve.gear_pairs import analyse_pairs
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.rotors import solve_rotors
+from gearwhine.solve.signature import solve_signature
+from gearwhine.solve.transient import solve_transient
 
 SHORT = ("--set", "transient.revolutions=6", "--set", "transient.discard=4", "--set", "housing.box.mesh_size=50 mm")
 COARSE = ("--set", "housing.box.mesh_size=50 mm")

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshes import ElementBlock, Mesh, facet_centers, pick_facets, write_mesh
+from meshes import ElementBlock, Mesh, write_mesh
+from meshes.elements import facet_centers, pick_facets
 
 CASE = """
 [material.steel]

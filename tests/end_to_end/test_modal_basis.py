@@ -4,11 +4,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import coupling
+from coupling.linear.frequency_response import mesh_error_response
 from gearwhine.case import Case, load_case
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import ReducedHousing, basis_error, build_machine, reduce_housing
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing
+from gearwhine.solve.housing_modes import solve_housing
 
 FloatArray = npt.NDArray[np.float64]
 Motions = dict[str, FloatArray]
@@ -42,7 +42,7 @@ def by_mesh_error(housings: dict[float, ReducedHousing], frequencies: FloatArray
     for limit, housing in housings.items():
         case = case_of(limit, *changes)
         machine = build_machine(case, housing, solve_gears(case))
-        response = coupling.mesh_error_response(machine, frequencies)
+        response = mesh_error_response(machine, frequencies)
         found.append({name: np.abs(motion) for name, motion in response.sensor_acceleration.items()})
     return found
 

@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 
 from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
 from gearwhine.results.run import transient_document
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import solve_transient
+from gearwhine.solve.transient import solve_transient
 
 FEW = ("--set", "rotor.input.modes=2", "--set", "rotor.output.modes=2")
 SHORT = (*FEW, "--set", "transient.revolutions=3", "--set", "transient.discard=1")

@@ -15,10 +15,10 @@ import xarray as xr
 from coupling import coupled_modes
 from gearwhine.case import CaseError, parse_case
 from gearwhine.cli import run_command
+from gearwhine.from_case.machine import build_machine
+from gearwhine.from_case.rotors import build_bearings, rolling_state
 from gearwhine.results.rotors import rotors_document
-from gearwhine.stages.bearings import build_bearings, rolling_state
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.rotors import solve_rotors
+from gearwhine.solve.rotors import solve_rotors
 
 FRISWELL = tomllib.loads(files("gearwhine.cases").joinpath("friswell-rotor.toml").read_text(encoding="utf-8"))
 ISO = {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}

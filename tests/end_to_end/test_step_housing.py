@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from housing import read_modes
-from meshes.gmsh_session import gmsh_session
+from meshes.gmsh_meshing import gmsh_session
 
 # All in mm. The origin is the middle of the box in x and z, the underside of its base in y.
 X, Y, Z, WALL, FILLET = 140.0, 110.0, 130.0, 12.0, 8.0

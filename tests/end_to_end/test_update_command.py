@@ -7,15 +7,8 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
-from gearwhine.stages.designs import ParametricHousing
-from gearwhine.stages.update_keys import fitted_case
-from housing.measured import (
-    MeasuredGeometry,
-    MeasuredModes,
-    SurveyData,
-    map_survey,
-    write_survey,
-)
+from gearwhine.from_case.parametric_housing import ParametricHousing, fitted_case
+from housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, map_survey, write_survey
 
 SECRET = {"top": 10.5e-3, "front": 15e-3}
 CASE = """

@@ -11,7 +11,7 @@ import xarray as xr
 from lopsided_case import AXES, DENSITY, GEARS, HELD_AT, SPEEDS, UNBALANCES, bearing_share, lopsided
 
 from gearwhine.cli import run_command
-from gearwhine.stages.rotors import _largest_over_cycle
+from gearwhine.solve.rotors import _largest_over_cycle
 
 ANALYSIS = """
 [rotor_analysis]

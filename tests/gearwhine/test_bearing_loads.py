@@ -3,7 +3,7 @@
 import numpy as np
 
 from gearwhine.case import load_case
-from gearwhine.stages.bearing_loads import bearing_load_warnings
+from gearwhine.solve.plausibility import bearing_load_warnings
 
 BALLS = (
     'bearing.0.stiffness={ rolling = { catalogue = { type = "deep-groove", bore = "35 mm", '

@@ -10,10 +10,10 @@ import pytest
 
 from coupling import GapLaw, RollingLaw
 from gearwhine.case import CaseError, dump_case, parse_case
+from gearwhine.from_case.machine import solve_machine
+from gearwhine.from_case.rotors import bearing_law, build_bearings
 from gearwhine.results.run import transient_document
-from gearwhine.stages.bearings import bearing_law, build_bearings
-from gearwhine.stages.machine import solve_machine
-from gearwhine.stages.transient import solve_transient
+from gearwhine.solve.transient import solve_transient
 
 SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
 DEEP_GROOVE = {"count": 9, "element_diameter": "9 mm", "pitch_diameter": "46 mm", "clearance": "6 um"}

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling.gears import pitch_gaps
+from coupling.gears.geometry.pitch_deviations import pitch_gaps
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
-from gearwhine.stages.build import build_gear
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.from_case.rotors import build_gear
 
 MICROMETRES = [0.0, 1.0, -2.5, *([0.5] * 25)]
 

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from gearwhine.case import CaseError, load_case, parse_case
 from gearwhine.cli import run_command
-from gearwhine.stages.regions import materials_of
+from gearwhine.from_case.mesh import materials_of
 from meshes import Mesh, write_mesh
 
 BOX = tomllib.loads(files("gearwhine.cases").joinpath("steel-box.toml").read_text(encoding="utf-8"))

@@ -9,8 +9,7 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.cli import run_command
-from gearwhine.stages.bearings import build_bearings
-from gearwhine.stages.build import build_rotor
+from gearwhine.from_case.rotors import build_bearings, build_rotor
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, read_ross, write_ross
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from lopsided_case import AXES, GEARS, MODULE, PAIRS, SPEEDS, START, STIFFNESS, UNBALANCES, lopsided
 
-import coupling as room
+from coupling import CoupledMachine, GapLaw, Torque
+from coupling.machine.loads import BaseHarmonic, TorqueRipple
 from gearwhine.case import Case, parse_case
-from gearwhine.stages.bearings import bearing_law, build_bearings
-from gearwhine.stages.build import build_gear
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import build_machine
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear
+from gearwhine.solve.housing_modes import solve_housing
 
 Change = Callable[[dict[str, Any]], None]
 
@@ -27,7 +27,7 @@ def case_with(change: Change = lambda document: None, **keys: Any) -> Case:
     return parse_case(document)
 
 
-def machine_of(change: Change = lambda document: None) -> room.CoupledMachine:
+def machine_of(change: Change = lambda document: None) -> CoupledMachine:
     case = case_with(change)
     return build_machine(case, None, solve_gears(case))
 
@@ -85,7 +85,7 @@ def test_gravity_and_the_base_act_on_the_shafts() -> None:
     assert machine.base is not None
     assert machine.base.point == pytest.approx((0.03, -0.02, 0.05))
     (harmonic,) = machine.base.parts
-    assert isinstance(harmonic, room.BaseHarmonic)
+    assert isinstance(harmonic, BaseHarmonic)
     assert harmonic.frequency == pytest.approx(80.0 * pi)
     turned = np.exp(1j * radians(35.0))
     np.testing.assert_allclose(harmonic.amplitude, np.array([2.0, 0, 0, 0, 0, 5.0]) * turned, rtol=1e-12)
@@ -109,14 +109,14 @@ def test_torques_swing_where_and_when_the_case_says() -> None:
         ratio = 47 / 23 * 50 / 21
         document["operation"]["torque"] = f"{209 / ratio} N*m"
 
-    ripples = [torque for torque in machine_of(change).torques if isinstance(torque, room.TorqueRipple)]
+    ripples = [torque for torque in machine_of(change).torques if isinstance(torque, TorqueRipple)]
     (entering,) = (one for one in ripples if one.rotor == "input")
     (leaving,) = (one for one in ripples if one.rotor == "output")
     assert (entering.amplitude, entering.phase, entering.order) == (3.0, pytest.approx(radians(25.0)), None)
     assert entering.frequency == pytest.approx(120.0 * pi)
     # In the sense of its torque, which holds the output back.
     assert (leaving.amplitude, leaving.phase, leaving.order) == (-7.0, pytest.approx(radians(-15.0)), 2.0)
-    constant = {torque.rotor: torque.value for torque in machine_of(change).torques if isinstance(torque, room.Torque)}
+    constant = {torque.rotor: torque.value for torque in machine_of(change).torques if isinstance(torque, Torque)}
     assert constant["input"] > 0.0 > constant["output"]
 
 
@@ -195,7 +195,7 @@ def test_stops_and_rolling_bearings_have_the_laws_that_are_given() -> None:
     case = case_with(change)
     number = [bearing.name for bearing in case.bearing].index("input-front")
     law = bearing_law(case, number)
-    assert isinstance(law, room.GapLaw)
+    assert isinstance(law, GapLaw)
     assert (law.force, law.depth, law.exponent, law.gap) == pytest.approx((900.0, 30e-6, 2.0, 15e-6))
     back, front = (bearing.stiffness for bearing in build_bearings(case, "output"))
     # Mirrored at the x-y plane: what ties z or tilts to x and y changes its sign, all else stays.

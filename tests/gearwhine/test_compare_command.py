@@ -7,10 +7,10 @@ import pytest
 
 from gearwhine.analyses.housing import compare
 from gearwhine.case import load_case
-from gearwhine.stages.housing import solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 from housing.measured import MeasuredGeometry, MeasuredModes
 from housing.measured.survey_data import SurveyData
-from housing.measured.survey_file import write_survey
+from housing.measured.survey_files import write_survey
 
 COARSE = ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")
 

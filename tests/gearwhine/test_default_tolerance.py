@@ -4,9 +4,9 @@ import numpy as np
 from scipy.signal import argrelmax
 
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import SolvedTransient, solve_transient
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 
 def solved(tolerance: str) -> SolvedTransient:

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-import coupling.gears as gears
-from coupling import FrequencyResponse
+from coupling.gears.loaded.contact_pressure import mesh_pressure
+from coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.figures import (
     draw_campbell,
@@ -22,12 +22,12 @@ from gearwhine.figures import (
     draw_transmission_error,
 )
 from gearwhine.figures.style import BLUE, GREY
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.signature import SolvedSignature, solve_signature
-from gearwhine.stages.system import solve_system
-from gearwhine.stages.transient import SolvedTransient, solve_transient
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.coupled_system import solve_system
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.signature import SolvedSignature, solve_signature
+from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 
 class Drawn(NamedTuple):
@@ -236,7 +236,7 @@ def test_the_driver_slides_backwards_where_it_begins() -> None:
     case = load_case("spur-pair").case
     (pair,) = solve_gears(case)
     mesh = pair.static
-    pressure = gears.mesh_pressure(pair.geometry, pair.contact, mesh)
+    pressure = mesh_pressure(pair.geometry, pair.contact, mesh)
     figure = draw_contact_path("p", pair.geometry, pair.contact, mesh, pressure)
     _, press, sliding = figure.axes
     curves = {line.get_label(): np.asarray(line.get_ydata(), dtype=float) for line in sliding.get_lines()}

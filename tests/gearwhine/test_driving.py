@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-import coupling as room
-from coupling import static_equilibrium
-from coupling.gears.kernels import tooth_force
+from coupling import Torque, TransientError, static_equilibrium
+from coupling.gears.contact.tooth_force_kernels import tooth_force
+from coupling.machine.loads import TorqueHistory, TorqueRipple
+from coupling.time.speed_profile import free_speed
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
+from gearwhine.from_case.driving import driving, train_inertia
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine, solve_machine
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.results.run import transient_document
-from gearwhine.stages.driving import driving, train_inertia
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine, solve_machine
-from gearwhine.stages.transient import SolvedTransient, solve_transient
+from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 RPM = math.pi / 30.0
 LINE = {"speed": ["0 rpm", "3000 rpm"], "torque": ["90 N*m", "0 N*m"]}
@@ -166,7 +167,7 @@ def linear(first: float, last: float, at: float) -> Any:
 def test_free_speed_approaches_its_end_exponentially() -> None:
     """J ω' = T₀(1 - ω/ω₀) - T₁ ω/ω₀: ω = ω₁ (1 - e^{-t/τ}), τ = J ω₀/(T₀ + T₁), ω₁ = ω₀ T₀/(T₀ + T₁)."""
     inertia, top, motor, load = 0.3, 300.0, 50.0, 20.0
-    turning = room.free_speed(
+    turning = free_speed(
         linear(motor, 0.0, top), linear(0.0, load, top), inertia, start=0.0, duration=5.0, nominal=200.0
     )
     end, constant = top * motor / (motor + load), inertia * top / (motor + load)
@@ -175,14 +176,12 @@ def test_free_speed_approaches_its_end_exponentially() -> None:
 
 
 def test_machines_that_do_not_run_say_so() -> None:
-    with pytest.raises(
-        room.TransientError, match=r"cannot start: at rest its motor gives 5 N m against a load of 8 N m"
-    ):
-        room.free_speed(linear(5.0, 0.0, 100.0), lambda _: 8.0, 0.1, start=0.0, duration=1.0, nominal=100.0)
+    with pytest.raises(TransientError, match=r"cannot start: at rest its motor gives 5 N m against a load of 8 N m"):
+        free_speed(linear(5.0, 0.0, 100.0), lambda _: 8.0, 0.1, start=0.0, duration=1.0, nominal=100.0)
     # ω' = -(3 + 5 ω/100)/0.1 from 50 rad/s: at rest after (100/5) 0.1 ln(1 + 5·50/(3·100)).
     when = 2.0 * math.log(1.0 + 2.5 / 3.0)
-    with pytest.raises(room.TransientError, match=r"stalls at t = (\S+) s: it started at 477.465 rpm") as caught:
-        room.free_speed(linear(5.0, 0.0, 100.0), lambda _: 8.0, 0.1, start=50.0, duration=10.0, nominal=100.0)
+    with pytest.raises(TransientError, match=r"stalls at t = (\S+) s: it started at 477.465 rpm") as caught:
+        free_speed(linear(5.0, 0.0, 100.0), lambda _: 8.0, 0.1, start=50.0, duration=10.0, nominal=100.0)
     assert float(str(caught.value).split("t = ")[1].split(" s")[0]) == pytest.approx(when, rel=1e-5)
 
 
@@ -217,15 +216,15 @@ def test_torques_of_a_case() -> None:
     )
     rotors = build_machine(parse_case(document), None, solve_gears(parse_case(document))).rotors
     steady, geared, added, taken, order, frequency = driving(parse_case(document), rotors).torques
-    assert isinstance(steady, room.Torque)
-    assert isinstance(geared, room.Torque)
+    assert isinstance(steady, Torque)
+    assert isinstance(geared, Torque)
     assert (steady.value, geared.value) == pytest.approx((71.77, 71.77))
-    assert isinstance(added, room.TorqueHistory)
-    assert isinstance(taken, room.TorqueHistory)
+    assert isinstance(added, TorqueHistory)
+    assert isinstance(taken, TorqueHistory)
     # Both turn counter to each other, so that drive and load have one sign about z.
     np.testing.assert_allclose([added.values, taken.values], [[0.0, 6.0], [0.0, 6.0]])
-    assert order == room.TorqueRipple("input", 0.0, 2.0, 0.0, order=3.0)
-    assert frequency == room.TorqueRipple("input", 0.0, 1.0, 0.0, frequency=100.0 * math.pi)
+    assert order == TorqueRipple("input", 0.0, 2.0, 0.0, order=3.0)
+    assert frequency == TorqueRipple("input", 0.0, 1.0, 0.0, frequency=100.0 * math.pi)
 
 
 def test_a_braked_train_rests_on_its_back_flanks() -> None:

@@ -5,35 +5,44 @@ import os
 
 import pytest
 
-import coupling.errors
-import coupling.gears.errors
-import housing.errors
-import meshes.errors
-import rotors.errors
+from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
+from coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.case import CaseError, Problem
 from gearwhine.failures import PartlyFailedError, WorkersError, explain
+from housing.errors import (
+    EncoderUnavailableError,
+    FactorizationError,
+    HealthError,
+    HousingError,
+    IncompleteModesError,
+    ReductionError,
+    RendererUnavailableError,
+)
+from meshes.errors import GeometryError, MesherUnavailableError
+from rotors.errors import EquilibriumError, RotorError
+from rotors.errors import IncompleteModesError as RotorIncompleteModesError
 
 INPUT = [
-    coupling.errors.CouplingError,
-    coupling.gears.errors.GearError,
-    housing.errors.HousingError,
-    meshes.errors.GeometryError,
-    rotors.errors.RotorError,
+    CouplingError,
+    GearError,
+    HousingError,
+    GeometryError,
+    RotorError,
 ]
 PROOFS = [
-    coupling.errors.ModesError,
-    coupling.errors.PeriodicError,
-    coupling.errors.TransientError,
-    coupling.gears.errors.ContactAccuracyError,
-    housing.errors.EncoderUnavailableError,
-    housing.errors.FactorizationError,
-    housing.errors.HealthError,
-    housing.errors.IncompleteModesError,
-    housing.errors.ReductionError,
-    housing.errors.RendererUnavailableError,
-    meshes.errors.MesherUnavailableError,
-    rotors.errors.EquilibriumError,
-    rotors.errors.IncompleteModesError,
+    ModesError,
+    PeriodicError,
+    TransientError,
+    ContactAccuracyError,
+    EncoderUnavailableError,
+    FactorizationError,
+    HealthError,
+    IncompleteModesError,
+    ReductionError,
+    RendererUnavailableError,
+    MesherUnavailableError,
+    EquilibriumError,
+    RotorIncompleteModesError,
     PartlyFailedError,
     WorkersError,
 ]

@@ -153,6 +153,6 @@ def test_changes_of_a_case_may_be_lists_and_tables() -> None:
 def test_the_examples_of_docstrings_hold() -> None:
     import doctest
 
-    import gearwhine.study as module
+    from gearwhine import study as module
 
     assert doctest.testmod(module).failed == 0

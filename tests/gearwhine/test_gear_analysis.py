@@ -12,18 +12,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import coupling.gears as room
-from coupling import mesh_error_response
+from coupling.gears import Gear, GearPairGeometry, HelixDeviation, TipRelief, loaded_transmission_error, tooth_contact
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT
+from coupling.gears.loaded.optimal_relief import WeightedHarmonics
+from coupling.linear.frequency_response import mesh_error_response
 from gearwhine.case import Case, load_case, parse_case
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
 from gearwhine.output.dataset import labelled
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
-from gearwhine.stages.gear_analysis import PairAnalysis, analyse_pairs
-from gearwhine.stages.gear_torques import solve_over_torques, with_coarser_slices
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.relief_aims import relief_aims
+from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, solve_over_torques, with_coarser_slices
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.relief_aims import relief_aims
 
 
 @cache
@@ -85,7 +87,7 @@ def test_harmonics_are_those_of_the_curve() -> None:
     """Against a plain sum over many even phases; the curve has no steps at this torque."""
     pair = analysed(*EVEN)
     phases = np.arange(20_000) / 20_000
-    curve = room.loaded_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
+    curve = loaded_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
     expected = 2.0 * np.abs(np.fft.rfft(curve))[1:9] / phases.size
     np.testing.assert_allclose(pair.harmonics, expected, atol=2e-4 * expected[0])
     of_none = np.fft.rfft(pair.solved.contact.pairs(phases).deviation.min(axis=1))
@@ -98,7 +100,7 @@ def test_harmonics_of_the_mesh_over_the_hunting_period() -> None:
     periods, points = pair.solved.contact.hunting_period, 400
     assert periods == 28
     phases = np.arange(periods * points) / points
-    curve = room.loaded_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
+    curve = loaded_transmission_error(pair.solved.contact, pair.solved.static.force, phases).transmission_error
     lines = 2.0 * np.abs(np.fft.rfft(curve))[periods::periods][:8] / phases.size
     np.testing.assert_allclose(pair.harmonics, lines, atol=4e-3 * lines[0])
 
@@ -116,8 +118,8 @@ def test_the_harris_map_is_of_gears_with_all_teeth_alike() -> None:
         driver=replace(geometry.driver, pitch_deviations=()),
         driven=replace(geometry.driven, pitch_deviations=()),
     )
-    contact = room.tooth_contact(alike, pair.solved.model)
-    expected = room.loaded_transmission_error(contact, pair.solved.static.force)
+    contact = tooth_contact(alike, pair.solved.model)
+    expected = loaded_transmission_error(contact, pair.solved.static.force)
     assert pair.as_given == pytest.approx(expected.peak_to_peak_transmission_error, rel=2e-2)
 
 
@@ -131,13 +133,13 @@ def test_the_best_relief_is_better_than_any_neighbour() -> None:
     geometry = pair.solved.geometry
     for amount, length in ((1.1, 1.0), (0.9, 1.0), (1.0, 1.1), (1.0, 0.9)):
         assert best.length is not None
-        other = room.TipRelief(amount * best.amount, length=length * best.length)
+        other = TipRelief(amount * best.amount, length=length * best.length)
         relieved = replace(
             geometry,
             driver=replace(geometry.driver, tip_relief=other),
             driven=replace(geometry.driven, tip_relief=other),
         )
-        mesh = room.loaded_transmission_error(room.tooth_contact(relieved, pair.solved.model), force)
+        mesh = loaded_transmission_error(tooth_contact(relieved, pair.solved.model), force)
         assert mesh.peak_to_peak_transmission_error > found
 
 
@@ -146,8 +148,8 @@ def test_corners_are_found_in_the_contact() -> None:
     case = case_of(*EVEN)
     (solved,) = solve_gears(case)
     force = 3.0 * solved.static.force
-    contact = room.tooth_contact(solved.geometry, solved.model, corner_contact=True)
-    rounded = replace(solved, contact=contact, static=room.loaded_transmission_error(contact, force))
+    contact = tooth_contact(solved.geometry, solved.model, corner_contact=True)
+    rounded = replace(solved, contact=contact, static=loaded_transmission_error(contact, force))
     (pair,) = analyse_pairs(case, (rounded,))
     assert pair.corner_force > 0.0
     assert pair.loaded_contact_ratio > solved.geometry.contact_ratio
@@ -159,11 +161,11 @@ def test_corners_are_found_in_the_contact() -> None:
 def test_a_crowned_face() -> None:
     case = case_of(*EVEN)
     (solved,) = solve_gears(case)
-    crowned = replace(solved.geometry.driver, helix_deviation=room.HelixDeviation(crowning=10e-6))
+    crowned = replace(solved.geometry.driver, helix_deviation=HelixDeviation(crowning=10e-6))
     geometry = replace(solved.geometry, driver=crowned)
-    faces = room.face_slices(geometry, count=11)
-    contact = room.tooth_contact(geometry, solved.model, faces=faces)
-    static = room.loaded_transmission_error(contact, solved.static.force)
+    faces = face_slices(geometry, count=11)
+    contact = tooth_contact(geometry, solved.model, faces=faces)
+    static = loaded_transmission_error(contact, solved.static.force)
     (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
     (even,) = analyse_pairs(case, (solved,))
     assert pair.pressure is not None
@@ -175,11 +177,11 @@ def test_a_crowned_face() -> None:
 
 
 def test_a_coarser_face_is_the_one_that_would_be_cut_so() -> None:
-    pair = room.GearPairGeometry(
+    pair = GearPairGeometry(
         replace(analysed(*EVEN).solved.geometry.driver, helix_angle=0.2),
         replace(analysed(*EVEN).solved.geometry.driven, helix_angle=-0.2),
     )
-    fine, expected = room.face_slices(pair, misalignment=1e-4), room.face_slices(pair, misalignment=1e-4, count=21)
+    fine, expected = face_slices(pair, misalignment=1e-4), face_slices(pair, misalignment=1e-4, count=21)
     coarse = with_coarser_slices(fine, 21)
     for name in ("z", "width", "shift", "gap", "flattening", "coupling"):
         np.testing.assert_allclose(getattr(coarse, name), getattr(expected, name), rtol=1e-12, atol=1e-18)
@@ -191,12 +193,12 @@ def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.C
     case = case_of(*EVEN)
     (solved,) = solve_gears(case)
     angle = math.radians(20.0)
-    driver = room.Gear("pinion", 60, 3e-3, angle, 0.02, profile_shift=0.5, addendum=1.3)
-    driven = room.Gear("wheel", 90, 3e-3, angle, 0.02, profile_shift=-0.5, addendum=0.4, dedendum=1.7)
-    geometry = room.GearPairGeometry(driver, driven)
+    driver = Gear("pinion", 60, 3e-3, angle, 0.02, profile_shift=0.5, addendum=1.3)
+    driven = Gear("wheel", 90, 3e-3, angle, 0.02, profile_shift=-0.5, addendum=0.4, dedendum=1.7)
+    geometry = GearPairGeometry(driver, driven)
     assert geometry.pitch_point_position < 0.0
-    contact = room.tooth_contact(geometry, solved.model)
-    static = room.loaded_transmission_error(contact, 1000.0)
+    contact = tooth_contact(geometry, solved.model)
+    static = loaded_transmission_error(contact, 1000.0)
     (pair,) = analyse_pairs(case, (replace(solved, geometry=geometry, contact=contact, static=static),))
     assert pair.pitch_pressure is None
     show(gears_document((pair,)), sections(gears_document((pair,))))
@@ -214,7 +216,7 @@ def test_the_document_of_a_loaded_pair() -> None:
     assert pair["torque_n_m"] == pytest.approx(71.77)
     assert pair["centre_distance_m"] == pytest.approx(0.0889)
     points = {point["point"]: point for point in pair["path_of_contact"]}
-    assert list(points) == list(room.POINTS_OF_CONTACT)
+    assert list(points) == list(POINTS_OF_CONTACT)
     # The same teeth: where one begins the other ends, and the flanks roll without sliding at the pitch point.
     assert points["SAP"]["driver_radius_m"] == pytest.approx(points["EAP"]["driven_radius_m"])
     assert points["EAP"]["driver_radius_m"] == pytest.approx(0.5 * driver["diameters_m"]["tip"])
@@ -348,7 +350,7 @@ def test_the_level_at_a_sensor_is_an_aim() -> None:
     solved = solve_gears(case)
     housing = solve_housing(case)
     (aim,) = relief_aims(case, solved)
-    assert isinstance(aim, room.WeightedHarmonics)
+    assert isinstance(aim, WeightedHarmonics)
     machine = build_machine(case, housing, solved)
     assert solved[0].mesh_frequency is not None
     for n, weight in aim.weights.items():

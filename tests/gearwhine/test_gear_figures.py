@@ -12,7 +12,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
-import coupling.gears as room
+from coupling.gears import (
+    Gear,
+    GearPairGeometry,
+    HelixDeviation,
+    LoadedMesh,
+    PotentialEnergyStiffness,
+    TipRelief,
+    ToothContact,
+    harris_map,
+    loaded_transmission_error,
+    tooth_contact,
+)
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.case import load_case
 from gearwhine.figures import (
     draw_contact_path,
@@ -26,31 +39,31 @@ from gearwhine.figures import (
     save,
     save_all,
 )
-from gearwhine.figures.contact_pattern import over_flank
-from gearwhine.figures.flank_charts import has_charts
-from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gears import solve_gears
+from gearwhine.figures.gears.contact import over_flank
+from gearwhine.figures.gears.teeth import has_charts
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.solve.gear_pairs import analyse_pairs
 
 ANGLE = math.radians(20.0)
 FORCE = 1700.0
 
 
-def gear(name: str, teeth: int = 28, *, helix: float = 0.0, **more: Any) -> room.Gear:
-    return replace(room.Gear(name, teeth, 3.175e-3, ANGLE, 10e-3, helix_angle=helix), **more)
+def gear(name: str, teeth: int = 28, *, helix: float = 0.0, **more: Any) -> Gear:
+    return replace(Gear(name, teeth, 3.175e-3, ANGLE, 10e-3, helix_angle=helix), **more)
 
 
-RELIEF = room.TipRelief(20e-6, start_roll_angle=math.radians(24.0))
-PAIR = room.GearPairGeometry(gear("pinion", tip_relief=RELIEF), gear("wheel", 40))
-
-
-@cache
-def contact(*, corners: bool = False) -> room.ToothContact:
-    return room.tooth_contact(PAIR, room.PotentialEnergyStiffness(), corner_contact=corners)
+RELIEF = TipRelief(20e-6, start_roll_angle=math.radians(24.0))
+PAIR = GearPairGeometry(gear("pinion", tip_relief=RELIEF), gear("wheel", 40))
 
 
 @cache
-def mesh(*, corners: bool = False) -> room.LoadedMesh:
-    return room.loaded_transmission_error(contact(corners=corners), FORCE)
+def contact(*, corners: bool = False) -> ToothContact:
+    return tooth_contact(PAIR, PotentialEnergyStiffness(), corner_contact=corners)
+
+
+@cache
+def mesh(*, corners: bool = False) -> LoadedMesh:
+    return loaded_transmission_error(contact(corners=corners), FORCE)
 
 
 def lines(axes: Axes, label: str) -> list[np.ndarray]:
@@ -99,7 +112,7 @@ def test_as_many_contacts_as_the_contact_ratio_says() -> None:
     (axes,) = draw_tooth_pair(PAIR).axes
     assert lines(axes, "_contact")[0].shape[1] == 2
     assert "transverse section" not in note(draw_tooth_pair(PAIR))
-    helical = room.GearPairGeometry(gear("a", helix=0.2), gear("b", helix=-0.2))
+    helical = GearPairGeometry(gear("a", helix=0.2), gear("b", helix=-0.2))
     assert "transverse section" in note(draw_tooth_pair(helical))
 
 
@@ -117,7 +130,7 @@ def test_stiffness_and_shares(corners: bool) -> None:
 
 
 def test_without_load_there_is_one_panel() -> None:
-    idle = room.loaded_transmission_error(contact(), 0.0)
+    idle = loaded_transmission_error(contact(), 0.0)
     figure = draw_mesh_stiffness("s", contact(), idle)
     (axes,) = figure.axes
     assert axes.get_xlabel() == "mesh period"
@@ -139,7 +152,7 @@ def test_transmission_error_is_drawn_about_its_mean() -> None:
 
 
 def test_a_harris_map_has_a_curve_for_each_torque() -> None:
-    harris = room.harris_map(contact(), FORCE * np.linspace(0.2, 2.0, 10))
+    harris = harris_map(contact(), FORCE * np.linspace(0.2, 2.0, 10))
     radius = PAIR.driver.base_radius
     figure = draw_harris_map("h", harris, radius, torque=FORCE * radius)
     upper, lower, bar = figure.axes
@@ -152,11 +165,11 @@ def test_a_harris_map_has_a_curve_for_each_torque() -> None:
     assert bar.get_ylim() == pytest.approx((torques[0], torques[-1]))
     assert not lines(draw_harris_map("h", harris, radius, torque=1e6).axes[0], "_operation")
     with pytest.raises(ValueError, match="two or more loads"):
-        draw_harris_map("h", room.harris_map(contact(), [FORCE]), radius)
+        draw_harris_map("h", harris_map(contact(), [FORCE]), radius)
 
 
 def test_along_the_path(tmp_path: Path) -> None:
-    pressure = room.mesh_pressure(PAIR, contact(corners=True), mesh(corners=True))
+    pressure = mesh_pressure(PAIR, contact(corners=True), mesh(corners=True))
     figure = draw_contact_path("p", PAIR, contact(corners=True), mesh(corners=True), pressure)
     share, press, sliding = figure.axes
     ((rolls, shares),) = lines(share, "_share")
@@ -184,8 +197,8 @@ def test_flank_charts_show_each_kind_of_deviation_that_there_is() -> None:
     assert not np.any(lines(right, "_profile")[0][1])
     assert left.get_ylim() == right.get_ylim()
 
-    crowned = gear("a", helix_deviation=room.HelixDeviation(crowning=5e-6), pitch_deviations=(1e-6,) + (0.0,) * 27)
-    pair = room.GearPairGeometry(crowned, gear("b"))
+    crowned = gear("a", helix_deviation=HelixDeviation(crowning=5e-6), pitch_deviations=(1e-6,) + (0.0,) * 27)
+    pair = GearPairGeometry(crowned, gear("b"))
     helix, other, pitch, _ = draw_flank_charts("f", pair).axes
     ((z, deviation),) = lines(helix, "_helix")
     assert (z[0], z[-1]) == pytest.approx((-5.0, 5.0))
@@ -193,8 +206,8 @@ def test_flank_charts_show_each_kind_of_deviation_that_there_is() -> None:
     assert not np.any(lines(other, "_helix")[0][1])
     assert [bar.get_height() for bar in pitch.patches][:2] == pytest.approx([1.0, 0.0])
 
-    best = room.TipRelief(12e-6, length=3e-3)
-    perfect = room.GearPairGeometry(gear("a"), gear("b"))
+    best = TipRelief(12e-6, length=3e-3)
+    perfect = GearPairGeometry(gear("a"), gear("b"))
     assert not has_charts(perfect)
     ((_, relieved),) = lines(draw_flank_charts("f", perfect, best).axes[1], "_best")
     assert relieved[-1] == pytest.approx(-12.0)
@@ -204,11 +217,11 @@ def test_flank_charts_show_each_kind_of_deviation_that_there_is() -> None:
 
 def test_the_contact_pattern_holds_the_load() -> None:
     """Summed over the pairs at one phase the map's loads give the mesh force back."""
-    crowned = gear("a", helix=0.25, helix_deviation=room.HelixDeviation(crowning=8e-6))
-    pair = room.GearPairGeometry(crowned, gear("b", helix=-0.25))
-    faces = room.face_slices(pair, count=15)
-    helical = room.tooth_contact(pair, room.PotentialEnergyStiffness(), faces=faces)
-    static = room.loaded_transmission_error(helical, FORCE)
+    crowned = gear("a", helix=0.25, helix_deviation=HelixDeviation(crowning=8e-6))
+    pair = GearPairGeometry(crowned, gear("b", helix=-0.25))
+    faces = face_slices(pair, count=15)
+    helical = tooth_contact(pair, PotentialEnergyStiffness(), faces=faces)
+    static = loaded_transmission_error(helical, FORCE)
     figure = draw_contact_pattern("c", pair, helical, static)
     assert len(figure.axes) == 4
     for axes in figure.axes[::2]:  # beside each its colours
@@ -236,7 +249,7 @@ def test_every_pair_has_its_files(tmp_path: Path) -> None:
     """Odd names are no paths and no formulas; what one has not is not drawn."""
     case = load_case("spur-pair").case
     (solved,) = solve_gears(case)
-    idle = replace(solved, static=room.loaded_transmission_error(solved.contact, 0.0))
+    idle = replace(solved, static=loaded_transmission_error(solved.contact, 0.0))
     pairs = [
         replace(pair, solved=replace(one, pair=replace(one.pair, driver=name, driven="ö ö")))
         for name, one in (("a/$b$", solved), ("A/$B$", idle))

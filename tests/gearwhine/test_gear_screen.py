@@ -7,11 +7,10 @@ from typing import Any
 import pytest
 
 from gearwhine.case import load_case
+from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import gears_document, sections
-from gearwhine.stages.gear_analysis import analyse_pairs
-from gearwhine.stages.gear_torques import solve_over_torques
-from gearwhine.stages.gears import solve_gears
+from gearwhine.solve.gear_pairs import analyse_pairs, solve_over_torques
 
 Document = dict[str, Any]
 

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from gearwhine.case import case_document, load_case, parse_case
-from gearwhine.stages.designs import ParametricHousing, _followed
-from gearwhine.stages.geometry import build_mesh
-from gearwhine.stages.regions import materials_of
-from gearwhine.stages.update_keys import fitted_case
+from gearwhine.from_case.mesh import build_mesh, materials_of
+from gearwhine.from_case.parametric_housing import ParametricHousing, _followed, fitted_case
 from housing import HousingError, assemble
 from housing.updating.parameters import coordinate_bounds
 

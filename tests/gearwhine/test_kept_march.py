@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.locks import held_lock
-from gearwhine.march_files import BlockFiles, stored_record
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import SolvedTransient, solve_transient
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.output.files import held_lock
+from gearwhine.solve.transient import SolvedTransient, solve_transient
+from gearwhine.solve.transient_record import BlockFiles, stored_record
 
 KILLS = 10
 BLOCK = 1024  # samples: some eighty checkpoints
@@ -169,7 +169,7 @@ def test_an_interruption_while_a_block_is_put_in_its_place_keeps_it(
         raise KeyboardInterrupt
 
     # Between the block's renaming and its being counted.
-    monkeypatch.setattr("gearwhine.march_files._force_names", interrupted)
+    monkeypatch.setattr("gearwhine.solve.transient_record._force_names", interrupted)
     with pytest.raises(KeyboardInterrupt) as stop, stored_record(tmp_path, "key") as blocks:
         blocks.append({"columns": np.ones(3)})
     assert "goes on from there" in stop.value.__notes__[0]

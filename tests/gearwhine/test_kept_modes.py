@@ -8,9 +8,9 @@ import meshio
 import pytest
 
 from gearwhine.case import Case, Housing, case_document, load_case, parse_case
-from gearwhine.stages.housing import build_mesh
-from gearwhine.stages.kept_modes import mode_cache_inputs
-from housing import content_key
+from gearwhine.from_case.mesh import build_mesh
+from gearwhine.solve.housing_modes import mode_cache_inputs
+from housing.storage.netcdf import content_key
 from meshes import write_mesh
 
 CASE = "nasa-gear-noise-rig"

@@ -9,9 +9,9 @@ import pytest
 from gearwhine.case import CaseError, case_document, dump_case, load_case, parse_case
 from gearwhine.results.check import check_document, measured_document
 from gearwhine.results.comparison import survey_document
-from gearwhine.stages.measured import map_measured, read_measured
-from housing import survey_grid
+from gearwhine.solve.comparison import map_measured, read_measured
 from housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
+from housing.measured.survey_planning import survey_grid
 from meshes import Mesh
 
 RIG: dict[str, Any] = case_document(load_case("nasa-gear-noise-rig").case)
@@ -113,7 +113,7 @@ def test_modes_are_found_in_a_file_of_responses(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def rig_mesh() -> Mesh:
-    from gearwhine.stages.geometry import build_mesh
+    from gearwhine.from_case.mesh import build_mesh
 
     return build_mesh(load_case("nasa-gear-noise-rig", ['housing.box.mesh_size="60 mm"']).case)
 

@@ -3,8 +3,8 @@
 import pytest
 
 from gearwhine.case import CaseError, Material, load_case, swept_keys
-from gearwhine.stages.geometry import material_of
-from gearwhine.stages.machine import build_machine
+from gearwhine.from_case.machine import build_machine
+from gearwhine.from_case.mesh import material_of
 from gearwhine.sweep.points import sweep_points
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gearwhine.stages.update_worth import NullTest
+from gearwhine.solve.updating import NullTest
 from housing.updating import NullFit
 
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-import rotors as room
 from gearwhine.case import (
     Case,
     campbell_speeds,
@@ -20,8 +19,8 @@ from gearwhine.case import (
     table_range,
     whirl_speeds,
 )
-from gearwhine.stages.bearings import build_bearings
-from gearwhine.stages.build import build_rotor
+from gearwhine.from_case.rotors import build_bearings, build_rotor
+from rotors import Coupling, Rotor, Segment, ShaftMaterial
 
 RPM = math.pi / 30.0
 STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
@@ -36,7 +35,7 @@ def case_of(rotor: dict[str, Any] | None = None, bearing: dict[str, Any] | None 
     return parse_case(document | {"bearing": [SPRING | (bearing or {})]} | tables)
 
 
-def built(**keys: Any) -> room.Rotor:
+def built(**keys: Any) -> Rotor:
     case = case_of(keys)
     return build_rotor(case, case.rotor[0])
 
@@ -46,12 +45,12 @@ def test_a_segment_has_its_own_values_where_it_has_them_and_the_rotors_where_not
     own = {"material": "bronze", "shear_coefficient": "hutchinson", "axial_force": 0}
     rotor = built(segments=[plain, plain | own], axial_force="-3 kN", shear_coefficient=0.85)
     first, second = rotor.segments
-    assert isinstance(first, room.Segment)
-    assert isinstance(second, room.Segment)
+    assert isinstance(first, Segment)
+    assert isinstance(second, Segment)
     assert (first.axial_force, second.axial_force) == (-3000.0, 0.0)
     assert (first.shear_coefficient, second.shear_coefficient) == (0.85, "hutchinson")
-    assert first.material == room.ShaftMaterial.from_poisson_ratio(210e9, 0.3, 7850.0)
-    assert second.material == room.ShaftMaterial.from_poisson_ratio(110e9, 0.34, 8800.0)
+    assert first.material == ShaftMaterial.from_poisson_ratio(210e9, 0.3, 7850.0)
+    assert second.material == ShaftMaterial.from_poisson_ratio(110e9, 0.34, 8800.0)
     assert not first.is_conical
 
 
@@ -74,7 +73,7 @@ def test_a_coupling_stands_in_the_row_with_its_own_numbers() -> None:
     coupling = numbers | {"axial_stiffness": "1e6 N/m", "mass": "2 kg", "polar_inertia": "0.02 kg*m^2"}
     piece = {"length": "100 mm", "diameter": "50 mm"}
     rotor = built(segments=[piece, {"length": "60 mm", "coupling": coupling}, piece])
-    assert rotor.segments[1] == room.Coupling(0.06, 2e6, 5e3, 2e4, 1e6, 2.0, 0.02, 0.0)
+    assert rotor.segments[1] == Coupling(0.06, 2e6, 5e3, 2e4, 1e6, 2.0, 0.02, 0.0)
     assert rotor.length == pytest.approx(0.26)
 
 

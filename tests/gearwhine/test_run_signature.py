@@ -8,12 +8,12 @@ import pytest
 
 from coupling import SpeedProfile
 from gearwhine.case import Case, load_case, mesh_frequencies
-from gearwhine.figures.transient import _speed
+from gearwhine.figures.machine.transient import _speed
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
 from gearwhine.results.run import run_signature_document
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.run_up import run_signature_warnings, solve_run_signature
-from gearwhine.stages.transient import SolvedTransient, solve_transient
+from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
+from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "transient.tolerance=1e-2", "transient.discard=0")
 

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from gearwhine.stages.side_by_side import in_parallel
+from gearwhine.solve.updating import in_parallel
 from housing import HousingError
 
 

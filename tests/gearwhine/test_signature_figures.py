@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 from coupling import SpeedProfile
-from coupling.signature import LineName, order_map, resample_by_angle, spectrogram
+from coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import draw_order_slices, draw_run_up_waterfall, save
-from gearwhine.figures.contributions import draw_contributions
-from gearwhine.figures.modal_coordinates import draw_modal_coordinates
-from gearwhine.figures.orbits import draw_orbits
-from gearwhine.stages.signature import Contribution, TracedLine
+from gearwhine.figures.machine.transient import draw_contributions, draw_modal_coordinates, draw_orbits
+from gearwhine.solve.signature import Contribution, TracedLine
 
 
 def test_run_up(tmp_path: Path) -> None:

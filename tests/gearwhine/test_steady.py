@@ -9,11 +9,11 @@ import xarray as xr
 
 from gearwhine.case import CaseError, load_case, mesh_frequencies
 from gearwhine.cli import run_command
-from gearwhine.results.steady import curve_sentences
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.steady import solve_steady
-from gearwhine.stages.transient import solve_transient
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.results.steady_state import curve_sentences
+from gearwhine.solve.steady_state import solve_steady
+from gearwhine.solve.transient import solve_transient
 
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2")
 BALANCED = "rotor.input.unbalance="  # so that all repeats with the mesh

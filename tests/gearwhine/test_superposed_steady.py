@@ -9,21 +9,25 @@ import pytest
 import xarray as xr
 from reducer_case import reducer
 
-import coupling as room
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledMachine, PeriodicError, amplitude_spectrum
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
 from coupling.periodic import orbit, periodic_response, shooting, superposed_response
+from coupling.periodic.response import PeriodicResponse
+from coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
+from coupling.signals.histories import transient_outputs
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
 from gearwhine.results.chapters import chapters_of
-from gearwhine.results.steady import steady_document
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.steady import solve_steady
+from gearwhine.results.steady_state import steady_document
+from gearwhine.solve.steady_state import solve_steady
 
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
 
 
-def machine_of(folder: Path, text: str) -> room.CoupledMachine:
+def machine_of(folder: Path, text: str) -> CoupledMachine:
     place = folder / "reducer.toml"
     place.write_text(text, encoding="utf-8")
     case = load_case(str(place), []).case
@@ -31,36 +35,36 @@ def machine_of(folder: Path, text: str) -> room.CoupledMachine:
 
 
 @pytest.fixture(scope="module")
-def machine(tmp_path_factory: pytest.TempPathFactory) -> room.CoupledMachine:
+def machine(tmp_path_factory: pytest.TempPathFactory) -> CoupledMachine:
     return machine_of(tmp_path_factory.mktemp("reducer"), reducer(SHORT))
 
 
 @pytest.fixture(scope="module")
-def whole(machine: room.CoupledMachine) -> room.PeriodicResponse:
+def whole(machine: CoupledMachine) -> PeriodicResponse:
     """The motion under both meshes over their common period."""
     return periodic_response(machine.system, tolerance=1e-5)
 
 
 @pytest.fixture(scope="module")
-def superposed(machine: room.CoupledMachine) -> room.SuperposedResponse:
-    return superposed_response(machine.system, room.excitation_groups(machine.system, longest=1.0), tolerance=1e-5)
+def superposed(machine: CoupledMachine) -> SuperposedResponse:
+    return superposed_response(machine.system, excitation_groups(machine.system, longest=1.0), tolerance=1e-5)
 
 
 def test_lines_at_both_mesh_frequencies(
-    machine: room.CoupledMachine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
+    machine: CoupledMachine, whole: PeriodicResponse, superposed: SuperposedResponse
 ) -> None:
     """Three harmonics within 3 % of the motion over the common period, in the own mesh and in the other one.
 
     Higher ones meet a resonance, where a small force does much: they differ by less than the force that is left out.
     """
-    outputs, samples = room.transient_outputs(machine), 2**14
+    outputs, samples = transient_outputs(machine), 2**14
     record = whole.record(outputs, samples)
     assert [len(motion.group.meshes) for motion in superposed.motions] == [1, 1]
     for motion in superposed.motions:
         own = motion.response.record(outputs, 2048)
         for mesh in (0, 1):
-            lines = room.amplitude_spectrum(own.force[:, mesh], motion.response.period / 2048)
-            expected = room.amplitude_spectrum(record.force[:, mesh], whole.period / samples)
+            lines = amplitude_spectrum(own.force[:, mesh], motion.response.period / 2048)
+            expected = amplitude_spectrum(record.force[:, mesh], whole.period / samples)
             for harmonic in range(1, 9):
                 cycles = round(lines.frequencies[harmonic] * whole.period)
                 missed = abs(lines.amplitude[harmonic] - expected.amplitude[cycles])
@@ -74,10 +78,10 @@ def test_lines_at_both_mesh_frequencies(
 
 
 def test_what_is_neglected_is_the_difference_of_the_forces(
-    machine: room.CoupledMachine, whole: room.PeriodicResponse, superposed: room.SuperposedResponse
+    machine: CoupledMachine, whole: PeriodicResponse, superposed: SuperposedResponse
 ) -> None:
     """Its size is that by which the mesh forces of both motions differ: the machine's answer to it comes on top."""
-    outputs, samples = room.transient_outputs(machine), 2**14
+    outputs, samples = transient_outputs(machine), 2**14
     record = whole.record(outputs, samples)
     total = np.zeros((samples, 2))
     for motion in superposed.motions:
@@ -89,7 +93,7 @@ def test_what_is_neglected_is_the_difference_of_the_forces(
     assert different.max() > 0.3 * superposed.neglected_force[:2].max()
 
 
-def test_a_linear_machine_is_superposed_without_error(machine: room.CoupledMachine) -> None:
+def test_a_linear_machine_is_superposed_without_error(machine: CoupledMachine) -> None:
     """Constant mesh stiffness, runout in both meshes: the sum leaves nothing out."""
     law = ToothContact(1.0, piecewise.constant(2e8, 1.0), piecewise.constant(0.0, 1.0), damping=500.0)
     contacts = tuple(
@@ -97,7 +101,7 @@ def test_a_linear_machine_is_superposed_without_error(machine: room.CoupledMachi
         for contact, rate in zip(machine.system.contacts, (50.0, 13.7), strict=True)
     )
     system = replace(machine.system, contacts=contacts)
-    groups = room.excitation_groups(system)
+    groups = excitation_groups(system)
     assert [group.meshes for group in groups] == [(), ()]
     found = superposed_response(system, groups)
     assert found.neglected_force.max() < 1e-6 * found.mean_force.max()
@@ -107,20 +111,20 @@ def test_a_linear_machine_is_superposed_without_error(machine: room.CoupledMachi
 def test_groups_of_hunting_teeth(tmp_path: Path) -> None:
     """The unbalance of the input makes 21 cycles of its mesh a period; that of the output fits neither mesh."""
     system = machine_of(tmp_path, reducer(unbalanced="input")).system
-    first, second = room.excitation_groups(system)
+    first, second = excitation_groups(system)
     assert first.meshes == (0,)
     assert first.frequencies == pytest.approx((100.0 * np.pi,))
     assert second.meshes == (1,)
-    assert room.common_cycles(system) == pytest.approx(21 * 24)
+    assert common_cycles(system) == pytest.approx(21 * 24)
     system = machine_of(tmp_path, reducer(unbalanced="output")).system
-    assert [group.meshes for group in room.excitation_groups(system)] == [(0,), (1,), ()]
-    (together,) = room.excitation_groups(machine_of(tmp_path, reducer(SHORT)).system)
+    assert [group.meshes for group in excitation_groups(system)] == [(0,), (1,), ()]
+    (together,) = excitation_groups(machine_of(tmp_path, reducer(SHORT)).system)
     assert together.meshes == (0, 1)
 
 
-def test_a_mesh_without_torque_is_refused(machine: room.CoupledMachine) -> None:
+def test_a_mesh_without_torque_is_refused(machine: CoupledMachine) -> None:
     idle = replace(machine.system, load=np.zeros(machine.system.size))
-    with pytest.raises(room.PeriodicError, match="carries no mean force"):
+    with pytest.raises(PeriodicError, match="carries no mean force"):
         superposed_response(idle)
 
 
@@ -155,7 +159,7 @@ def test_a_branch_of_superposed_motions_is_refused_at_once(tmp_path: Path) -> No
         solve_steady(case, machine, None, over_speed=True)
 
 
-def test_many_changes_of_contact_are_no_fault(machine: room.CoupledMachine) -> None:
+def test_many_changes_of_contact_are_no_fault(machine: CoupledMachine) -> None:
     """The march is made again with more room, whatever it began with."""
     ready = shooting.problem(machine.system)
     elements = ready.elements(0)

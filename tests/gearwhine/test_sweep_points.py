@@ -10,16 +10,15 @@ import pytest
 import xarray as xr
 
 from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
-from gearwhine.figures.waterfall import draw_waterfall
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import solve_housing
-from gearwhine.stages.machine import build_machine, reduce_housing
-from gearwhine.stages.transient import solve_transient
+from gearwhine.figures.spectra import draw_waterfall
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine, reduce_housing
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.transient import solve_transient
 from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
-from gearwhine.sweep.conduct import run_sweep
-from gearwhine.sweep.point_files import outdated_points, read_point, write_point
 from gearwhine.sweep.points import code_digest
-from gearwhine.sweep.solution import solve_point
+from gearwhine.sweep.run import run_sweep
+from gearwhine.sweep.solution import outdated_points, read_point, solve_point, write_point
 
 COARSE = ("housing.box.mesh_size=50 mm", "transient.revolutions=2", "transient.discard=1", "transient.tolerance=1e-3")
 

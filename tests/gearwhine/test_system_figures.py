@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from coupling import ExcitationLine, FrequencyResponse, SystemCampbell, SystemCrossing
+from coupling.linear.campbell import SystemCampbell, SystemCrossing
+from coupling.linear.frequency_response import FrequencyResponse
+from coupling.signals.excitation import ExcitationLine
 from gearwhine.figures import draw_system_campbell, draw_transmissibility
-from gearwhine.figures.system_campbell import KIND_COLORS
+from gearwhine.figures.machine.system import KIND_COLORS
 
 RPM = 60.0 / (2.0 * math.pi)
 SPEEDS = np.linspace(0.0, 100.0, 11)

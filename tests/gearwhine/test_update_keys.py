@@ -6,7 +6,7 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.case.units import amount, kind_of, si_amount
-from gearwhine.stages.update_keys import FittedCase, fitted_case
+from gearwhine.from_case.parametric_housing import FittedCase, fitted_case
 
 RIG = "nasa-gear-noise-rig-nominal"
 

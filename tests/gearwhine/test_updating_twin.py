@@ -15,10 +15,9 @@ import pytest
 from scipy import sparse
 from scipy.stats import chi2
 
-import housing
 from gearwhine.case import Case, parse_case
-from gearwhine.stages.designs import HousingAtParameters, ParametricHousing
-from gearwhine.stages.update_keys import fitted_case
+from gearwhine.from_case.parametric_housing import HousingAtParameters, ParametricHousing, fitted_case
+from housing.measured.survey_planning import survey_grid
 from housing.updating import (
     UNPAIRED,
     Effort,
@@ -85,7 +84,7 @@ def housing_case() -> Case:
 
 def survey_normals(mesh: Mesh) -> sparse.csr_array:
     """Outward normal motion at the 116 points."""
-    survey = housing.survey_grid(mesh, np.array([[-0.1, 0.0, -0.12], [0.1, 0.16, 0.12]]))
+    survey = survey_grid(mesh, np.array([[-0.1, 0.0, -0.12], [0.1, 0.16, 0.12]]))
     n = len(survey.normals)
     rows = np.repeat(np.arange(n), 3)
     along = sparse.csr_array((survey.normals.ravel(), (rows, np.arange(3 * n))), shape=(n, 3 * n))

@@ -7,23 +7,22 @@ import numpy.typing as npt
 import pytest
 
 from housing import (
-    Axial,
     Bushing,
     HousingError,
     Joint,
     LumpedMass,
     Material,
-    Matrices,
     Mount,
     Patch,
     Support,
     assemble,
     attach_fixtures,
-    axes_along,
-    rigid_motions,
     solve_modes,
 )
-from housing.attachments import MOST_PATCH_NODES, port_fixture_matrices
+from housing.fem.matrices import Matrices
+from housing.model.bushings import Axial, axes_along
+from housing.model.fixtures import MOST_PATCH_NODES, port_fixture_matrices
+from housing.model.patches import rigid_motions
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from universal_surveys import FUNCTION, POINTS, SHAPE, by_pyuff, one_function, survey
 
-from housing import HousingError, MeasuredDataError
+from housing import HousingError
+from housing.errors import MeasuredDataError
 from housing.measured import read_universal, write_universal
 
 

@@ -7,19 +7,11 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg, sparse
 
-from housing import (
-    HousingError,
-    Material,
-    Matrices,
-    ModeSet,
-    Seat,
-    Support,
-    assemble,
-    fixed_freedoms,
-    leading_residual_modes,
-    seat_matrix,
-    solve_modes,
-)
+from housing import HousingError, Material, ModeSet, Seat, Support, assemble, solve_modes
+from housing.fem.matrices import Matrices
+from housing.model.seats import seat_matrix
+from housing.model.supports import fixed_freedoms
+from housing.modes.residual_modes import leading_residual_modes
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,19 +7,10 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from housing import (
-    Certificate,
-    Material,
-    Matrices,
-    ModeSet,
-    Support,
-    assemble,
-    effective_mass,
-    fixed_freedoms,
-    rigid_body,
-    rigid_motions,
-    solve_modes,
-)
+from housing import Certificate, Material, ModeSet, Support, assemble, effective_mass, solve_modes
+from housing.fem.matrices import Matrices
+from housing.model.patches import rigid_body, rigid_motions
+from housing.model.supports import fixed_freedoms
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

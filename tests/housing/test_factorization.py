@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy import linalg, sparse
 
-import housing.factorization
-from housing import FactorizationError, Factorizer, Matrices
-from housing.factorization import default_backend
+import housing.fem.factorization
+from housing.errors import FactorizationError
+from housing.fem.factorization import Factorizer, default_backend
+from housing.fem.matrices import Matrices
 from meshes import Mesh
 
 Backend = Literal["rslab", "superlu"]
@@ -67,7 +68,7 @@ def test_a_free_body_at_rest_is_singular_even_where_rounding_hides_it(box_matric
 
 
 def test_a_backend_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(housing.factorization, "can_import", lambda module: False)
+    monkeypatch.setattr(housing.fem.factorization, "can_import", lambda module: False)
     with pytest.raises(FactorizationError, match="rslab needs the package rslab, which is not installed"):
         Factorizer(backend="rslab")
     assert Factorizer().backend == "superlu"

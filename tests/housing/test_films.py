@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 
-from housing.animations import animate_shapes, find_encoder
-from housing.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
 from housing.errors import EncoderUnavailableError, RendererUnavailableError
-from housing.renderer import find_renderer
+from housing.pictures.animations import animate_shapes, find_encoder
+from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
+from housing.pictures.scene import find_renderer
 from meshes import Mesh
 
 

@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
-from housing import HousingError, LumpedMass, Material, Matrices, Patch, assemble, attach_fixtures, symmetric
-from housing.free_system import FreeMass, FreeSystem
-from housing.symmetric import SymmetricMatrix
+from housing import HousingError, LumpedMass, Material, Patch, assemble, attach_fixtures
+from housing.fem import linear_algebra as symmetric
+from housing.fem.linear_algebra import SymmetricMatrix
+from housing.fem.matrices import FreeMass, FreeSystem, Matrices
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

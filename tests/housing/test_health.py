@@ -8,22 +8,22 @@ import pytest
 
 from housing import (
     Certificate,
-    HealthError,
-    HealthLine,
     HealthReport,
     Material,
-    Matrices,
     ModeSet,
     Seat,
     Support,
     assemble,
     attach_fixtures,
-    enclosed_volume,
     health_report,
-    seat_matrix,
     solve_modes,
 )
-from housing.grounding import grounding
+from housing.errors import HealthError
+from housing.fem.matrices import Matrices
+from housing.model.material import enclosed_volume
+from housing.model.seats import seat_matrix
+from housing.model.supports import grounding
+from housing.modes.health import HealthLine
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -65,7 +65,7 @@ def test_a_sound_housing_passes(box: Mesh, box_matrices: Matrices, sprung: Matri
 
 def test_volume_and_centroid_of_a_cylinder_bored_box(box: Mesh) -> None:
     """Against the sums of the elements' own volumes, whose corners' part is exact for the straight ones."""
-    from housing.assembly import assemble as sum_elements
+    from housing.fem.assembly import assemble as sum_elements
 
     body = sum_elements(box, Material(1.0, 0.3, 1.0))
     volume, center = enclosed_volume(box)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from housing import Housing, HousingError, Joint, LumpedMass, Material, Patch, Seat, Sensor, Support
-from housing.bushings import Bushing
+from housing.model.bushings import Bushing
 from meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
 from meshes.box import Bore, WallThickness
 

@@ -4,7 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import HousingError, MeasuredDataError
+from housing import HousingError
+from housing.errors import MeasuredDataError
 from housing.measured import MeasuredGeometry, MeasuredResponses, StabilityRule, identify_modes
 
 FREQUENCIES_HZ = np.array([120.3, 180.0, 196.0, 401.7, 610.2, 890.5])

@@ -7,19 +7,9 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
-from housing import (
-    HousingError,
-    LumpedMass,
-    Material,
-    Matrices,
-    Patch,
-    RigidBody,
-    Support,
-    assemble,
-    attach_fixtures,
-    rigid_body,
-    solve_modes,
-)
+from housing import HousingError, LumpedMass, Material, Patch, Support, assemble, attach_fixtures, solve_modes
+from housing.fem.matrices import Matrices
+from housing.model.patches import RigidBody, rigid_body
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

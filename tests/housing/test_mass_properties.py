@@ -6,8 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import LumpedMass, Material, Matrices, Patch, assemble, attach_fixtures, mass_properties
-from housing.rigid import rigid_body
+from housing import LumpedMass, Material, Patch, assemble, attach_fixtures
+from housing.fem.matrices import Matrices
+from housing.model.material import mass_properties
+from housing.model.patches import rigid_body
 from meshes import Mesh
 from meshes.elements import SOLIDS
 

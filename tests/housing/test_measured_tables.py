@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from housing import MeasuredDataError
+from housing.errors import MeasuredDataError
 from housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, read_survey, read_table, write_table
 
 

@@ -15,10 +15,10 @@ from housing import (
     Support,
     assemble,
     attach_fixtures,
-    damping_ratios,
     modal_damping,
     solve_modes,
 )
+from housing.modes.effective_mass import damping_ratios
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,8 +7,10 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from housing import HousingError, Material, Matrices, Support, assemble, attach_fixtures, fixed_freedoms, solve_modes
-from housing.material import element_constants
+from housing import HousingError, Material, Support, assemble, attach_fixtures, solve_modes
+from housing.fem.matrices import Matrices
+from housing.model.material import element_constants
+from housing.model.supports import fixed_freedoms
 from housing.updating import ModelSensitivity, modal_sensitivities
 from meshes import BoxGeometry, BoxMorph, Mesh
 

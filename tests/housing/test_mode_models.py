@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from housing import HousingError, Matrices, ModeSet, solve_modes
-from housing.gltf import write_mode_models
-from housing.skin import _CUTS, outer_skin
-from meshes import Mesh, facet_nodes
+from housing import HousingError, ModeSet, solve_modes
+from housing.fem.matrices import Matrices
+from housing.pictures.drawn_shapes import _CUTS, outer_skin
+from housing.pictures.gltf import write_mode_models
+from meshes import Mesh
+from meshes.elements import facet_nodes
 
 COMPONENTS = {5126: "<f4", 5125: "<u4"}
 WIDTHS = {"SCALAR": 1, "VEC3": 3}

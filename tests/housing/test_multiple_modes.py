@@ -19,12 +19,12 @@ import pytest
 from scipy import linalg
 from scipy.spatial import KDTree
 
-import housing.search
-from housing import IncompleteModesError, Material, Matrices, ModeSet, assemble, solve_modes
-from housing.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
+import housing.modes.certificate
+from housing import IncompleteModesError, Material, ModeSet, assemble, solve_modes
+from housing.fem.matrices import Matrices
+from housing.modes.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
 from meshes import ElementBlock, Mesh
-from meshes.gmsh_session import gmsh_session
-from meshes.tetrahedra import collect, mesh_solids
+from meshes.gmsh_meshing import collect, gmsh_session, mesh_solids
 
 FloatArray = npt.NDArray[np.float64]
 Blocks = Callable[..., Mesh]
@@ -247,7 +247,7 @@ def test_certificate_catches_a_solver_that_loses_members_of_multiple_modes(
         return values[:count], basis @ mixture[:, :count]
 
     honest = solve_modes(cube[1], count=11)
-    monkeypatch.setattr(housing.search, "block_lanczos", single_vector)
+    monkeypatch.setattr(housing.modes.certificate, "block_lanczos", single_vector)
     with pytest.raises(IncompleteModesError, match="where the inertia demands 11,") as caught:
         solve_modes(cube[1], frequency_limit=honest.certificate.limit)
     assert int(str(caught.value).split()[0]) < len(honest.frequencies) == 11

@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import HousingError, Patch, patch_center, patch_matrix, point_matrix, rigid_motions
-from housing.surface import surface_point
+from housing import HousingError, Patch
+from housing.fem.surface import surface_point
+from housing.model.patches import patch_center, patch_matrix, point_matrix, rigid_motions
 from meshes import GeometryError, Mesh
 
 

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from housing import HousingError, Matrices, ModeSet, solve_modes
-from housing.drawn_shapes import drawn_housing
+from housing import HousingError, ModeSet, solve_modes
 from housing.errors import RendererUnavailableError
-from housing.pictures import VIEWS, render_gallery, render_modes
-from housing.renderer import find_renderer
-from housing.scene import STRIP
-from meshes import Mesh, facet_nodes
+from housing.fem.matrices import Matrices
+from housing.pictures.drawn_shapes import drawn_housing
+from housing.pictures.images import render_gallery, render_modes
+from housing.pictures.scene import STRIP, VIEWS, find_renderer
+from meshes import Mesh
+from meshes.elements import facet_nodes
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +98,7 @@ def test_without_egl_and_osmesa_the_packages_to_install_are_named() -> None:
                 raise OSError(f"{arguments[0]}: cannot open shared object file")
         sys.addaudithook(refuse)
         from housing.errors import RendererUnavailableError
-        from housing.renderer import load_pyvista
+        from housing.pictures.scene import load_pyvista
         try:
             load_pyvista()
         except RendererUnavailableError as error:

@@ -9,23 +9,11 @@ import pytest
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from housing import (
-    HousingError,
-    Material,
-    Matrices,
-    ModeSet,
-    Seat,
-    Sensor,
-    Support,
-    assemble,
-    fixed_freedoms,
-    receptance,
-    residues,
-    seat_matrix,
-    select_modes,
-    sensor_port,
-    solve_modes,
-)
+from housing import HousingError, Material, ModeSet, Seat, Sensor, Support, assemble, receptance, solve_modes
+from housing.fem.matrices import Matrices
+from housing.model.seats import seat_matrix, sensor_port
+from housing.model.supports import fixed_freedoms
+from housing.modes.receptance import residues, select_modes
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

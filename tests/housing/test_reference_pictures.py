@@ -14,8 +14,8 @@ from PIL import Image
 
 from housing import Material, ModeSet, assemble, solve_modes
 from housing.errors import RendererUnavailableError
-from housing.pictures import render_modes
-from housing.renderer import find_renderer
+from housing.pictures.images import render_modes
+from housing.pictures.scene import find_renderer
 from meshes import Mesh
 
 REFERENCES = Path(__file__).parent / "references"

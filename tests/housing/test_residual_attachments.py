@@ -13,19 +13,19 @@ from scipy import linalg, sparse
 from housing import (
     HousingError,
     Material,
-    Matrices,
     ModeSet,
-    ReductionError,
     Seat,
     Support,
     add_residual_modes,
     assemble,
     attach_fixtures,
-    fixed_freedoms,
-    seat_matrix,
     solve_modes,
 )
-from housing.reduction import residual_attachment_modes
+from housing.errors import ReductionError
+from housing.fem.matrices import Matrices
+from housing.model.seats import seat_matrix
+from housing.model.supports import fixed_freedoms
+from housing.modes.residual_modes import residual_attachment_modes
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

@@ -5,8 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from housing import HousingError, Material, Matrices, Support, assemble, attach_fixtures, fixed_freedoms, solve_modes
-from meshes import GeometryError, Mesh, facet_nodes
+from housing import HousingError, Material, Support, assemble, attach_fixtures, solve_modes
+from housing.fem.matrices import Matrices
+from housing.model.supports import fixed_freedoms
+from meshes import GeometryError, Mesh
+from meshes.elements import facet_nodes
 
 STIFFNESS = (5e8, 9e9, 3e8)
 

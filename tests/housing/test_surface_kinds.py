@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import Material, Seat, Sensor, Support, assemble, attach_fixtures, seat_matrix, sensor_port
-from housing.surface import NearestOnSurface, surface_point, surface_quadrature
-from meshes import KINDS, Mesh, facet_centers, facet_nodes, facet_normals, pick_facets
-from meshes.elements import SOLIDS
+from housing import Material, Seat, Sensor, Support, assemble, attach_fixtures
+from housing.fem.surface import NearestOnSurface, surface_point, surface_quadrature
+from housing.model.seats import seat_matrix, sensor_port
+from meshes import Mesh
+from meshes.elements import KINDS, SOLIDS, facet_centers, facet_nodes, facet_normals, pick_facets
 
 SIZE = (1.2, 0.8, 0.5)
 

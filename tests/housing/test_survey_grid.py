@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from housing import SURVEY_COUNTS, HousingError, Survey, survey_grid
+from housing import HousingError
+from housing.measured.survey_planning import SURVEY_COUNTS, Survey, survey_grid
 from meshes import BoxGeometry, Mesh
 
 NORMALS = {"top": (0, 1, 0), "left": (-1, 0, 0), "right": (1, 0, 0), "back": (0, 0, -1), "front": (0, 0, 1)}

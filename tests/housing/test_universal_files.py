@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from universal_surveys import SIX_DIGITS, motion, same_motion, survey
 
-from housing import MeasuredDataError
+from housing.errors import MeasuredDataError
 from housing.measured import (
     MeasuredGeometry,
     MeasuredModes,

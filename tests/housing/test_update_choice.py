@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
-from housing.dominance import Dominance
+from housing.modes.dominance import Dominance
 from housing.updating import Target, measure
-from housing.updating.choice import GAP_SCALE, choice_shortfall, choose_modes
+from housing.updating.mode_choice import GAP_SCALE, choice_shortfall, choose_modes
 from housing.updating.surrogate import ModalState
 
 FloatArray = npt.NDArray[np.float64]

@@ -26,10 +26,10 @@ from housing.updating import (
     search,
     values_at,
 )
+from housing.updating.cross_validation import random_frequencies
 from housing.updating.misfit import is_met
 from housing.updating.parameters import coordinate_bounds
-from housing.updating.search import Design
-from housing.updating.worth import random_frequencies
+from housing.updating.trust_region import Design
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -22,9 +22,9 @@ from housing.updating import (
     search,
     serial_map,
 )
-from housing.updating.bias import Debiased, debiased
-from housing.updating.rates import ModalSensitivities
-from housing.updating.search import Design
+from housing.updating.mesh_bias import Debiased, debiased
+from housing.updating.sensitivities import ModalSensitivities
+from housing.updating.trust_region import Design
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy import linalg
 
 from housing.updating import ModalState, Surrogate
-from housing.updating.rates import ModalSensitivities
+from housing.updating.sensitivities import ModalSensitivities
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshes import GeometryError, facet_nodes, mesh_quality, read_mesh
-from meshes.elements import KINDS
+from meshes import GeometryError, mesh_quality, read_mesh
+from meshes.elements import KINDS, facet_nodes
 
 # Two unit cubes side by side along x, node numbers with gaps.
 CUBES = """\

@@ -2,20 +2,8 @@
 
 import pytest
 
-from meshes import (
-    Bore,
-    Boss,
-    BoxGeometry,
-    BoxMisfitError,
-    Cover,
-    CoverBolts,
-    Feet,
-    Fillets,
-    Flange,
-    GeometryError,
-    Rib,
-    WallThickness,
-)
+from meshes import Bore, Boss, BoxGeometry, Cover, CoverBolts, Feet, Fillets, Flange, GeometryError, Rib, WallThickness
+from meshes.box.geometry import BoxMisfitError
 
 BOLTS = CoverBolts(0.006, (3, 3), patch_diameter=0.0095)
 TOP = Cover("top", bolts=BOLTS)

@@ -10,18 +10,17 @@ from meshes import (
     BoxGeometry,
     Cover,
     CoverBolts,
-    Facets,
     Feet,
     Fillets,
     Flange,
     Mesh,
     Rib,
     WallThickness,
-    facet_nodes,
     find_bores,
     mesh_box,
 )
-from meshes.shapes import quadrature, shape_functions
+from meshes.elements import Facets, facet_nodes
+from meshes.shape_functions import quadrature, shape_functions
 
 SIZE = (0.20, 0.16, 0.24)
 WALL = WallThickness(left=0.010, right=0.012, bottom=0.015, top=0.011, back=0.013, front=0.014)

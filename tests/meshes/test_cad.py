@@ -14,9 +14,11 @@ import numpy as np
 import psutil
 import pytest
 
-from meshes import GeometryError, MeshSizeError, cylinder_facets, facet_centers, find_bores, mesh_cad, plane_facets
+from meshes import GeometryError, cylinder_facets, find_bores, mesh_cad, plane_facets
 from meshes.cad.reading import _errors_of, _reading_limit
-from meshes.gmsh_session import gmsh_session
+from meshes.elements import facet_centers
+from meshes.errors import MeshSizeError
+from meshes.gmsh_meshing import gmsh_session
 
 SIZE, WALL, BORE = np.array([200.0, 150.0, 120.0]), 10.0, 40.0  # mm
 # The box without its cavity and without two discs of the walls.

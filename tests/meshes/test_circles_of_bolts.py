@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshes import GeometryError, circle_facets, diagnose, facet_centers, facet_normals, mesh_cad
-from meshes.gmsh_session import gmsh_session
+from meshes import GeometryError, circle_facets, diagnose, mesh_cad
+from meshes.elements import facet_centers, facet_normals
+from meshes.gmsh_meshing import gmsh_session
 
 
 @pytest.fixture(scope="module")

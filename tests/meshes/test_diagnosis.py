@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from meshes import ElementBlock, GeometryError, Mesh, MeshDefect, diagnose
-from meshes.connections import bodies
+from meshes.diagnosis import bodies
 from meshes.elements import KINDS, SOLIDS
 
 

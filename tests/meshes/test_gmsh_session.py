@@ -7,7 +7,7 @@ import textwrap
 import pytest
 
 from meshes import BoxGeometry, GeometryError, WallThickness, mesh_box
-from meshes.gmsh_session import SYSTEM_PACKAGES, gmsh_session
+from meshes.gmsh_meshing import SYSTEM_PACKAGES, gmsh_session
 
 
 def _run(script: str) -> subprocess.CompletedProcess[str]:
@@ -30,7 +30,8 @@ def test_a_gmsh_that_cannot_be_loaded_is_answered_with_the_packages_to_install()
                 if name == "gmsh":
                     raise OSError("libGLU.so.1: cannot open shared object file: No such file or directory")
         sys.meta_path.insert(0, Blocker())
-        from meshes import BoxGeometry, MesherUnavailableError, WallThickness, mesh_box
+        from meshes import BoxGeometry, WallThickness, mesh_box
+        from meshes.errors import MesherUnavailableError
         try:
             mesh_box(BoxGeometry((0.2, 0.2, 0.2), WallThickness.uniform(0.02)), 0.1)
         except MesherUnavailableError as error:

@@ -8,24 +8,11 @@ import meshio
 import numpy as np
 import pytest
 
-from meshes import (
-    KINDS,
-    ElementBlock,
-    GeometryError,
-    Mesh,
-    diagnose,
-    facet_centers,
-    facet_nodes,
-    facets_of,
-    mesh_quality,
-    pick_facets,
-    read_mesh,
-    write_mesh,
-)
-from meshes.elements import SOLIDS
-from meshes.files import WRITABLE
-from meshes.gmsh_session import gmsh_session
-from meshes.shapes import shape_functions
+from meshes import ElementBlock, GeometryError, Mesh, diagnose, mesh_quality, read_mesh, write_mesh
+from meshes.elements import KINDS, SOLIDS, facet_centers, facet_nodes, facets_of, pick_facets
+from meshes.formats.files import WRITABLE
+from meshes.gmsh_meshing import gmsh_session
+from meshes.shape_functions import shape_functions
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 

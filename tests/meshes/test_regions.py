@@ -11,19 +11,18 @@ from meshes import (
     Boss,
     BoxGeometry,
     ElementBlock,
-    Facets,
     Fillets,
     GeometryError,
     Mesh,
     WallThickness,
     box_facets,
     cylinder_facets,
-    facet_nodes,
     find_bores,
     mesh_box,
     plane_facets,
     with_bore,
 )
+from meshes.elements import Facets, facet_nodes
 
 FloatArray = npt.NDArray[np.float64]
 

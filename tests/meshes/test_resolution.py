@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from housing import Material, assemble, solve_modes
-from meshes import Mesh, WaveCarrier, resolution_defects, wall_thickness
-from meshes.quality import edge_lengths
-from meshes.resolution import locking_excess
+from meshes import Mesh, resolution_defects
+from meshes.quality import WaveCarrier, edge_lengths, locking_excess, wall_thickness
 
 STEEL = Material(207e9, 0.3, 7850.0)
 

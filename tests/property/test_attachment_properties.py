@@ -12,7 +12,6 @@ from scipy.spatial.transform import Rotation
 
 from housing import (
     Bushing,
-    Fixture,
     Joint,
     LumpedMass,
     Material,
@@ -21,9 +20,10 @@ from housing import (
     assemble,
     attach_fixtures,
     modal_damping,
-    rigid_body,
     solve_modes,
 )
+from housing.model.fixtures import Fixture
+from housing.model.patches import rigid_body
 from meshes import BoxGeometry, Feet, Mesh, WallThickness, mesh_box
 
 FloatArray = npt.NDArray[np.float64]

@@ -8,23 +8,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coupling import (
-    Component,
-    ContactConnector,
     CoupledSystem,
-    EnergyBalance,
-    HarmonicLoad,
-    LinearConnector,
     TransientOutputs,
-    TransientResult,
     TransientSettings,
     amplitude_spectrum,
     coupled_modes,
-    linear_matrices,
-    mean_contact,
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact, piecewise
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector
+from coupling.machine.coupled_system import HarmonicLoad
+from coupling.statics.mean_mesh import linear_matrices, mean_contact
+from coupling.time.transient import EnergyBalance, TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -14,12 +14,12 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     ProfileDeviation,
     TipRelief,
-    face_slices,
     loaded_transmission_error,
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.contact.tooth_force_kernels import tooth_force
 
 PHASES = np.arange(12) / 12.0
 SMALL = st.floats(-15e-6, 15e-6)

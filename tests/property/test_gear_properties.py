@@ -16,14 +16,13 @@ from coupling.gears import (
     RootRelief,
     TipRelief,
     ToothContact,
-    inverse_involute,
-    involute,
-    iso6336_stiffness,
     loaded_transmission_error,
-    piecewise,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.gears.contact.tooth_force_kernels import tooth_force
+from coupling.gears.geometry.involute import inverse_involute, involute
+from coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 RELIEF_START = 0.75
 """Fraction of the tip's roll angle where the reliefs drawn here begin."""

@@ -9,20 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from housing import (
-    Factorizer,
-    Material,
-    Matrices,
-    Seat,
-    Sensor,
-    Support,
-    assemble,
-    attach_fixtures,
-    seat_matrix,
-    sensor_port,
-    solve_modes,
-)
-from meshes import Bore, BoxGeometry, Mesh, WallThickness, facet_corners, mesh_box
+from housing import Material, Seat, Sensor, Support, assemble, attach_fixtures, solve_modes
+from housing.fem.factorization import Factorizer
+from housing.fem.matrices import Matrices
+from housing.model.seats import seat_matrix, sensor_port
+from meshes import Bore, BoxGeometry, Mesh, WallThickness, mesh_box
+from meshes.elements import facet_corners
 
 STEEL = Material(207e9, 0.3, 7850.0)
 few = settings(max_examples=12, deadline=None)

@@ -14,33 +14,20 @@ from hypothesis import strategies as st
 from coupling import (
     CoupledMachine,
     GearMesh,
-    Histories,
-    HousingComponent,
     MountedBearing,
     MountedGear,
-    RotorComponent,
     Torque,
     TransientOutputs,
     TransientSettings,
     Unbalance,
     assemble_machine,
-    histories,
-    rotor_component,
     simulate,
-    transient_outputs,
 )
 from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
-from rotors import (
-    Bearing,
-    Disc,
-    ModalRotor,
-    Rotor,
-    Segment,
-    ShaftMaterial,
-    add_attachment_modes,
-    solve_lateral_modes,
-    solve_torsional_modes,
-)
+from coupling.machine.components import HousingComponent, RotorComponent, rotor_component
+from coupling.signals.histories import Histories, histories, transient_outputs
+from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
+from rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

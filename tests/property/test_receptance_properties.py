@@ -19,11 +19,9 @@ from scipy.spatial.transform import Rotation
 
 from housing import (
     Bushing,
-    Fixture,
     Joint,
     LumpedMass,
     Material,
-    Matrices,
     ModeSet,
     Mount,
     Patch,
@@ -32,14 +30,15 @@ from housing import (
     Support,
     assemble,
     attach_fixtures,
-    damping_ratios,
-    fixed_freedoms,
     modal_damping,
     receptance,
-    seat_matrix,
-    sensor_port,
     solve_modes,
 )
+from housing.fem.matrices import Matrices
+from housing.model.fixtures import Fixture
+from housing.model.seats import seat_matrix, sensor_port
+from housing.model.supports import fixed_freedoms
+from housing.modes.effective_mass import damping_ratios
 from meshes import Bore, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
 
 FloatArray = npt.NDArray[np.float64]

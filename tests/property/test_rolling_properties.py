@@ -10,7 +10,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rotors import EquilibriumError
-from rotors.rolling import COORDINATES, BallRow, RollerRow, RollingBearing, rolling_equilibrium, rolling_reaction
+from rotors.rolling_bearings import (
+    COORDINATES,
+    BallRow,
+    RollerRow,
+    RollingBearing,
+    rolling_equilibrium,
+    rolling_reaction,
+)
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -21,13 +21,13 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    add_attachment_modes,
     critical_speeds,
     rest_frequencies,
     solve_lateral_modes,
     solve_torsional_modes,
     solve_whirl,
 )
+from rotors.modes.residual_modes import add_attachment_modes
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 BRASS = ShaftMaterial(100e9, 37e9, 8500.0)

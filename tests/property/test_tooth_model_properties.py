@@ -9,7 +9,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from coupling.gears import (
-    CompliantTeeth,
     CornellStiffness,
     ElasticRingStiffness,
     Gear,
@@ -17,8 +16,9 @@ from coupling.gears import (
     GearPairGeometry,
     PotentialEnergyStiffness,
     WeberBanaschekStiffness,
-    within_fitted_range,
 )
+from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from coupling.gears.stiffness.foundation import within_fitted_range
 
 MODELS: list[CompliantTeeth] = [
     PotentialEnergyStiffness("trochoid"),

@@ -25,7 +25,8 @@ import numpy as np
 import numpy.typing as npt
 from double_double import DoubleDouble
 
-from rotors import Coupling, Rotor, Section, Segment
+from rotors import Coupling, Rotor, Segment
+from rotors.model.material import Section
 
 FloatArray = npt.NDArray[np.float64]
 

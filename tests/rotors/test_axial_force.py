@@ -6,16 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rotors import (
-    Coupling,
-    RadialSupport,
-    Rotor,
-    RotorError,
-    Segment,
-    ShaftMaterial,
-    buckling_factor,
-    solve_lateral_modes,
-)
+from rotors import Coupling, RadialSupport, Rotor, RotorError, Segment, ShaftMaterial, solve_lateral_modes
+from rotors.modes.lateral import buckling_factor
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 LENGTH, DIAMETER = 0.8, 0.04

@@ -21,7 +21,7 @@ from rotors import (
     solve_lateral_modes,
     solve_torsional_modes,
 )
-from rotors.shaft import station_inertias
+from rotors.model.shaft import station_inertias
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 

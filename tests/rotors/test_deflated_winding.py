@@ -5,10 +5,10 @@ import numpy.typing as npt
 import pytest
 
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, rest_frequencies, solve_lateral_modes, solve_whirl
-from rotors.exact_roots import constant_speed
-from rotors.spatial_chain import whirl_equations
-from rotors.whirl_certificate import oscillating
-from rotors.winding import count_by_argument_principle
+from rotors.whirl.argument_principle import count_by_argument_principle
+from rotors.whirl.completeness import oscillating
+from rotors.whirl.eigenvalues import constant_speed
+from rotors.whirl.equations import whirl_equations
 
 ComplexArray = npt.NDArray[np.complex128]
 

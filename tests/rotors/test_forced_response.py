@@ -12,27 +12,24 @@ from hypothesis import strategies as st
 from rotors import (
     AxisSpring,
     Bearing,
-    Bow,
     Coupling,
     Disc,
-    HarmonicForce,
     Pedestal,
     Rotor,
     RotorError,
     Segment,
     ShaftMaterial,
-    StaticForce,
-    Torque,
-    TorsionalDashpot,
     Unbalance,
-    bow_shape,
-    frequency_response,
-    harmonic_response,
     solve_torsional_modes,
     static_deflection,
     torsional_response,
     unbalance_response,
 )
+from rotors.analyses.harmonic_response import frequency_response, harmonic_response
+from rotors.analyses.statics import StaticForce
+from rotors.analyses.torsional_response import Torque, TorsionalDashpot
+from rotors.analyses.unbalance import bow_shape
+from rotors.model.loads import Bow, HarmonicForce
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 SPRING = ShaftMaterial(211e9, 81.2e9, 0.0)

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from coupling.contact_kernels import evaluate_contact
-from coupling.gears.friction_kernels import friction_history
-from coupling.gears.kernels import penetration
-from coupling.gears.law_table import law_table
-from coupling.periodic.switches import by_pairs
-from rotors import kernel_cache
-from rotors.banded_kernels import factor
-from rotors.compiled import counted
+from coupling.gears.contact.lookup_tables import law_table
+from coupling.gears.contact.tooth_force_kernels import friction_history, penetration
+from coupling.periodic.switch_kernels import by_pairs
+from coupling.time.contact_kernels import evaluate_contact
+from rotors.numerics import kernel_cache
+from rotors.numerics.banded_kernels import factor
+from rotors.numerics.compiled import counted
 
 COMPILED = Path(kernel_cache.__file__).parent
 HOME = kernel_cache.__name__.rpartition(".")[0]

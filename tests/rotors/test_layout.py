@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial
-from rotors.spatial_chain import WhirlEquations, whirl_equations
-from rotors.spatial_ties import coupled_motions
+from rotors.whirl.circular_coordinates import coupled_motions
+from rotors.whirl.equations import WhirlEquations, whirl_equations
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISCS = [Disc.from_dimensions(at, 0.07, 0.28, 0.05, STEEL.density) for at in (0.5, 1.0)]

@@ -13,12 +13,12 @@ from rotors import (
     RotorError,
     Segment,
     ShaftMaterial,
-    add_rod_attachment_modes,
     modal_rotor,
     solve_lateral_modes,
     solve_torsional_modes,
     solve_whirl,
 )
+from rotors.modes.residual_modes import add_rod_attachment_modes
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 BAR = Segment(0.25, 0.05, 0.0, STEEL)

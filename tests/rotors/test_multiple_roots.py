@@ -14,10 +14,10 @@ from rotors import (
     Segment,
     ShaftMaterial,
     solve_lateral_modes,
-    solve_torsional_chain,
     solve_torsional_modes,
 )
 from rotors.certificate import certify
+from rotors.modes.torsional_and_axial import solve_torsional_chain
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 PIN = math.inf

@@ -8,7 +8,7 @@ import pytest
 from scipy import integrate, optimize, special
 
 from rotors import EquilibriumError, RotorError
-from rotors.rolling import (
+from rotors.rolling_bearings import (
     BallRow,
     ContactElasticity,
     RollerRow,

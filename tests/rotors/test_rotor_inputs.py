@@ -9,6 +9,9 @@ import pytest
 
 import rotors
 from rotors import Bearing, Disc, RadialSupport, Rotor, RotorError, Segment, ShaftMaterial
+from rotors.model.material import shear_coefficient
+from rotors.modes.torsional_and_axial import solve_torsional_chain
+from rotors.whirl.modal_projection import whirl_basis
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 BAR = Segment(0.4, 0.03, 0.01, STEEL)
@@ -39,7 +42,7 @@ def test_segment_inertias_are_those_of_a_hollow_cylinder() -> None:
     ],
 )
 def test_shear_coefficient_limits(formula: str, bore: float, expected: float) -> None:
-    assert rotors.shear_coefficient(formula, bore, 0.3) == pytest.approx(expected, rel=1e-8)  # type: ignore[arg-type]
+    assert shear_coefficient(formula, bore, 0.3) == pytest.approx(expected, rel=1e-8)  # type: ignore[arg-type]
 
 
 def test_rotor_sums_its_parts_and_merges_its_stations() -> None:
@@ -94,12 +97,12 @@ def test_wrong_input_is_named(build, message: str) -> None:
         (lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 1.0, 1.0)], 0.0), "bearing 'b' position"),
         (lambda r: rotors.solve_whirl(r, [], math.inf), "speed is inf"),
         (
-            lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 0.0, 1.0)], 0.0, basis=rotors.whirl_basis(r, [])),
+            lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 0.0, 1.0)], 0.0, basis=whirl_basis(r, [])),
             "supports of the basis",
         ),
-        (lambda _: rotors.solve_torsional_chain([1.0, 2.0], [1.0, 1.0]), "one spring between each two"),
-        (lambda _: rotors.solve_torsional_chain([1.0, 2.0], [0.0]), "stiffnesses"),
-        (lambda _: rotors.solve_torsional_chain([1.0, 2.0], [1.0], ground=[1.0]), "one stiffness for each inertia"),
+        (lambda _: solve_torsional_chain([1.0, 2.0], [1.0, 1.0]), "one spring between each two"),
+        (lambda _: solve_torsional_chain([1.0, 2.0], [0.0]), "stiffnesses"),
+        (lambda _: solve_torsional_chain([1.0, 2.0], [1.0], ground=[1.0]), "one stiffness for each inertia"),
         (lambda r: rotors.solve_torsional_modes(r, [rotors.AxisSpring(1.0, 1.0)]), "rotor 'r' spring position is 1.0"),
         (lambda r: rotors.rest_frequencies(r, [], frequency_limit=-1.0), "frequency_limit is -1.0"),
         (lambda r: rotors.rest_frequencies(r, [], frequency_limit=1.0, count=1), "one of the two"),

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, WhirlSolver, campbell, solve_whirl
-from rotors.coalesced_roots import refine_roots
-from rotors.exact_roots import constant_speed
-from rotors.shaft import MassModel
-from rotors.spatial_chain import MOST_GROWTH, WhirlEquations, whirl_equations, whirl_reach
-from rotors.spatial_field import ShaftMotion
-from rotors.spatial_ties import coupled_motions
-from rotors.whirl import MOST_HELD
+from rotors.model.shaft import MassModel
+from rotors.whirl.circular_coordinates import coupled_motions
+from rotors.whirl.eigenvalues import constant_speed, refine_roots
+from rotors.whirl.equations import MOST_GROWTH, WhirlEquations, whirl_equations, whirl_reach
+from rotors.whirl.motion import ShaftMotion
+from rotors.whirl.whirl_modes import MOST_HELD
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISC = Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0)

@@ -14,15 +14,15 @@ from rotors import (
     Rotor,
     Segment,
     ShaftMaterial,
-    Torque,
     solve_axial_modes,
     solve_lateral_modes,
-    solve_torsional_chain,
     solve_torsional_modes,
     torsional_response,
 )
-from rotors.root_count import lowest_natural_frequencies
-from rotors.rotor_lines import axial_shaft_on, discretised_bending_shaft
+from rotors.analyses.torsional_response import Torque
+from rotors.modes.torsional_and_axial import solve_torsional_chain
+from rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
+from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 # Without mass, and so stiff that it moves as a rigid body.

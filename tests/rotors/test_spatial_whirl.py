@@ -19,17 +19,16 @@ from rotors import (
     Segment,
     ShaftMaterial,
     campbell,
-    critical_speed_map,
     critical_speeds,
     rest_frequencies,
     solve_lateral_modes,
     solve_whirl,
 )
-from rotors.coalesced_roots import refine_roots
-from rotors.exact_roots import constant_speed
-from rotors.spatial_chain import whirl_equations, whirl_reach
-from rotors.spatial_ties import coupled_motions
-from rotors.whirl_certificate import certified_roots, count_roots, oscillating
+from rotors.analyses.critical_speeds import critical_speed_map
+from rotors.whirl.circular_coordinates import coupled_motions
+from rotors.whirl.completeness import certified_roots, count_roots, oscillating
+from rotors.whirl.eigenvalues import constant_speed, refine_roots
+from rotors.whirl.equations import whirl_equations, whirl_reach
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 ZERO = np.zeros((2, 2))

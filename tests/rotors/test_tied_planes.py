@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve_whirl
-from rotors.exact_roots import refine_each
-from rotors.projection import Pencil, basis_for, pencils
-from rotors.spatial_chain import whirl_chain
-from rotors.whirl_certificate import NO_OSCILLATION
+from rotors.whirl.completeness import NO_OSCILLATION
+from rotors.whirl.eigenvalues import refine_each
+from rotors.whirl.equations import whirl_chain
+from rotors.whirl.modal_projection import Pencil, basis_for, pencils
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISCS = [Disc.from_dimensions(at, 0.07, diameter, 0.05, STEEL.density) for at, diameter in ((0.5, 0.28), (1.0, 0.35))]

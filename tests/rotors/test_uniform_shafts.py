@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from rotors import RadialSupport, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
-from rotors.rotor_lines import free_bending_shaft
+from rotors.transfer_matrix.rotor_shafts import free_bending_shaft
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 

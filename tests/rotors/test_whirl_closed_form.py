@@ -13,13 +13,13 @@ from rotors import (
     RotorError,
     Segment,
     ShaftMaterial,
-    add_attachment_modes,
     critical_speeds,
     rest_frequencies,
     solve_lateral_modes,
     solve_whirl,
-    whirl_basis,
 )
+from rotors.modes.residual_modes import add_attachment_modes
+from rotors.whirl.modal_projection import whirl_basis
 
 # A shaft without mass, stiff enough that a force of the bearings' size bends it by 1e-11 of their deflection.
 RIGID = ShaftMaterial(2e20, 8e19, 0.0)

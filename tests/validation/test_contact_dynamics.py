@@ -15,16 +15,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
-    Component,
-    ContactConnector,
-    CoupledSystem,
-    TransientOutputs,
-    TransientResult,
-    TransientSettings,
-    simulate,
-)
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector
+from coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]

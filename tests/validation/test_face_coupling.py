@@ -14,9 +14,11 @@ import numpy.typing as npt
 import pytest
 from scipy import sparse
 
-from coupling.gears import Gear, tooth_outline
-from coupling.gears.face_coupling import tooth_coupling
-from housing import Factorization, Factorizer, Material, assemble
+from coupling.gears import Gear
+from coupling.gears.contact.face_slices import tooth_coupling
+from coupling.gears.geometry.profile import tooth_outline
+from housing import Material, assemble
+from housing.fem.factorization import Factorization, Factorizer
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]

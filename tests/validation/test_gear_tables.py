@@ -21,13 +21,13 @@ from coupling.gears import (
     GearPairGeometry,
     PotentialEnergyStiffness,
     TipRelief,
-    hertz_compliance,
-    iso6336_stiffness,
     loaded_transmission_error,
-    mesh_period_phases,
     mesh_stiffness,
     tooth_contact,
 )
+from coupling.gears.loaded.transmission_error import mesh_period_phases
+from coupling.gears.stiffness.hertz import hertz_compliance
+from coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 Published = Callable[..., None]
 

@@ -17,41 +17,25 @@ import numpy.typing as npt
 import pytest
 
 from coupling import (
-    Component,
-    ContactConnector,
     CoupledMachine,
     CoupledSystem,
     GearMesh,
     MountedBearing,
     MountedGear,
     assemble_machine,
-    contact_at,
     coupled_modes,
-    mesh_error_response,
-    rotor_component,
     stability,
 )
-from coupling.gears import (
-    ConstantStiffness,
-    Gear,
-    GearPairGeometry,
-    ToothContact,
-    module_from_base_radius,
-    piecewise,
-    tooth_contact,
-)
-from rotors import (
-    Bearing,
-    Disc,
-    ModalRotor,
-    Rotor,
-    Segment,
-    ShaftMaterial,
-    add_attachment_modes,
-    solve_lateral_modes,
-    solve_torsional_chain,
-    solve_torsional_modes,
-)
+from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, tooth_contact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.gears.geometry.involute import module_from_base_radius
+from coupling.linear.frequency_response import mesh_error_response
+from coupling.machine.components import Component, rotor_component
+from coupling.machine.connectors import ContactConnector
+from coupling.statics.mean_mesh import contact_at
+from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
+from rotors.modes.residual_modes import add_attachment_modes
+from rotors.modes.torsional_and_axial import solve_torsional_chain
 
 FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]

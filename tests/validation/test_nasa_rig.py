@@ -22,13 +22,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import coupling as room
-from coupling.system import embed
+from coupling import TransientOutputs, TransientSettings, simulate
+from coupling.machine.components import HousingComponent
+from coupling.machine.coupled_system import embed
 from gearwhine.case import Case, load_case
-from gearwhine.stages.comparison import compare_housing
-from gearwhine.stages.gears import solve_gears
-from gearwhine.stages.housing import SolvedHousing, solve_housing
-from gearwhine.stages.machine import build_machine, reduce_housing
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine, reduce_housing
+from gearwhine.solve.comparison import compare_housing
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 
 FloatArray = npt.NDArray[np.float64]
 Runs = Callable[..., "Run"]
@@ -117,16 +118,16 @@ def runs(nominal: Case, solved: SolvedHousing) -> Runs:
         settled = int(np.ceil(SETTLING / period))
         per_revolution = 16384
         none = np.empty((0, machine.system.size))
-        result = room.simulate(
+        result = simulate(
             machine.system,
-            room.TransientSettings(
+            TransientSettings(
                 duration=(settled + RECORDED) * period,
                 record_from=settled * period,
                 sample_interval=period / per_revolution,
                 largest_step=period / given.points_per_revolution,
                 tolerance=given.tolerance,
             ),
-            room.TransientOutputs(none, none, own),
+            TransientOutputs(none, none, own),
         )
         assert result.energy.error < 1e-3
         lines = np.fft.rfft(result.acceleration, axis=0)[::RECORDED] * (2.0 / len(result.acceleration))
@@ -140,7 +141,7 @@ def runs(nominal: Case, solved: SolvedHousing) -> Runs:
     return run
 
 
-def kept(housing: room.HousingComponent, modes: list[int]) -> room.HousingComponent:
+def kept(housing: HousingComponent, modes: list[int]) -> HousingComponent:
     """The housing on some of its modes, without attachments."""
     among = np.ix_(modes, modes)
     return replace(

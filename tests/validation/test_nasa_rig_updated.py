@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
-from gearwhine.stages.comparison import compare_housing
-from gearwhine.stages.housing import solve_housing
+from gearwhine.solve.comparison import compare_housing
+from gearwhine.solve.housing_modes import solve_housing
 
 TABLE_II = "NASA TM-104434 (Choy et al., 1991), Table II, housing modes, after updating"
 MEASURED_HZ = [658.0, 1049.0, 1710.0, 2000.0, 2276.0, 2536.0, 2722.0, 2962.0]

@@ -18,8 +18,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, newton
 
-from coupling import Component, ContactConnector, CoupledSystem, HarmonicLoad
-from coupling.gears import ToothContact, piecewise
+from coupling import CoupledSystem
+from coupling.gears import ToothContact
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector
+from coupling.machine.coupled_system import HarmonicLoad
 from coupling.periodic import PeriodicResponse, periodic_response
 
 Published = Callable[..., None]

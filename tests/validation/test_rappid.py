@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
-from rotors.shaft import station_inertias
+from rotors.model.shaft import station_inertias
 
 SOURCE = "RAPPID, after the ROSS validation notebook"
 REMARK = (

@@ -13,7 +13,7 @@ import math
 import numpy as np
 import pytest
 
-from rotors.rolling import (
+from rotors.rolling_bearings import (
     BallRow,
     RollingBearing,
     catalogue_row,

@@ -25,8 +25,8 @@ import pytest
 
 from housing import Material, ModeSet, Support, assemble, attach_fixtures, solve_modes
 from meshes import ElementBlock, Mesh, read_mesh, write_mesh
-from meshes.files import WRITABLE
-from meshes.gmsh_session import gmsh_session
+from meshes.formats.files import WRITABLE
+from meshes.gmsh_meshing import gmsh_session
 
 Published = Callable[..., None]
 FloatArray = npt.NDArray[np.float64]

@@ -27,10 +27,10 @@ from rotors import (
     ShaftMaterial,
     rest_frequencies,
     solve_lateral_modes,
-    solve_torsional_chain,
     solve_torsional_modes,
     solve_whirl,
 )
+from rotors.modes.torsional_and_axial import solve_torsional_chain
 
 FloatArray = npt.NDArray[np.float64]
 

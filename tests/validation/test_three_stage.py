@@ -18,13 +18,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import coupling as room
+from coupling import TransientOutputs, TransientSettings, amplitude_spectrum, simulate
+from coupling.signals.histories import histories, modal_rows, transient_outputs
+from coupling.signals.spectrum import Spectrum, spectrum_peaks
 from gearwhine.case import Case, load_case
-from gearwhine.stages.bearings import build_bearings
-from gearwhine.stages.build import build_rotor
-from gearwhine.stages.gears import pair_geometries, solve_gears
-from gearwhine.stages.machine import build_machine
-from gearwhine.stages.transient import starting_state
+from gearwhine.from_case.gear_pairs import pair_geometries, solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.from_case.rotors import build_bearings, build_rotor
+from gearwhine.solve.transient import starting_state
 from rotors import rest_frequencies, solve_torsional_modes
 
 FloatArray = npt.NDArray[np.float64]
@@ -49,9 +50,9 @@ class Run:
     torsion: FloatArray  # of stage 1: the rigid rotation and both elastic modes of Table I, shape (3, s)
     lateral: dict[int, FloatArray]  # first mode in x and in y, shape (2, s)
 
-    def lines(self, signal: FloatArray) -> room.Spectrum:
+    def lines(self, signal: FloatArray) -> Spectrum:
         """The whole record under Hann's window: free vibrations are no whole periods of it."""
-        return room.amplitude_spectrum(signal, self.interval, "hann")
+        return amplitude_spectrum(signal, self.interval, "hann")
 
     def settled(self, signal: FloatArray) -> FloatArray:
         return signal[..., -SETTLED * PER_REVOLUTION :]
@@ -68,20 +69,20 @@ def run(case: Case) -> Run:
     assert case.operation is not None
     machine = build_machine(case, None, solve_gears(case))
     period = 2.0 * np.pi / case.operation.speed
-    stages = {stage: room.modal_rows(machine, f"stage-{stage}") for stage in (1, 2, 3)}
-    outputs = room.transient_outputs(machine)
+    stages = {stage: modal_rows(machine, f"stage-{stage}") for stage in (1, 2, 3)}
+    outputs = transient_outputs(machine)
     first = len(outputs.displacement)
     lateral = [rows for stage in stages.values() for rows in (stage.x[:1], stage.y[:1])]
-    result = room.simulate(
+    result = simulate(
         machine.system,
-        room.TransientSettings(
+        TransientSettings(
             duration=case.transient.revolutions * period,
             record_from=0.0,
             sample_interval=period / PER_REVOLUTION,
             largest_step=period / case.transient.points_per_revolution,
             tolerance=case.transient.tolerance,
         ),
-        room.TransientOutputs(
+        TransientOutputs(
             np.concatenate([outputs.displacement, stages[1].torsion[:3], *lateral]),
             outputs.velocity,
             outputs.acceleration,
@@ -89,7 +90,7 @@ def run(case: Case) -> Run:
         initial=starting_state(case, machine),
     )
     assert result.energy.error < 1e-3
-    named = room.histories(machine, result)
+    named = histories(machine, result)
     modal = result.displacement[:, first:].T
     return Run(
         interval=period / PER_REVOLUTION,
@@ -104,7 +105,7 @@ def fails(reason: str) -> pytest.MarkDecorator:
     return pytest.mark.xfail(strict=True, raises=AssertionError, reason=reason)
 
 
-def line_at(spectrum: room.Spectrum, frequency: float, reach: float = 2.5) -> float:
+def line_at(spectrum: Spectrum, frequency: float, reach: float = 2.5) -> float:
     """The highest amplitude within a reach of a frequency [Hz]."""
     return float(spectrum.amplitude[np.abs(spectrum.frequencies - frequency) <= reach].max())
 
@@ -184,7 +185,7 @@ def test_mesh_force_of_stages_1_2_is_led_by_900_and_355_hz(
     run: Run, published: Callable[..., None], remark: Callable[[str, str], None]
 ) -> None:
     spectrum = run.lines(run.force[MESHES[0]])
-    first, second, third = room.spectrum_peaks(spectrum, count=3, limit=LAST_HZ)
+    first, second, third = spectrum_peaks(spectrum, count=3, limit=LAST_HZ)
     published(TEXT, "mesh 1-2, highest line", 900.0, first.frequency, "Hz", abs=0.7)
     published(TEXT, "mesh 1-2, second line", 355.0, second.frequency, "Hz", abs=2.5)
     assert second.amplitude > 5.0 * third.amplitude
@@ -200,13 +201,13 @@ def test_mesh_force_of_stages_1_2_is_led_by_900_and_355_hz(
 def test_shaft_frequency_and_echoes_of_the_other_stages_in_the_mesh_force(
     run: Run, remark: Callable[[str, str], None]
 ) -> None:
-    settled = room.amplitude_spectrum(run.settled(run.force[MESHES[0]]), run.interval)
+    settled = amplitude_spectrum(run.settled(run.force[MESHES[0]]), run.interval)
     at_shaft = settled.amplitude[np.isclose(settled.frequencies, 25.0)].item()
     beside = settled.amplitude[(np.abs(settled.frequencies - 25.0) < 8.0) & ~np.isclose(settled.frequencies, 25.0)]
     assert at_shaft > 4.0 * beside.max()
     # Stage 3's torsional mode, 280 Hz by itself, is heard in the mesh 1-2 as well.
     spectrum = run.lines(run.force[MESHES[0]])
-    echo = room.spectrum_peaks(spectrum, count=1, above=200.0, limit=330.0)[0]
+    echo = spectrum_peaks(spectrum, count=1, above=200.0, limit=330.0)[0]
     assert 240.0 < echo.frequency < 290.0
     remark(
         TEXT,
@@ -289,9 +290,9 @@ def test_modal_responses_of_stage_1_fall_with_the_number_of_the_mode(
     assert np.all(np.diff(fixed) < 0.0)
     # "The ratio of fixed to varying signal magnitudes decreases as the mode number increases", once settled.
     assert np.all(np.diff(fixed / varying) < 0.0)
-    own = room.spectrum_peaks(run.lines(run.torsion[1]), count=1)[0]
+    own = spectrum_peaks(run.lines(run.torsion[1]), count=1)[0]
     published(TEXT, "stage 1's first elastic torsional mode, highest line", 355.0, own.frequency, "Hz", abs=2.5)
-    second = room.spectrum_peaks(run.lines(run.torsion[2]), count=1)[0]
+    second = spectrum_peaks(run.lines(run.torsion[2]), count=1)[0]
     assert second.frequency == pytest.approx(900.0, abs=0.7)
     whole = ", ".join(f"{ratio:.1f}" for ratio in fixed / run.torsion.std(axis=1))
     remark(
@@ -310,12 +311,12 @@ def test_first_lateral_modes_turn_with_the_shafts_and_stage_3_rings(
     for stage, coordinates in run.lateral.items():
         spectrum = run.lines(coordinates)
         amplitude = np.sqrt((spectrum.amplitude**2).sum(axis=0))
-        both = room.Spectrum(spectrum.frequencies, amplitude, amplitude, spectrum.window)
-        highest = [peak.frequency for peak in room.spectrum_peaks(both, count=2, limit=LAST_HZ)]
+        both = Spectrum(spectrum.frequencies, amplitude, amplitude, spectrum.window)
+        highest = [peak.frequency for peak in spectrum_peaks(both, count=2, limit=LAST_HZ)]
         assert any(abs(frequency - 25.0) < 0.7 for frequency in highest)
         ringing[stage] = line_at(both, LATERAL_HZ[3][0]) / line_at(both, 25.0, 0.7)
         if stage == 3:
-            own = room.spectrum_peaks(both, count=1, limit=LAST_HZ)[0].frequency
+            own = spectrum_peaks(both, count=1, limit=LAST_HZ)[0].frequency
             published(TEXT, "stage 3's own first lateral mode in its response", 110.0, own, "Hz", abs=2.5)
     assert ringing[3] > 1.0
     assert max(ringing[1], ringing[2]) < 0.5

@@ -37,11 +37,10 @@ from coupling.gears import (
     loaded_transmission_error,
     mesh_stiffness,
     tooth_contact,
-    tooth_outline,
 )
-from coupling.gears.beam_compliance import PlaneState
-from coupling.gears.profile import flank_points, load_angle
-from meshes.gmsh_session import gmsh_session
+from coupling.gears.geometry.profile import flank_points, load_angle, tooth_outline
+from coupling.gears.stiffness.beam import PlaneState
+from meshes.gmsh_meshing import gmsh_session
 
 ALPHA = math.radians(20.0)
 RIG = Gear("28 teeth", 28, 3.175e-3, ALPHA, 6.35e-3, root_radius=1.35e-3, bore=40e-3)

@@ -14,13 +14,15 @@ from coupling.gears import (
     GearPairGeometry,
     HelixDeviation,
     PotentialEnergyStiffness,
+    loaded_transmission_error,
+    tooth_contact,
+)
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.loaded.contact_pressure import (
     contact_curvature_radius,
     contact_modulus,
     contact_pressure,
-    face_slices,
-    loaded_transmission_error,
     mesh_pressure,
-    tooth_contact,
 )
 
 ANGLE = math.radians(20.0)

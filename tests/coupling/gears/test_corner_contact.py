@@ -15,12 +15,11 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     SquareStiffness,
     TipRelief,
-    corner_contact_range,
-    flank_contact_points,
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force
+from coupling.gears.contact.tooth_force_kernels import tooth_force
+from coupling.gears.geometry.path_of_contact import corner_contact_range, flank_contact_points
 
 ALPHA = math.radians(20.0)
 PINION = Gear("pinion", 24, 3e-3, ALPHA, 10e-3)

@@ -15,9 +15,8 @@ from coupling.gears import (
     ToothCrack,
     loaded_transmission_error,
     tooth_contact,
-    tooth_outline,
 )
-from coupling.gears.profile import load_angle
+from coupling.gears.geometry.profile import load_angle, tooth_outline
 
 GEAR = Gear("cracked", 30, 3e-3, math.radians(20.0), 15e-3)
 ROLLS = np.linspace(GEAR.roll_angle(GEAR.form_radius), GEAR.roll_angle(GEAR.tip_radius), 7)

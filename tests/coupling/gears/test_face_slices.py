@@ -14,14 +14,12 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     Spall,
     TipRelief,
-    face_slices,
     loaded_transmission_error,
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.face_coupling import tooth_coupling
-from coupling.gears.face_slices import FaceSlices, face_loads, slice_stiffness
-from coupling.gears.kernels import tooth_force
+from coupling.gears.contact.face_slices import FaceSlices, face_loads, face_slices, slice_stiffness, tooth_coupling
+from coupling.gears.contact.tooth_force_kernels import tooth_force
 
 ALPHA = math.radians(20.0)
 MODEL = PotentialEnergyStiffness()

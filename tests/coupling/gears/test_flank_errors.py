@@ -19,14 +19,14 @@ from coupling.gears import (
     Spall,
     TipRelief,
     Wear,
-    face_slices,
-    flank_gap,
-    hertz_compliance,
-    hunting_period_mesh,
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.contact.tooth_force_kernels import tooth_force
+from coupling.gears.contact.tooth_pair import flank_gap
+from coupling.gears.loaded.transmission_error import hunting_period_mesh
+from coupling.gears.stiffness.hertz import hertz_compliance
 
 ALPHA = math.radians(20.0)
 PINION = Gear("pinion", 20, 3e-3, ALPHA, 10e-3, profile_shift=0.2)

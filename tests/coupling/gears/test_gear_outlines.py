@@ -9,15 +9,16 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import (
-    Gear,
-    GearError,
-    GearPairGeometry,
+from coupling.gears import Gear, GearError, GearPairGeometry
+from coupling.gears.geometry.profile import (
+    fillet_points,
+    flank_points,
     gear_outline,
+    load_angle,
     meshing_rotations,
     pair_outlines,
+    root_half_angle,
 )
-from coupling.gears.profile import fillet_points, flank_points, load_angle, root_half_angle
 
 FloatArray = npt.NDArray[np.float64]
 

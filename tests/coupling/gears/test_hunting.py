@@ -14,13 +14,11 @@ from coupling.gears import (
     ToothContact,
     ToothCrack,
     Wear,
-    face_slices,
-    hunting_period_mesh,
     loaded_transmission_error,
-    mesh_period_phases,
     tooth_contact,
 )
-from coupling.gears.hunting import _different_periods
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.loaded.transmission_error import _different_periods, hunting_period_mesh, mesh_period_phases
 
 PINION = Gear("pinion", 17, 3e-3, math.radians(20.0), 20e-3, profile_shift=0.2)
 WHEEL = Gear("wheel", 22, 3e-3, math.radians(20.0), 20e-3, profile_shift=-0.2)

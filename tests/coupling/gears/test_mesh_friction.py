@@ -12,11 +12,11 @@ from coupling.gears import (
     GearPairGeometry,
     PotentialEnergyStiffness,
     SquareStiffness,
-    face_slices,
     loaded_transmission_error,
-    mesh_friction,
     tooth_contact,
 )
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.loaded.mesh_friction import mesh_friction
 
 PINION = Gear("pinion", 20, 4e-3, math.radians(20.0), 20e-3)
 PAIR = GearPairGeometry(PINION, replace(PINION, name="wheel", teeth=47))

@@ -5,14 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from coupling.gears import (
-    ElasticRingStiffness,
-    Gear,
-    GearPairGeometry,
-    PotentialEnergyStiffness,
-    iso6336_stiffness,
-)
-from coupling.gears.normal_section import normal_section_gears
+from coupling.gears import ElasticRingStiffness, Gear, GearPairGeometry, PotentialEnergyStiffness
+from coupling.gears.stiffness.compliant_teeth import normal_section_gears
+from coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 
 def pair(degrees: float, teeth: int = 40) -> GearPairGeometry:

@@ -15,15 +15,14 @@ from coupling.gears import (
     ProfileDeviation,
     SquareStiffness,
     TipRelief,
-    WeightedHarmonics,
-    face_slices,
     harris_map,
     loaded_transmission_error,
-    mesh_period_phases,
     optimal_tip_relief,
     tooth_contact,
-    transmission_error_harmonics,
 )
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.loaded.optimal_relief import WeightedHarmonics, transmission_error_harmonics
+from coupling.gears.loaded.transmission_error import mesh_period_phases
 
 ALPHA = math.radians(20.0)
 # TM-104434, Table I: 28 teeth of module 3.175 mm, relief of 0.023 and 0.025 mm from 24 degrees of roll.

@@ -17,13 +17,12 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     SquareStiffness,
     TipRelief,
-    back_flank_pitch_gaps,
     loaded_transmission_error,
-    mesh_period_phases,
-    pitch_gaps,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force, tooth_force_history
+from coupling.gears.contact.tooth_force_kernels import tooth_force, tooth_force_history
+from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pitch_gaps
+from coupling.gears.loaded.transmission_error import mesh_period_phases
 
 ALPHA = math.radians(20.0)
 RELIEF = TipRelief(20e-6, math.radians(24.0))

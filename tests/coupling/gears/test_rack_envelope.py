@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from coupling.gears import Gear, GearError
-from coupling.gears.profile import fillet_points, flank_points, load_angle
+from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,10 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import Gear, StiffnessModelError, ring_body
-from coupling.gears import foundation as sainsot
-from coupling.gears.rim import rim_compliance, ring_compliance
-from coupling.gears.ring_body import Annulus, neighbour_flexibility, root_flexibility
+from coupling.gears import Gear
+from coupling.gears.errors import StiffnessModelError
+from coupling.gears.stiffness import foundation as sainsot
+from coupling.gears.stiffness import ring_body
+from coupling.gears.stiffness.ring_body import (
+    Annulus,
+    neighbour_flexibility,
+    rim_compliance,
+    ring_compliance,
+    root_flexibility,
+)
 
 NU = 0.3
 STRESS, STRAIN = (3.0 - NU) / (1.0 + NU), 3.0 - 4.0 * NU

@@ -16,11 +16,11 @@ from coupling.gears import (
     SquareStiffness,
     TipRelief,
     loaded_transmission_error,
-    mesh_period_phases,
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.kernels import tooth_force
+from coupling.gears.contact.tooth_force_kernels import tooth_force
+from coupling.gears.loaded.transmission_error import mesh_period_phases
 
 ALPHA = math.radians(20.0)
 PLAIN = Gear("plain", 28, 3.175e-3, ALPHA, 6.35e-3)

@@ -10,21 +10,19 @@ import pytest
 
 from coupling.gears import (
     STIFFNESS_MODELS,
-    CompliantTeeth,
-    ContactAccuracyError,
     Gear,
     GearError,
     GearPairGeometry,
     Iso6336Stiffness,
-    PiecewiseCubic,
     PotentialEnergyStiffness,
-    StiffnessModelError,
     TableStiffness,
-    ToothCompliance,
-    iso6336_stiffness,
-    piecewise,
     stiffness_model,
 )
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.gears.errors import ContactAccuracyError, StiffnessModelError
+from coupling.gears.piecewise_cubic import PiecewiseCubic
+from coupling.gears.stiffness.compliant_teeth import CompliantTeeth, ToothCompliance
+from coupling.gears.stiffness.iso6336 import iso6336_stiffness
 from gearwhine.case.gears import ToothStiffness
 
 ALPHA = math.radians(20.0)

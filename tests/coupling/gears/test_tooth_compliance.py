@@ -7,21 +7,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, simpson
 
-from coupling.gears import (
-    Gear,
-    GearError,
-    GearPairGeometry,
-    PotentialEnergyStiffness,
-    StiffnessModelError,
-    foundation_compliance,
-    hertz_compliance,
-    iso6336_stiffness,
-    tooth_contact,
-    tooth_outline,
-    within_fitted_range,
-)
-from coupling.gears.foundation import root_section_angle
-from coupling.gears.profile import root_half_angle
+from coupling.gears import Gear, GearError, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from coupling.gears.errors import StiffnessModelError
+from coupling.gears.geometry.profile import root_half_angle, tooth_outline
+from coupling.gears.stiffness.foundation import foundation_compliance, root_section_angle, within_fitted_range
+from coupling.gears.stiffness.hertz import hertz_compliance
+from coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 ALPHA = math.radians(20.0)
 GEARS = [

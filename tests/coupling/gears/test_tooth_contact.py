@@ -19,15 +19,14 @@ from coupling.gears import (
     TableStiffness,
     TipRelief,
     ToothContact,
-    equivalent_mass,
     loaded_transmission_error,
-    mesh_damping,
-    pair_deviation,
-    piecewise,
-    runout_error,
     tooth_contact,
 )
-from coupling.gears.kernels import ranked_penetration, tooth_force, tooth_force_history
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.gears.contact.tooth_force_kernels import ranked_penetration, tooth_force, tooth_force_history
+from coupling.gears.contact.tooth_pair import pair_deviation
+from coupling.gears.geometry.pitch_deviations import runout_error
+from coupling.gears.loaded.gear_pair import equivalent_mass, mesh_damping
 
 ALPHA = math.radians(20.0)
 DEGREE = math.radians(1.0)

@@ -14,18 +14,16 @@ from coupling.gears import (
     GearError,
     GearPairGeometry,
     PotentialEnergyStiffness,
-    StiffnessModelError,
     WeberBanaschekStiffness,
-    iso6336_stiffness,
-    line_contact,
     stiffness_model,
-    tooth_outline,
 )
-from coupling.gears.beam_compliance import axis_crossing, beam_compliance, foot_at_height, foot_at_slope
-from coupling.gears.compliant_teeth import REFERENCE_LINE_LOAD
-from coupling.gears.cornell import cornell_state
-from coupling.gears.iso6336 import blank_factor
-from coupling.gears.profile import fillet_points, load_angle
+from coupling.gears.errors import StiffnessModelError
+from coupling.gears.geometry.profile import fillet_points, load_angle, tooth_outline
+from coupling.gears.stiffness.beam import axis_crossing, beam_compliance, foot_at_height, foot_at_slope
+from coupling.gears.stiffness.compliant_teeth import REFERENCE_LINE_LOAD
+from coupling.gears.stiffness.hertz import line_contact
+from coupling.gears.stiffness.iso6336 import blank_factor, iso6336_stiffness
+from coupling.gears.stiffness.tooth_compliance import cornell_state
 
 ALPHA = math.radians(20.0)
 RIG = Gear("rig", 28, 3.175e-3, ALPHA, 6.35e-3, root_radius=1.35e-3, bore=40e-3)

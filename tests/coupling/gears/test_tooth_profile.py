@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from coupling.gears import Gear, tooth_outline
-from coupling.gears.profile import fillet_points, flank_points, load_angle, root_half_angle
+from coupling.gears import Gear
+from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle, root_half_angle, tooth_outline
 
 ALPHA = math.radians(20.0)
 GEARS = [

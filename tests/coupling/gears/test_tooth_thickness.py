@@ -7,21 +7,19 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from coupling.gears import (
-    Gear,
-    GearError,
-    PointedToothError,
-    ThinTipError,
+from coupling.gears import Gear, GearError
+from coupling.gears.errors import PointedToothError, ThinTipError
+from coupling.gears.geometry.gear import require_tip_thickness
+from coupling.gears.geometry.involute import involute
+from coupling.gears.geometry.profile import flank_points, load_angle
+from coupling.gears.geometry.thickness import (
     chordal_thickness,
-    involute,
     normal_tooth_thickness,
     over_balls,
     pointed_radius,
-    require_tip_thickness,
     span_measurement,
     tooth_thickness,
 )
-from coupling.gears.profile import flank_points, load_angle
 
 ALPHA = math.radians(20.0)
 SPUR = Gear("spur", 28, 3.175e-3, ALPHA, 6.35e-3, profile_shift=0.1)

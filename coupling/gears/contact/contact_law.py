@@ -1,0 +1,466 @@
+r"""Tooth contact law of a gear pair: contact force, stiffness and stored energy by the compression of the mesh.
+
+At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j all whole numbers with positions
+in the range of contact.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, its gap in
+nominal motion.  With the compression ``delta`` of the mesh along the line of action and its rate ``v``:
+
+    F = E + c r v,        E = sum_j k'(s_j) max(0, x - d(s_j)),        delta = x + C E,        1/k' = 1/k - C
+    U = sum_j 1/2 k'(s_j) max(0, x - d(s_j))^2 + 1/2 C E^2,            r = min(1, max_j(x - d(s_j)) / depth)
+
+C is the compliance that the pairs share: the twist of both gears' bodies, which moves all teeth of a gear alike, and
+the dent of the body under a neighbouring tooth (:mod:`coupling.gears.stiffness.ring_body`). It carries the whole load,
+so it is in series with the pairs, which are in parallel, and x is their compression without it. One pair alone has its
+own k again; the compliance of two pairs is the matrix with 1/k(s_j) on its diagonal and C beside it. With C = 0, of
+models that state a pair's stiffness without its bodies, k' = k and x = delta.
+
+The damping fades in over the first ``depth`` of compression: full at first touch, the force would jump at every
+impact, and would pull just before the teeth part.  ``dU/d delta = F - c r v``; the rotation of the teeth also does the
+work ``dU/dp`` per mesh period on the contact (the parametric power ``dU/dp * dp/dt``), which an energy balance at a
+prescribed speed has to include.
+The mesh never pulls: where the damping would take F below zero, F is zero and the springs' power is lost.  The whole
+mesh may separate, and returns through the same law.
+
+Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the pair j at phase p the gap of
+``n = floor(p) - j``: ``d(s_j) + f_n`` then stands for ``d(s_j)`` above
+(:mod:`coupling.gears.geometry.pitch_deviations`).  It is constant while the pair is in contact, so ``dU/dp``, at a
+fixed delta ``sum_j 1/2 dk'/dp (x - d_j)^2 - k' (x - d_j) dd/dp``, keeps its form, and repeats with the hunting period.
+
+The idle flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
+motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign; their own
+pitch gaps come with `ToothContact.back_flanks`.
+
+Where contact is held to the theoretical path, ``0 <= s < eps``, a deflected tooth without relief comes in and goes
+out with a step in force, as in the sources.  The step is exactly at `event_phases`.  With corner contact
+(:mod:`coupling.gears.geometry.path_of_contact`) pairs touch beyond the path too, over a gap that grows with the
+distance from it, and the force has no steps; ``k`` is held there at what it is at the end of the path.
+
+Pairs of damaged teeth (:mod:`coupling.gears.geometry.faults`) have a ``k`` and a ``d`` of their own.
+
+Contact law of two gears with a tooth stiffness model.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.contact.face_slices import FaceSlices
+from coupling.gears.contact.lookup_tables import FaceSliceStates, face_force_table, face_slice_states, law_table
+from coupling.gears.contact.tooth_pair import ToothPairCurves, slope_jumps, tooth_pair_curves, without_shared_compliance
+from coupling.gears.errors import GearError
+from coupling.gears.geometry.pair import GearPairGeometry, IntArray
+from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
+from coupling.gears.piecewise_cubic import PiecewiseCubic
+from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
+
+FloatArray = npt.NDArray[np.float64]
+
+KernelArguments = tuple[FloatArray, int]
+
+_MEAN_PHASES = 256
+"""Phases for the mean stiffness of helical teeth, whose mesh stiffness is smooth."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairPositions:
+    """Positions of the pairs of teeth at n phases, at most m pairs at once.
+
+    Attributes
+    ----------
+    position : ndarray, shape (n, m)
+        Position along the path of contact, base pitches.
+    present : ndarray of bool, shape (n, m)
+        Whether the pair is in the range of contact.
+    kind : ndarray of int, shape (n, m)
+        Number of the kind of pair.
+    entered : ndarray of int, shape (n, m)
+        Phase at which the pair entered.
+    """
+
+    position: FloatArray
+    present: npt.NDArray[np.bool_]
+    kind: IntArray
+    entered: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class PairStates(PairPositions):
+    """Positions, stiffness and deviation of the pairs of teeth.
+
+    Attributes
+    ----------
+    stiffness : ndarray, shape (n, m)
+        Without the shared compliance [N/m]; 0 where absent, and for an uneven face, whose slices have their own.
+    deviation : ndarray, shape (n, m)
+        Gap by profile and pitch [m], infinite where absent; at first touch for an uneven face.
+    pitch_gap : ndarray, shape (n, m)
+        Gap by pitch deviations alone [m].
+    faces : FaceState or None
+        For an uneven face, the slices of the pairs that are present, row by row, without their pitch gaps.
+    """
+
+    stiffness: FloatArray
+    deviation: FloatArray
+    pitch_gap: FloatArray
+    faces: FaceSliceStates | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ToothContact:
+    """Tooth contact law of a gear pair.
+
+    Attributes
+    ----------
+    contact_ratio : float
+        Length of a pair's contact in base pitches.
+    stiffness : PiecewiseCubic
+        Stiffness of one pair that carries alone, its gears' bodies included [N/m], over its range of contact:
+        [0, contact_ratio], or more with corner contact.
+    deviation : PiecewiseCubic
+        Gap of one pair [m] over the same range.
+    damping : float
+        Damping coefficient while the mesh is compressed [N s/m].
+    back_flank_offset : float
+        Phase of the idle flanks, see `GearPairGeometry.back_flank_offset`.
+    pitch_gaps, back_pitch_gaps : ndarray, shape (h,)
+        Gap by pitch deviations of the pair that enters at phase n, at n mod h [m], on the working and on the idle
+        flanks; empty for none.
+    damping_depth : float
+        Compression up to which the damping fades in [m]; 0 for full damping at first touch.
+    variants : tuple of PairCurves
+        Of pairs of damaged teeth, numbered from 1; pairs of sound teeth are number 0.
+    pair_variants, back_pair_variants : ndarray of int, shape (h,)
+        Variant of the pair that enters at phase n, at n mod h; empty where all are alike.
+    faces : FaceSlices or None
+        Slices of the face where it is not loaded evenly; positions are then those of the middle of the face.
+    module : float
+        Of the gears [m], which sets the depth of the table for the kernels. Needed with `faces` alone.
+    shared_compliance : float
+        Compliance that pairs in contact at once share, C [m/N]; below that of any pair alone.
+    """
+
+    contact_ratio: float
+    stiffness: PiecewiseCubic
+    deviation: PiecewiseCubic
+    damping: float = 0.0
+    back_flank_offset: float = 0.0
+    pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
+    back_pitch_gaps: FloatArray = field(default_factory=lambda: np.zeros(0))
+    damping_depth: float = 0.0
+    variants: tuple[ToothPairCurves, ...] = ()
+    pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    back_pair_variants: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    faces: FaceSlices | None = None
+    module: float = 0.0
+    shared_compliance: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the values, the curves of the pairs, the pitch gaps and the indices of variants."""
+        if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
+            raise GearError(f"tooth contact: contact_ratio must be at least 1, got {self.contact_ratio!r}")
+        if not (math.isfinite(self.damping) and self.damping >= 0.0):
+            raise GearError(f"tooth contact: damping must be at least 0 N s/m, got {self.damping!r}")
+        if not (math.isfinite(self.damping_depth) and self.damping_depth >= 0.0):
+            raise GearError(f"tooth contact: damping_depth must be at least 0 m, got {self.damping_depth!r}")
+        if not (math.isfinite(self.shared_compliance) and self.shared_compliance >= 0.0):
+            raise GearError(f"tooth contact: shared_compliance must be at least 0 m/N, got {self.shared_compliance!r}")
+        for curves in self._alone:
+            self._check_curves(curves)
+        for name, gaps in (("pitch_gaps", self.pitch_gaps), ("back_pitch_gaps", self.back_pitch_gaps)):
+            if gaps.ndim != 1 or not np.all(np.isfinite(gaps)):
+                raise GearError(f"tooth contact: {name} must be a row of finite numbers, got shape {gaps.shape}")
+        for name, numbers in (("pair_variants", self.pair_variants), ("back_pair_variants", self.back_pair_variants)):
+            if numbers.size and not (numbers.min() >= 0 and numbers.max() <= len(self.variants)):
+                raise GearError(f"tooth contact: {name} must be 0 to {len(self.variants)}, got {numbers.max()}")
+
+    def _check_curves(self, curves: ToothPairCurves) -> None:
+        start, end = self._slice_range
+        if not (start <= 1e-12 and end >= self.contact_ratio * (1.0 - 1e-12)):
+            raise GearError(
+                f"tooth contact: the stiffness must cover 0 to {self.contact_ratio:.6g} base pitches, "
+                f"got {start:.6g} to {end:.6g}"
+            )
+        for name, curve in (("stiffness", curves.stiffness), ("deviation", curves.deviation)):
+            ends = curve.knots[[0, -1]]
+            if not np.allclose(ends, [start, end], rtol=1e-12, atol=1e-12):
+                raise GearError(
+                    f"tooth contact: {name} must cover {start:.6g} to {end:.6g} base pitches, "
+                    f"got {ends[0]:.6g} to {ends[1]:.6g}"
+                )
+        knots = curves.stiffness.knots
+        between = np.concatenate([knots[:-1] + part * np.diff(knots) for part in (0.0, 0.25, 0.5, 0.75)])
+        stiffness = curves.stiffness(np.append(between, knots[-1]))
+        if np.any(stiffness <= 0.0):
+            raise GearError("tooth contact: the stiffness of a pair must be positive everywhere")
+        if np.any(stiffness * self.shared_compliance >= 1.0):
+            raise GearError(
+                f"tooth contact: pairs of teeth cannot share {self.shared_compliance:.4g} m/N where one of them alone "
+                f"yields {1.0 / stiffness.max():.4g} m/N; expected less"
+            )
+
+    @property
+    def kernel_arguments(self) -> KernelArguments:
+        """Arguments of `coupling.gears.contact.tooth_force_kernels.tooth_force` after phase, compression and rate.
+
+        The row of numbers of `coupling.gears.contact.lookup_tables`, and the index at which it begins.
+        """
+        return self._law, 0
+
+    @cached_property
+    def _law(self) -> FloatArray:
+        curves = self.kinds if self.faces is None else face_force_table(self.faces, self.kinds, self.module)
+        return law_table(curves, self.entering, self.damping, self.damping_depth, self.shared_compliance)
+
+    @property
+    def entering(self) -> FloatArray:
+        """Gap [m] and kind of every pair of the hunting period, shape (h, 2)."""
+        entering = np.zeros((self.hunting_numbers, 2))
+        if self.pitch_gaps.size:
+            entering[:, 0] = self.pitch_gaps
+        if self.pair_variants.size:
+            entering[:, 1] = self.pair_variants
+        return entering
+
+    @cached_property
+    def kinds(self) -> tuple[ToothPairCurves, ...]:
+        """Curves of every kind of pair without the shared compliance, that of sound teeth first."""
+        return tuple(without_shared_compliance(curves, self.shared_compliance) for curves in self._alone)
+
+    @property
+    def _alone(self) -> tuple[ToothPairCurves, ...]:
+        """Curves of every kind of pair that carries alone."""
+        return (ToothPairCurves(self.stiffness, self.deviation), *self.variants)
+
+    @property
+    def contact_range(self) -> tuple[float, float]:
+        """Range of contact of a pair [base pitches]: from 0 to the contact ratio, or wider with corner contact."""
+        start, end = self._slice_range
+        reach = 0.0 if self.faces is None else float(np.abs(self.faces.shift).max())
+        return start - reach, end + reach
+
+    @property
+    def has_corner_contact(self) -> bool:
+        """Whether pairs touch beyond their path of contact."""
+        return self._slice_range[0] < 0.0
+
+    @property
+    def _slice_range(self) -> tuple[float, float]:
+        return float(self.stiffness.knots[0]), float(self.stiffness.knots[-1])
+
+    @property
+    def hunting_numbers(self) -> int:
+        """Number of different pairs of the hunting period, h: 0 where all are alike."""
+        return max(self.pitch_gaps.size, self.pair_variants.size)
+
+    @property
+    def hunting_period(self) -> int:
+        """Mesh periods after which the law repeats: 1 where all pairs are alike."""
+        return max(1, self.hunting_numbers)
+
+    @cached_property
+    def mean_mesh_stiffness(self) -> float:
+        """Mean mesh stiffness over a mesh period, with all pairs on the path in contact [N/m]."""
+        inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]
+        if self.shared_compliance == 0.0:
+            on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
+            return on_path.mean * self.contact_ratio
+        if self.faces is not None:
+            phases = (np.arange(_MEAN_PHASES) + 0.5) / _MEAN_PHASES
+            return float(self.mesh_stiffness(phases).mean())
+        # Between knots of any pair the mesh is smooth: Gauss's quadrature.
+        knots = np.unique(np.concatenate([[0.0, 1.0, self.contact_ratio % 1.0], inner % 1.0]))
+        nodes, weights = np.polynomial.legendre.leggauss(3)
+        width = np.diff(knots)
+        phases = knots[:-1, None] + width[:, None] * 0.5 * (1.0 + nodes)
+        values = self.mesh_stiffness(phases.ravel()).reshape(phases.shape)
+        return float(np.sum(0.5 * width[:, None] * weights * values))
+
+    def mesh_stiffness(self, phases: npt.ArrayLike, *, sound: bool = True) -> FloatArray:
+        """Mesh stiffness with all pairs on the path of contact touching, as without profile deviations [N/m].
+
+        Parameters
+        ----------
+        phases : array_like, shape (n,)
+            Mesh periods.
+        sound : bool
+            Whether to treat all teeth as sound.
+        """
+        places = self.pair_positions(phases)
+        shift, half = (np.zeros(1), 0.0) if self.faces is None else (self.faces.shift, self.faces.half_span)
+        at = places.position[..., None] + shift
+        end = self.contact_ratio
+        if half > 0.0:
+            # The fraction of a slice that lies on the path.
+            part = (np.clip(at + half, 0.0, end) - np.clip(at - half, 0.0, end)) / (2.0 * half)
+        else:
+            part = ((at >= 0.0) & (at < end)).astype(np.float64)
+        part *= places.present[..., None]
+        total = np.zeros(at.shape[0])
+        for number, curves in enumerate(self.kinds[:1] if sound else self.kinds):
+            these = part > 0.0
+            if not sound:
+                these &= (places.kind == number)[..., None]
+            total += np.bincount(np.nonzero(these)[0], part[these] * curves.stiffness(at[these]), total.size)
+        total /= shift.size
+        return np.asarray(total / (1.0 + self.shared_compliance * total), dtype=np.float64)
+
+    @property
+    def event_phases(self) -> tuple[float, ...]:
+        """Phases in [0, 1) at which a pair enters its path of contact (0) or leaves it, ascending.
+
+        Empty for an uneven face, whose pairs enter and leave slice by slice, and for a constant number of pairs: a
+        whole contact ratio with a stiffness and a deviation that continue over the period's ends in value and slope,
+        and all pairs alike.
+        """
+        if self.faces is not None:
+            return ()
+        leaving = self.contact_ratio % 1.0
+        if leaving > 1e-12 and 1.0 - leaving > 1e-12:
+            return (0.0, leaving)
+        steady = all(
+            math.isclose(*curve(np.array([0.0, self.contact_ratio]), derivative), rel_tol=1e-9, abs_tol=floor)
+            for derivative in (0, 1)
+            for curve, floor in ((self.stiffness, 1e-9 * self.stiffness.mean), (self.deviation, 1e-15))
+        )
+        return () if steady and not self.hunting_numbers else (0.0,)
+
+    @property
+    def back_flank_event_phases(self) -> tuple[float, ...]:
+        """Phases in [0, 1) at which a pair of idle flanks would enter or leave, ascending."""
+        return tuple(sorted((self.back_flank_offset - phase) % 1.0 for phase in self.event_phases))
+
+    @property
+    def corner_phases(self) -> tuple[float, ...]:
+        """Phases in [0, 1) at which the slope of a deviation or a stiffness jumps (a relief begins), ascending."""
+        if self.faces is not None:
+            return ()
+        found: set[float] = set()
+        for curves in self.kinds:
+            for curve in (curves.deviation, curves.stiffness):
+                found.update((slope_jumps(curve) % 1.0).tolist())
+        return tuple(sorted(found))
+
+    @property
+    def back_flanks(self) -> ToothContact:
+        """Contact law of the idle flanks by their own phase: the same law with the gaps and kinds of their own pairs.
+
+        A helical face passes through the mesh from its other end.
+        """
+        if not self.hunting_numbers and self.faces is None:
+            return self
+        return replace(
+            self,
+            faces=None if self.faces is None else replace(self.faces, shift=-self.faces.shift),
+            pitch_gaps=self.back_pitch_gaps,
+            back_pitch_gaps=self.pitch_gaps,
+            pair_variants=self.back_pair_variants,
+            back_pair_variants=self.pair_variants,
+        )
+
+    def with_damping(self, damping: float, depth: float = 0.0) -> ToothContact:
+        """Return the same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
+        return replace(self, damping=damping, damping_depth=depth)
+
+    def pair_positions(self, phases: npt.ArrayLike) -> PairPositions:
+        """Positions of the pairs at `phases` (n,)."""
+        phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
+        number = np.floor(phase)
+        fraction = phase - number
+        number = np.where(fraction >= 1.0, number + 1.0, number)
+        fraction = np.where(fraction >= 1.0, 0.0, fraction)
+        start, end = self.contact_range
+        behind = np.arange(math.floor(start), math.ceil(end))
+        position = fraction[:, None] + behind
+        present = (position >= start) & (position < end)
+        entered = number.astype(np.int64)[:, None] - behind
+        kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
+        return PairPositions(position, present, kind, entered)
+
+    def pairs(self, phases: npt.ArrayLike) -> PairStates:
+        """Positions, stiffness and deviation of the pairs at `phases` (n,)."""
+        places = self.pair_positions(phases)
+        position, present, kind, entered = places.position, places.present, places.kind, places.entered
+        stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
+        state = None
+        if self.faces is None:
+            for variant, curves in enumerate(self.kinds):
+                these = present & (kind == variant)
+                stiffness[these] = curves.stiffness(position[these])
+                deviation[these] = curves.deviation(position[these])
+        else:
+            state = face_slice_states(self.faces, self.kinds, position[present], kind[present])
+            deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
+        gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
+        return PairStates(position, present, kind, entered, stiffness, deviation + gap, gap, state)
+
+    def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
+        """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
+        states = self.pairs(phases)
+        total = np.atleast_1d(np.asarray(compression, dtype=np.float64))
+        own = total
+        # The pairs' force is convex in their own compression: from above Newton's method only releases pairs.
+        for _ in range(states.stiffness.shape[1] + 1):
+            touching = states.stiffness * (states.deviation < own[:, None])
+            depth = np.where(touching > 0.0, own[:, None] - states.deviation, 0.0)
+            excess = own - total + self.shared_compliance * (touching * depth).sum(axis=1)
+            own = own - excess / (1.0 + self.shared_compliance * touching.sum(axis=1))
+        return np.asarray(states.stiffness * np.maximum(0.0, own[:, None] - states.deviation), dtype=np.float64)
+
+
+def tooth_contact(
+    geometry: GearPairGeometry,
+    model: StiffnessModel,
+    damping: float = 0.0,
+    *,
+    corner_contact: bool = False,
+    faces: FaceSlices | None = None,
+) -> ToothContact:
+    """Contact law of a gear pair.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    model : StiffnessModel
+        See `coupling.gears.stiffness.models`.  A model of the whole mesh (range exactly one base pitch, when
+        the contact ratio is not) has no single pairs: the profile deviation is then zero.  Pitch deviations remain,
+        one pair for each mesh period.
+    damping : float
+        Damping coefficient [N s/m], e.g. from `mesh_damping`.
+    corner_contact : bool
+        Whether pairs touch beyond their path of contact as well, where a load closes the gap to a corner.
+    faces : FaceSlices or None
+        From `face_slices`, where the face is not loaded evenly; None for a uniform load.
+
+    Returns
+    -------
+    ToothContact
+
+    Raises
+    ------
+    GearError
+        Damaged teeth or corner contact with a model of the whole mesh, which has no single pairs.
+    """
+    variants = pair_variants(geometry)
+    stiffness = model.pair_stiffness(geometry)
+    kinds = tooth_pair_curves(geometry, stiffness, variants.faults, corner_contact)
+    none = np.zeros(0)
+    deviating = any(geometry.driver.pitch_deviations) or any(geometry.driven.pitch_deviations)
+    return ToothContact(
+        float(stiffness.knots[-1]),
+        kinds[0].stiffness,
+        kinds[0].deviation,
+        damping,
+        geometry.back_flank_offset,
+        pitch_gaps(geometry) if deviating else none,
+        back_flank_pitch_gaps(geometry) if deviating else none,
+        variants=kinds[1:],
+        pair_variants=variants.of_pair if len(kinds) > 1 else none.astype(np.int64),
+        back_pair_variants=variants.of_back_pair if len(kinds) > 1 else none.astype(np.int64),
+        faces=faces,
+        module=geometry.driver.module,
+        shared_compliance=shared_compliance(model, geometry),
+    )

@@ -1,0 +1,382 @@
+r"""Load distribution across the face: a pair of teeth as coupled slices.
+
+Where the flanks are not alike across the face (helical, crowned, misaligned), the load spreads along the contact
+line as the teeth yield. The face of width b is cut into slices at places z, each with its own position on the path
+of contact, ``s + eps_beta z / b``, and its own gap. The deflection ``w(z)`` of both teeth and their bodies is
+that of a foundation with shear stiffness (Pasternak's; for gears: Ajmi and Velex, Mech. Mach. Theory 40, 2005),
+
+    k_b w - T w'' = q,        w' = 0 at the ends of the face,
+
+with q the load per width, k_b the stiffness of the teeth per width without the flattening of their contact, and T
+their coupling; contact adds, wherever there is any,
+
+    q = k_h (delta - gap - w) >= 0,
+
+k_h the stiffness of the flattening per width. So a loaded slice deflects its neighbours, and the free ends of a
+tooth are softer. Uniform across the face it is the spur gear's law exactly.
+
+T is that of both teeth in series (:mod:`coupling.gears.contact.face_slices`).
+
+Shear coupling of neighbouring slices of a tooth across its face.
+
+A tooth whose deflection varies across the face, ``W(z) phi(y)``, is a plate of thickness t(y) held at its foot. phi is
+the deflection of a slice as a beam under a load at the middle of the path of contact, with its bending and its shear,
+psi the rotation of its sections; both are 1 in the measure of the loaded point's deflection. Where W has a slope, the
+plate's normals rotate across the face by ``chi(y) W'`` with the least energy (Mindlin's plate):
+
+    T = min over chi of  int 5/6 G t (phi - chi)^2 + G t^3/12 (psi + chi')^2 dy,        chi = 0 at the foot,
+
+the first part shear across the face, the second twist. T is then the shear force that the face passes on for each unit
+of W'. The stiffness of the plate against curvature across the face, of higher order, is left out, and so is the body.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import solveh_banded
+from scipy.linalg.lapack import dptsv
+
+from coupling.gears.errors import ContactAccuracyError
+from coupling.gears.geometry.faults import Spall
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.pair import GearPairGeometry
+from coupling.gears.geometry.profile import tooth_side
+from coupling.gears.stiffness.beam import shear_modulus
+from coupling.gears.stiffness.hertz import hertz_compliance
+
+FloatArray = npt.NDArray[np.float64]
+
+_OUTLINE = 200
+_LAYERS = 300
+
+
+def tooth_coupling(gear: Gear, radius: float) -> float:
+    """Shear coupling T of one tooth across its face [N], with the load at `radius` [m]."""
+    across, along = tooth_side(gear, _OUTLINE)
+    height = along - along[0]
+    load = float(np.interp(radius, np.hypot(across, along), height))
+    edges = np.linspace(0.0, height[-1], _LAYERS + 1)
+    step = edges[1]
+    y = 0.5 * (edges[1:] + edges[:-1])
+    thickness = 2.0 * np.interp(y, height, across)
+    shear = shear_modulus(gear)
+    # The slice as a beam: section rotation psi, deflection phi, of a unit load.
+    below = y < load
+    rotation = _summed(np.where(below, (load - y) * 12.0 / (gear.youngs_modulus * thickness**3), 0.0) * step)
+    psi = 0.5 * (rotation[1:] + rotation[:-1])
+    deflection = _summed((psi + np.where(below, 1.2 / (shear * thickness), 0.0)) * step)
+    unit = float(np.interp(load, edges, deflection))
+    phi, psi = 0.5 * (deflection[1:] + deflection[:-1]) / unit, psi / unit
+    # Least energy by linear elements for chi, from the foot up: a tridiagonal system.
+    across_shear, twist = 5.0 / 6.0 * shear * thickness * step, shear * thickness**3 / 12.0 * step
+    diagonal, beside = 0.25 * across_shear + twist / step**2, 0.25 * across_shear - twist / step**2
+    right, up = 0.5 * across_shear * phi, twist * psi / step
+    bands = np.zeros((2, _LAYERS))
+    bands[1] = diagonal + np.append(diagonal[1:], 0.0)
+    bands[0, 1:] = beside[1:]
+    side = right - up + np.append(right[1:] + up[1:], 0.0)
+    chi = solveh_banded(bands, side)
+    return float(np.sum(across_shear * phi**2 + twist * psi**2) - side @ chi)
+
+
+def _summed(values: FloatArray) -> FloatArray:
+    """Sum `values` (n,) cumulatively from zero, (n + 1,)."""
+    return np.concatenate([[0.0], np.cumsum(values)])
+
+
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+
+DEFAULT_SLICES = 61
+FINE_SLICES = 241
+"""Number of slices where steep edges cross the face. A slice is inside or outside a pit: as the edge moves, the load
+steps by the share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
+_NO_SPAN = 1e-6
+"""In base pitches: a line of contact with a shorter span along the path counts as one point of it."""
+_MOST_ROUNDS = 200
+_ALONE_ROUNDS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class FaceSlices:
+    """Slices of a pair's common face.
+
+    Attributes
+    ----------
+    z : ndarray, shape (n,)
+        Their middles, counted from that of the face [m].
+    width : float
+        Of each [m].
+    shift : ndarray, shape (n,)
+        Their offsets to the position of the pair [base pitches].
+    gap : ndarray, shape (n,)
+        Gap of the flanks there, in addition to that of their profiles [m].
+    flattening : float
+        k_h, load per width over the flattening of the contact [N/m per m].
+    coupling : float
+        T, shear force over slope [N].
+    """
+
+    z: FloatArray
+    width: float
+    shift: FloatArray
+    gap: FloatArray
+    flattening: float
+    coupling: float
+
+    @property
+    def face_width(self) -> float:
+        """Of all slices [m]."""
+        return self.width * self.z.size
+
+    @property
+    def half_span(self) -> float:
+        """Half the span of a slice along the path of contact [base pitches]; 0 for a spur gear."""
+        span = float(np.ptp(self.shift))
+        return 0.5 * span / (self.z.size - 1) if span > _NO_SPAN else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class FaceLoads:
+    """Loaded faces of p pairs.
+
+    Attributes
+    ----------
+    line_load, line_tangent : ndarray, shape (p, n)
+        Load per width [N/m], transverse, and its derivative by compression [N/m per m].
+    force, tangent : ndarray, shape (p,)
+        Of each pair [N], and its derivative by compression [N/m].
+    """
+
+    line_load: FloatArray
+    line_tangent: FloatArray
+    force: FloatArray
+    tangent: FloatArray
+
+
+def face_slices(
+    geometry: GearPairGeometry,
+    *,
+    sense: int = 1,
+    misalignment: float = 0.0,
+    count: int | None = None,
+) -> FaceSlices:
+    """Slices of a gear pair's face.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    sense : int
+        +1 where the driver turns counter-clockwise seen from +z, -1 where clockwise: a right-hand helix then leads at
+        the end of larger z, or lags there.
+    misalignment : float
+        Angle between the flanks in the plane of action [rad], open towards +z where it is positive.
+    count : int or None
+        Number of slices; None for `DEFAULT_SLICES`, or `FINE_SLICES` of helical teeth with a spall across their face.
+    """
+    b = geometry.face_width
+    if count is None:
+        count = FINE_SLICES if geometry.overlap_ratio > 0.0 and _has_pits(geometry) else DEFAULT_SLICES
+    z = b * ((np.arange(count) + 0.5) / count - 0.5)
+    hand = math.copysign(1.0, geometry.driver.helix_angle) * sense
+    gap = misalignment * z
+    for gear in (geometry.driver, geometry.driven):
+        if gear.helix_deviation is not None:
+            gap = gap - gear.helix_deviation.at(z, b)
+    couplings = [
+        tooth_coupling(gear, radius)
+        for gear, radius in zip((geometry.driver, geometry.driven), _middle_radii(geometry), strict=True)
+    ]
+    return FaceSlices(
+        z=z,
+        width=b / count,
+        shift=hand * geometry.overlap_ratio * z / b,
+        gap=np.asarray(gap, dtype=np.float64),
+        flattening=1.0 / (hertz_compliance(geometry.driver, geometry.driven) * b),
+        coupling=1.0 / sum(1.0 / coupling for coupling in couplings) if count > 1 else 0.0,
+    )
+
+
+def _has_pits(geometry: GearPairGeometry) -> bool:
+    faults = [(gear, fault) for gear in (geometry.driver, geometry.driven) for fault in gear.faults]
+    return any(isinstance(fault, Spall) and fault.across_face(gear) for gear, fault in faults)
+
+
+def slice_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:
+    """k_b [N/m per m] from the stiffness of a pair over its whole face [N/m], flattening included.
+
+    The flattening takes at most half of the pair's compliance.
+    """
+    whole = stiffness / slices.face_width
+    return np.asarray(1.0 / np.maximum(1.0 / whole - 1.0 / slices.flattening, 0.5 / whole), dtype=np.float64)
+
+
+def face_loads(
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, compression: FloatArray
+) -> FaceLoads:
+    """Solve the load distribution across the faces of p tooth pairs at given compressions.
+
+    Parameters
+    ----------
+    slices : FaceSlices
+    base : ndarray, shape (p, n)
+        k_b of each slice [N/m per m].
+    gap : ndarray, shape (p, n)
+        [m]; finite where slices meet.
+    meeting : ndarray of bool, shape (p, n)
+        Whether the slice is where it can touch.
+    compression : ndarray, shape (p,)
+        [m].
+
+    Raises
+    ------
+    ContactAccuracyError
+        Where the set of touching slices does not converge.
+    """
+    touching = meeting & (compression[:, None] > gap)
+    fixed, rising = _fields(slices, base, gap, touching)
+    unsettled = np.arange(compression.size)
+    for _ in range(_MOST_ROUNDS):
+        deep = compression[unsettled, None]
+        excess = deep - gap[unsettled] - (fixed[unsettled] + deep * rising[unsettled])
+        touches = meeting[unsettled] & (excess > 0.0)
+        changed = (touches != touching[unsettled]).any(axis=1)
+        unsettled, touches = unsettled[changed], touches[changed]
+        if not unsettled.size:
+            return _loads(slices, gap, touching, compression[:, None], fixed, rising)
+        touching[unsettled] = touches
+        fixed[unsettled], rising[unsettled] = _fields(slices, base[unsettled], gap[unsettled], touches)
+    raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+
+
+def face_equilibrium(
+    slices: FaceSlices,
+    base: FloatArray,
+    gap: FloatArray,
+    meeting: BoolArray,
+    owner: IntArray,
+    force: FloatArray,
+) -> tuple[FloatArray, FaceLoads]:
+    """Compressions (m,) at which the pairs of m meshes carry their loads, and the loaded faces.
+
+    Parameters
+    ----------
+    slices, base, gap, meeting
+        As for `face_loads`, of all pairs of all meshes.
+    owner : ndarray of int, shape (p,)
+        Mesh of each pair.
+    force : ndarray, shape (m,)
+        Load of each mesh along the line of action [N].
+
+    Raises
+    ------
+    ContactAccuracyError
+        Where the set of touching slices does not converge, or the loads do not balance to rounding.
+    """
+    meshes = force.size
+    nearest = np.full(meshes, np.inf)
+    np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
+    touching = _touching_alone(slices, base, gap, meeting, owner, force)
+    touched: FloatArray = np.zeros(meshes)
+    stiffness: FloatArray = np.zeros(meshes)
+    fixed, rising = _fields(slices, base, gap, touching)
+    constant, slope = np.zeros(owner.size), np.zeros(owner.size)
+    every = np.arange(owner.size)
+    changed: IntArray | slice = slice(None)
+    unsettled: IntArray | slice = slice(None)
+    scale = slices.flattening * slices.width
+    for _ in range(_MOST_ROUNDS):
+        carrying = touching[changed]
+        constant[changed] = -((gap[changed] + fixed[changed]) * carrying).sum(axis=1)
+        slope[changed] = ((1.0 - rising[changed]) * carrying).sum(axis=1)
+        stiffness = np.asarray(scale * np.bincount(owner, slope, meshes), dtype=np.float64)
+        offset = scale * np.bincount(owner, constant, meshes)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            touched = np.where(stiffness > 0.0, (force - offset) / stiffness, nearest)
+        # Pairs of meshes in which nothing changed stay as they are.
+        whose = owner[unsettled]
+        deep = touched[whose, None]
+        excess = deep - gap[unsettled] - (fixed[unsettled] + deep * rising[unsettled])
+        touches = meeting[unsettled] & (excess > 0.0)
+        # At least the nearest slice carries.
+        none = np.bincount(whose, touches.any(axis=1), meshes) == 0
+        if none[whose].any():
+            touches |= none[whose, None] & meeting[unsettled] & (gap[unsettled] <= nearest[whose, None])
+        different = (touches != touching[unsettled]).any(axis=1)
+        if not different.any():
+            break
+        changed = every[unsettled][different]
+        touching[changed] = touches[different]
+        fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touches[different])
+        moved = np.zeros(meshes, dtype=np.bool_)
+        moved[owner[changed]] = True
+        unsettled = np.nonzero(moved[owner])[0]
+    else:
+        raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+    loads = _loads(slices, gap, touching, touched[owner, None], fixed, rising)
+    carried = np.bincount(owner, loads.force, meshes)
+    rounding = 1e-9 * (force + stiffness * np.abs(touched)) + 1e-300
+    if np.any(np.abs(carried - force) > rounding) or np.any(loads.line_load < -rounding.max()):
+        raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
+    return touched, loads
+
+
+def _touching_alone(
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, owner: IntArray, force: FloatArray
+) -> BoolArray:
+    """Slices in contact without their coupling: a close first guess of those in contact with it."""
+    spring = meeting / (1.0 / base + 1.0 / slices.flattening)
+    pushed = spring * gap
+    touching = meeting
+    for _ in range(_ALONE_ROUNDS):
+        stiffness = np.bincount(owner, (spring * touching).sum(axis=1), force.size)
+        offset = np.bincount(owner, (pushed * touching).sum(axis=1), force.size)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            compression = np.where(stiffness > 0.0, (force / slices.width + offset) / stiffness, 0.0)
+        # The set shrinks from every slice that could touch to those in contact.
+        touches = meeting & (gap < compression[owner, None])
+        if (touches == touching).all():
+            break
+        touching = touches
+    return touching
+
+
+def _loads(
+    slices: FaceSlices, gap: FloatArray, touching: BoolArray, deep: FloatArray, fixed: FloatArray, rising: FloatArray
+) -> FaceLoads:
+    """Evaluate the face loads from known deflections, ``w = fixed + deep * rising``, at compressions `deep` (p, 1)."""
+    load = np.where(touching, slices.flattening * (deep - gap - (fixed + deep * rising)), 0.0)
+    tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
+    return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
+
+
+def _fields(
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Solve the deflection ``w = fixed + compression * rising`` of each pair for given touching slices, (p, n) both."""
+    n = slices.z.size
+    flat = np.where(touching, slices.flattening, 0.0)
+    link = slices.coupling / slices.width**2
+    neighbours = np.full(n, 2.0)
+    neighbours[0] -= 1.0
+    neighbours[-1] -= 1.0
+    diagonal = base + flat + link * neighbours
+    beside = np.full(diagonal.shape, -link)
+    beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
+    right = np.stack([-(flat * gap), flat])
+    # One symmetric, diagonally dominant tridiagonal matrix of all pairs, with two right-hand sides in LAPACK's order.
+    _, _, fields, info = dptsv(
+        diagonal.ravel(), beside.ravel()[:-1], right.reshape(2, -1).T, overwrite_d=1, overwrite_e=1, overwrite_b=1
+    )
+    if info != 0:
+        raise ContactAccuracyError("the slices of the face yield without bound; check the stiffness of the teeth")
+    return fields[:, 0].reshape(diagonal.shape), fields[:, 1].reshape(diagonal.shape)
+
+
+def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:
+    middle = 0.5 * geometry.contact_ratio
+    return float(geometry.driver_radius(middle)), float(geometry.driven_radius(middle))

@@ -1,0 +1,1 @@
+"""Gear geometry: basic rack, involute teeth, gear pair, path of contact, flank modifications, deviations and faults."""

@@ -1,0 +1,191 @@
+"""Tooth faults: wear, spalls, missing teeth; cracks are in :mod:`coupling.gears.stiffness.crack`.
+
+A fault changes the pairs that its tooth belongs to: it takes material off the flank, makes the contact softer, or
+both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import GearError, require_finite
+from coupling.gears.geometry.gear import Gear
+
+FloatArray = npt.NDArray[np.float64]
+
+NO_CONTACT_GAP = 1.0
+"""Gap of a missing tooth [m], wider than any load closes."""
+_EDGE = 0.1
+"""Part of a spall's length over which its edges rise, as a contact of finite width rides over them."""
+
+
+@dataclass(frozen=True)
+class Wear:
+    """Material worn off the flank.
+
+    Parameters
+    ----------
+    depth : float
+        Largest depth [m].
+    tooth : int or None
+        Which tooth; None for all.
+    shape : {"sliding", "uniform"}
+        In proportion to the sliding, so zero at the pitch point and `depth` at the end of the flank farther from it;
+        or uniform.
+    """
+
+    depth: float
+    tooth: int | None = None
+    shape: Literal["sliding", "uniform"] = "sliding"
+
+    def __post_init__(self) -> None:
+        """Check the tooth number, the depth and the shape."""
+        check_tooth_number("wear", self.tooth)
+        require_finite("wear depth", self.depth, minimum=0.0)
+        if self.shape not in ("sliding", "uniform"):
+            raise GearError(f"wear shape must be 'sliding' or 'uniform', got {self.shape!r}")
+
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.gear.Fault`."""
+        require_tooth(gear, self.tooth)
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """See `coupling.gears.geometry.gear.Fault`."""
+        if self.shape == "uniform":
+            return np.full_like(roll_angle, self.depth)
+        ends = gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)
+        farthest = max(abs(end - pitch_roll_angle) for end in ends)
+        return np.asarray(self.depth * np.abs(roll_angle - pitch_roll_angle) / farthest, dtype=np.float64)
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """Zero: the worn depth is small compared with the tooth."""
+        return np.zeros_like(roll_angle)
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """Return the roll angle of the pitch point [rad], where wear in proportion to the sliding has a corner."""
+        return () if self.shape == "uniform" else (pitch_roll_angle,)
+
+
+@dataclass(frozen=True)
+class Spall:
+    """A pit in the flank of one tooth, across all of the face or a part of it.
+
+    Across all of the face the contact drops into it by `depth`. Across a part, the rest of the face carries: the
+    flattening of the contact, inversely proportional to the width, grows by ``1 / (1 - width / face_width)``. Its edges
+    rise over a tenth of its length.
+
+    Parameters
+    ----------
+    tooth : int
+    start_roll_angle, end_roll_angle : float
+        Where it begins and ends on the profile [rad].
+    depth : float
+        [m].
+    width : float or None
+        Across the face [m]; None for all of it.
+    """
+
+    tooth: int
+    start_roll_angle: float
+    end_roll_angle: float
+    depth: float
+    width: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the tooth number and the dimensions."""
+        check_tooth_number("spall", self.tooth)
+        for quantity in ("start_roll_angle", "end_roll_angle", "depth"):
+            require_finite(f"spall {quantity}", getattr(self, quantity), minimum=0.0)
+        if not self.end_roll_angle > self.start_roll_angle:
+            raise GearError(
+                f"spall end_roll_angle must be above start_roll_angle, {self.start_roll_angle!r} rad, "
+                f"got {self.end_roll_angle!r} rad"
+            )
+        if self.width is not None:
+            require_finite("spall width", self.width, minimum=0.0)
+
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.gear.Fault`; it must lie on the flank."""
+        require_tooth(gear, self.tooth)
+        tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
+        if not (self.start_roll_angle < tip and self.end_roll_angle > form):
+            raise GearError(
+                f"gear {gear.name!r}: a spall must lie on the flank, between the roll angles of the form circle and "
+                f"the tip, {math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, got "
+                f"{math.degrees(self.start_roll_angle):.4g} to {math.degrees(self.end_roll_angle):.4g} degrees"
+            )
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """See `coupling.gears.geometry.gear.Fault`."""
+        return self.depth * self._inside(roll_angle) if self.across_face(gear) else np.zeros_like(roll_angle)
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """Additional flattening of the contact: ``4 (1 - nu^2) / (pi E b)`` over a whole face (Yang and Sun, 1985)."""
+        if self.across_face(gear):
+            return np.zeros_like(roll_angle)
+        part = self._part_of_face(gear)
+        flattening = 4.0 * (1.0 - gear.poisson_ratio**2) / (math.pi * gear.youngs_modulus * gear.face_width)
+        return np.asarray(flattening * part / (1.0 - part) * self._inside(roll_angle), dtype=np.float64)
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """Both ends of both edges."""
+        return self._edges
+
+    def across_face(self, gear: Gear) -> bool:
+        """Whether nothing of the face is left to carry."""
+        return self._part_of_face(gear) >= 1.0
+
+    def _part_of_face(self, gear: Gear) -> float:
+        return 1.0 if self.width is None else self.width / gear.face_width
+
+    def _inside(self, roll_angle: FloatArray) -> FloatArray:
+        return np.interp(roll_angle, self._edges, [0.0, 1.0, 1.0, 0.0])
+
+    @property
+    def _edges(self) -> tuple[float, float, float, float]:
+        edge = _EDGE * (self.end_roll_angle - self.start_roll_angle)
+        return (self.start_roll_angle, self.start_roll_angle + edge, self.end_roll_angle - edge, self.end_roll_angle)
+
+
+@dataclass(frozen=True)
+class MissingTooth:
+    """A broken-off tooth, whose pairs carry no load."""
+
+    tooth: int
+
+    def __post_init__(self) -> None:
+        """Check the tooth number."""
+        check_tooth_number("missing tooth", self.tooth)
+
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.gear.Fault`."""
+        require_tooth(gear, self.tooth)
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """Gap wider than any load closes."""
+        return np.full_like(roll_angle, NO_CONTACT_GAP)
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """Zero: such a pair carries nothing."""
+        return np.zeros_like(roll_angle)
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+
+def check_tooth_number(name: str, tooth: int | None) -> None:
+    """Raise `GearError` unless a fault's tooth is a whole number from 0, or none."""
+    if tooth is not None and (type(tooth) is not int or tooth < 0):
+        raise GearError(f"{name}: tooth must be a whole number from 0, got {tooth!r}")
+
+
+def require_tooth(gear: Gear, tooth: int | None) -> None:
+    """Raise `GearError` where a gear has no tooth of this number."""
+    if tooth is not None and tooth >= gear.teeth:
+        raise GearError(
+            f"gear {gear.name!r}: a fault is on tooth {tooth}; the teeth are numbered 0 to {gear.teeth - 1}"
+        )

@@ -1,0 +1,518 @@
+"""External gear, spur or helical: tooth proportions, and the radii and angles that follow from them.
+
+The tooth is what a basic rack generates (ISO 53, ISO 21771).  Module ``m``, pressure angle ``alpha``, profile shift
+``x`` (positive outward) and the heights are those of the rack's normal section; rotation,
+contact and drawings are in the transverse plane.  With ``z`` teeth and helix angle ``beta`` on the reference cylinder:
+
+    transverse module          m_t = m / cos(beta)             tan(alpha_t) = tan(alpha) / cos(beta)
+    reference radius           r = m_t z / 2                   tip radius   r_a = r + (h_a + x) m
+    base radius                rb = r cos(alpha_t)             root radius  r_f = r - (h_f - x_E) m
+    base helix angle           sin(beta_b) = sin(beta) cos(alpha)
+    equivalent teeth           z_n = z / (cos(beta_b)^2 cos(beta))
+
+A spur gear is ``beta = 0``.  A tooth made thinner for backlash is cut by the same rack, ``thinning / (2 tan(alpha))``
+deeper: flank, fillet and root follow the generating shift ``x_E = x - thinning / (2 m tan(alpha))``, the tip does not.
+
+The rack's tip corners are rounded; the flank is an involute down to the form radius, where the corner's trochoid takes
+over (see :mod:`coupling.gears.geometry.rack`, :mod:`coupling.gears.geometry.profile`).
+
+Gear blank: mass and moments of inertia of the body that carries the teeth.
+
+The teeth count as a ring out to the reference circle, where they fill half the circumference.  A gear without a rim is
+a disc as wide as its face, down to its bore.  A gear with a rim is a ring of the full width down to the inside of the
+rim, and a web of its own thickness in the middle of the face from there to the bore; without a web the ring is
+alone, and its carrier is given as a disc of the rotor.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import GearError, PointedToothError, ThinTipError, UndercutError, require_finite
+from coupling.gears.geometry.involute import involute
+from coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
+from coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
+
+
+class Inertia(NamedTuple):
+    """Mass [kg] and moments of inertia about the shaft and about a diameter through the middle [kg m^2]."""
+
+    mass: float
+    polar: float
+    diametral: float
+
+
+def hollow_disc(density: float, width: float, outer_radius: float, inner_radius: float) -> Inertia:
+    """Inertia of a disc with a hole, lengths in m and density in kg/m^3."""
+    mass = density * width * math.pi * (outer_radius**2 - inner_radius**2)
+    polar = 0.5 * mass * (outer_radius**2 + inner_radius**2)
+    return Inertia(mass, polar, 0.5 * polar + mass * width**2 / 12.0)
+
+
+STEEL_YOUNGS_MODULUS = 207e9
+STEEL_POISSON_RATIO = 0.3
+STEEL_DENSITY = 7850.0
+
+FloatArray = npt.NDArray[np.float64]
+
+_STEEPEST_HELIX = math.radians(60.0)
+
+
+class Fault(Protocol):
+    """Damage of one tooth, or of all teeth of a gear."""
+
+    @property
+    def tooth(self) -> int | None:
+        """Number of the tooth; None for all of them."""
+        ...
+
+    def require_fit(self, gear: Gear) -> None:
+        """Raise `GearError` where no tooth of this gear can have it."""
+        ...
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """Material off the flank [m] at roll angles [rad]; `pitch_roll_angle` is the working pitch point's."""
+        ...
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """Additional compliance over a sound tooth [m/N], for loads at roll angles [rad]."""
+        ...
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """Roll angles at which gap or compliance has a corner [rad]."""
+        ...
+
+
+@dataclass(frozen=True)
+class Gear:
+    """A spur or helical gear with external teeth.
+
+    Parameters
+    ----------
+    name : str
+        Name in messages.
+    teeth : int
+        Number of teeth, at least 5.
+    module : float
+        Normal module [m].
+    pressure_angle : float
+        Normal pressure angle, of the basic rack [rad].
+    face_width : float
+        Width of the teeth along the shaft [m].
+    profile_shift : float
+        Profile shift coefficient, in normal modules, positive outward.
+    addendum, dedendum : float
+        Addendum of the gear and of the basic rack that cuts it (so the gear's dedendum), in normal modules.
+    root_radius : float or None
+        Tip corner radius of the rack in its normal section [m], which shapes the root fillet.  None: the radius that
+        ends the rack's straight flank one addendum below its reference line, ``(dedendum - addendum) m / (1 -
+        sin(alpha))``, or the full tip radius where that is smaller.
+    bore : float
+        Diameter of the bore [m]; 0 for a gear in one piece with its shaft.
+    youngs_modulus, poisson_ratio, density : float
+        Material [Pa], [-], [kg/m^3].
+    tip_relief : TipRelief or None
+    root_relief : RootRelief or None
+        Profile modifications.
+    eccentricity, eccentricity_phase : float
+        Distance from the shaft line to the gear's centre [m], and the angle of that offset from x at
+        zero rotation [rad].
+    pitch_deviations : tuple of float
+        Index (cumulative pitch) deviation of each tooth: its distance from the ideal place, along the arc of the
+        working pitch circle [m].  One for each tooth in the order in which they come into mesh, tooth 0 at
+        phase 0; none for a perfect pitch.  Positive where the working flank stands ahead, so that it touches
+        early: a driver's tooth displaced in the sense of its rotation, a driven gear's against it.  The whole
+        tooth is displaced, so its idle flank is behind by as much.  Each mesh of a gear counts from its own
+        tooth 0, and reads the signs for its own working flanks.
+    profile_deviation : ProfileDeviation or None
+        Deviation of the profile of all flanks from its design.
+    helix_deviation : HelixDeviation or None
+        Deviation of all flanks from their design across the face.
+    faults : tuple of Fault
+        Damaged teeth (:mod:`coupling.gears.geometry.faults`).
+    helix_angle : float
+        Helix angle on the reference cylinder [rad], positive for a right-hand helix; 0 for a spur gear.
+    rim_thickness : float or None
+        From the root circle to the inside of the rim [m]; None for a disc without a rim.
+    web_thickness : float or None
+        Width of the disc between rim and bore [m]; None for a rim alone.
+    tooth_thinning : float
+        Reduction of the tooth thickness below that of the profile shift, for backlash: in the normal section, along
+        the reference circle [m].
+    allow_undercut : bool
+        Whether to accept a gear whose rack cuts away the foot of the involute; its flank then begins where trochoid
+        and involute cross.
+
+    Raises
+    ------
+    GearError
+        For a value outside its range; `UndercutError` where the rack cuts below the involute's start and that is
+        not allowed, `PointedToothError` where the flanks meet before the tip circle.
+    """
+
+    name: str
+    teeth: int
+    module: float
+    pressure_angle: float
+    face_width: float
+    profile_shift: float = 0.0
+    addendum: float = 1.0
+    dedendum: float = 1.25
+    root_radius: float | None = None
+    bore: float = 0.0
+    youngs_modulus: float = STEEL_YOUNGS_MODULUS
+    poisson_ratio: float = STEEL_POISSON_RATIO
+    density: float = STEEL_DENSITY
+    tip_relief: TipRelief | None = None
+    root_relief: RootRelief | None = None
+    eccentricity: float = 0.0
+    eccentricity_phase: float = 0.0
+    pitch_deviations: tuple[float, ...] = ()
+    profile_deviation: ProfileDeviation | None = None
+    helix_deviation: HelixDeviation | None = None
+    faults: tuple[Fault, ...] = ()
+    helix_angle: float = 0.0
+    rim_thickness: float | None = None
+    web_thickness: float | None = None
+    tooth_thinning: float = 0.0
+    allow_undercut: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the dimensions, the body, the rack, the flank and the modifications."""
+        _check_numbers(self)
+        _check_body(self)
+        _check_rack(self)
+        _check_flank(self)
+        _check_modifications(self)
+
+    # ------------------------------------------------------- transverse plane
+
+    @property
+    def transverse_module(self) -> float:
+        """Transverse module [m]: reference diameter over number of teeth."""
+        return self.module / math.cos(self.helix_angle)
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """Transverse pressure angle on the reference circle [rad]."""
+        if self.helix_angle == 0.0:
+            return self.pressure_angle  # to the last bit
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @cached_property
+    def pitch_radius(self) -> float:
+        """Reference radius ``m_t z / 2`` [m]."""
+        return 0.5 * self.transverse_module * self.teeth
+
+    @cached_property
+    def base_radius(self) -> float:
+        """Base circle radius, of the circle from which the involute unwinds [m]."""
+        return self.pitch_radius * math.cos(self.transverse_pressure_angle)
+
+    @cached_property
+    def tip_radius(self) -> float:
+        """Tip circle radius [m]."""
+        return self.pitch_radius + (self.addendum + self.profile_shift) * self.module
+
+    @property
+    def root_circle_radius(self) -> float:
+        """Root circle radius [m]."""
+        return self.pitch_radius - (self.dedendum - self.generating_shift) * self.module
+
+    @cached_property
+    def base_pitch(self) -> float:
+        """Transverse base pitch: distance of neighbouring flanks along the line of action [m]."""
+        return 2.0 * math.pi * self.base_radius / self.teeth
+
+    @cached_property
+    def form_radius(self) -> float:
+        """Form circle radius, at which the fillet's trochoid ends and the involute begins [m]."""
+        if self.is_undercut:
+            height, across, _ = self.rack_corner_arc.trochoid(self.pitch_radius, self.fillet_end)
+            return math.hypot(height, across)
+        sine = math.sin(self.transverse_pressure_angle)
+        return math.hypot(self.base_radius, self.pitch_radius * sine - self._flank_depth / sine)
+
+    # ------------------------------------------------------------------- helix
+
+    @property
+    def base_helix_angle(self) -> float:
+        """Helix angle on the base cylinder [rad], signed as `helix_angle`."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+    @property
+    def lead(self) -> float:
+        """Lead of the helix [m], negative for a left-hand one; infinite for a spur gear."""
+        return self.teeth * self.axial_pitch
+
+    @property
+    def axial_pitch(self) -> float:
+        """Axial pitch of neighbouring teeth [m], signed as `helix_angle`; infinite for a spur gear."""
+        return math.inf if self.helix_angle == 0.0 else math.pi * self.module / math.sin(self.helix_angle)
+
+    @property
+    def virtual_teeth(self) -> float:
+        """Virtual number of teeth, of the spur gear of the normal section: ``z / (cos(beta_b)^2 cos(beta))``."""
+        return self.teeth / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
+
+    def helix_angle_at(self, radius: float) -> float:
+        """Helix angle [rad] on the cylinder of `radius` [m]: ``tan(beta_y) = tan(beta) r_y / r``."""
+        return math.atan(math.tan(self.helix_angle) * radius / self.pitch_radius)
+
+    # ---------------------------------------------------------- generating rack
+
+    @property
+    def generating_shift(self) -> float:
+        """Generating profile shift ``x_E``, of the rack that cuts the teeth with their thinning, in modules."""
+        return self.profile_shift - self.tooth_thinning / (2.0 * self.module * math.tan(self.pressure_angle))
+
+    @property
+    def rack(self) -> BasicRack:
+        """The rack that generates the teeth."""
+        return BasicRack(
+            self.module, self.pressure_angle, self.addendum, self.dedendum, self.root_radius, self.helix_angle
+        )
+
+    @property
+    def rack_tip_radius(self) -> float:
+        """Corner radius of the generating rack, in its normal section [m]."""
+        return self.rack.corner_radius
+
+    @property
+    def full_rack_tip_radius(self) -> float:
+        """The largest corner radius: one arc from flank to flank of the rack's tooth [m]."""
+        return self.rack.full_tip_radius
+
+    @property
+    def rack_corner_arc(self) -> RackCorner:
+        """The rack's corner as it rolls in the transverse plane."""
+        return self.rack.corner(self.generating_shift)
+
+    @property
+    def rack_corner(self) -> tuple[float, float]:
+        """Centre of the rack's corner arc [m]: depth below the gear's pitch line, distance from the tooth's axis."""
+        corner = self.rack_corner_arc
+        return corner.depth, corner.across
+
+    @property
+    def least_generating_shift(self) -> float:
+        """The generating shift below which the rack undercuts the teeth, in modules."""
+        return (self.rack.flank_depth - self._deepest_flank) / self.module
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether the rack cuts away the foot of the involute."""
+        return self._flank_depth > self._deepest_flank * (1.0 + 1e-12)
+
+    @property
+    def fillet_end(self) -> float:
+        """The parameter of `coupling.gears.geometry.profile.fillet_points` where the involute begins [rad]."""
+        if not self.is_undercut:
+            return self.transverse_pressure_angle
+        return fillet_end(self.rack_corner_arc, self.pitch_radius, self.transverse_pressure_angle, self.base_half_angle)
+
+    @property
+    def _flank_depth(self) -> float:
+        """Depth of the end of the rack's straight flank below the gear's pitch line [m]."""
+        return self.rack.flank_depth - self.generating_shift * self.module
+
+    @property
+    def _deepest_flank(self) -> float:
+        """Depth of the tangent point of line of action and base circle below the pitch line [m]."""
+        return self.pitch_radius * math.sin(self.transverse_pressure_angle) ** 2
+
+    # ------------------------------------------------------------------ angles
+
+    @cached_property
+    def base_half_angle(self) -> float:
+        """Half the angle a tooth spans on the base circle [rad]."""
+        at_pitch = (math.pi / 2.0 + 2.0 * self.generating_shift * math.tan(self.pressure_angle)) / self.teeth
+        return at_pitch + involute(self.transverse_pressure_angle)
+
+    @property
+    def tip_half_angle(self) -> float:
+        """Half the angle a tooth spans on the tip circle [rad]."""
+        return self.base_half_angle - involute(math.acos(self.base_radius / self.tip_radius))
+
+    def roll_angle(self, radius: float) -> float:
+        """Roll angle [rad] of the flank point at `radius` [m], ``sqrt((r / rb)^2 - 1)``."""
+        return math.sqrt(max(0.0, (radius / self.base_radius) ** 2 - 1.0))
+
+    # -------------------------------------------------------------------- body
+
+    @property
+    def rim_inner_radius(self) -> float | None:
+        """Radius of the inside of the rim [m]; None for a gear without one."""
+        return None if self.rim_thickness is None else self.root_circle_radius - self.rim_thickness
+
+    @property
+    def inertia(self) -> Inertia:
+        """Mass and moments of inertia of the blank."""
+        bore_radius, inside = 0.5 * self.bore, self.rim_inner_radius
+        if inside is None:
+            return hollow_disc(self.density, self.face_width, self.pitch_radius, bore_radius)
+        rim = hollow_disc(self.density, self.face_width, self.pitch_radius, inside)
+        if self.web_thickness is None:
+            return rim
+        web = hollow_disc(self.density, self.web_thickness, inside, bore_radius)
+        return Inertia(*(of_rim + of_web for of_rim, of_web in zip(rim, web, strict=True)))
+
+    @property
+    def mass(self) -> float:
+        """Mass of the blank [kg]."""
+        return self.inertia.mass
+
+    @property
+    def polar_inertia(self) -> float:
+        """Moment of inertia of the blank about the shaft [kg m^2]."""
+        return self.inertia.polar
+
+    @property
+    def diametral_inertia(self) -> float:
+        """Moment of inertia of the blank about a diameter through its middle [kg m^2]."""
+        return self.inertia.diametral
+
+
+def require_tip_thickness(gear: Gear, least: float = 0.2) -> None:
+    """Raise `ThinTipError` where a tooth's tip is too thin to be hardened or to carry load.
+
+    Parameters
+    ----------
+    gear : Gear
+    least : float
+        Least normal thickness of the tip, in modules; 0.2 is customary for ground and through-hardened teeth, 0.4 for
+        case-hardened ones.
+    """
+    thickness = 2.0 * gear.tip_half_angle * gear.tip_radius * math.cos(gear.helix_angle_at(gear.tip_radius))
+    if thickness < least * gear.module:
+        raise ThinTipError(
+            f"gear {gear.name!r}: the teeth are {thickness * 1e3:.4g} mm thick at the tip, "
+            f"{thickness / gear.module:.3g} modules; at least {least:g} modules are wanted. "
+            f"Reduce profile_shift ({gear.profile_shift:g}) or addendum ({gear.addendum:g})"
+        )
+
+
+def _check_numbers(gear: Gear) -> None:
+    """Raise `GearError` for a single number outside its range."""
+    label = f"gear {gear.name!r}: "
+    if type(gear.teeth) is not int or gear.teeth < 5:
+        raise GearError(f"{label}teeth must be a whole number of at least 5, got {gear.teeth!r}")
+    for quantity in ("module", "face_width", "addendum", "dedendum", "youngs_modulus", "density"):
+        require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
+    for quantity in ("bore", "eccentricity", "tooth_thinning"):
+        require_finite(label + quantity, getattr(gear, quantity), minimum=0.0)
+    for quantity in ("profile_shift", "eccentricity_phase", "helix_angle"):
+        require_finite(label + quantity, getattr(gear, quantity))
+    for quantity in ("rim_thickness", "web_thickness"):
+        if getattr(gear, quantity) is not None:
+            require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
+    if gear.root_radius is not None:
+        require_finite(f"{label}root_radius", gear.root_radius, minimum=0.0)
+    if gear.pitch_deviations and len(gear.pitch_deviations) != gear.teeth:
+        raise GearError(
+            f"{label}pitch_deviations must be one for each of {gear.teeth} teeth, got {len(gear.pitch_deviations)}"
+        )
+    for tooth, deviation in enumerate(gear.pitch_deviations):
+        require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
+    if not 0.0 <= gear.poisson_ratio < 0.5:
+        raise GearError(f"{label}poisson_ratio must be in 0 ... 0.5, got {gear.poisson_ratio!r}")
+    if not math.radians(5.0) <= gear.pressure_angle <= math.radians(45.0):
+        raise GearError(f"{label}pressure_angle must be 5 to 45 degrees in rad, got {gear.pressure_angle!r} rad")
+    if abs(gear.helix_angle) > _STEEPEST_HELIX:
+        raise GearError(f"{label}helix_angle must be -60 to 60 degrees in rad, got {gear.helix_angle!r} rad")
+
+
+def _check_body(gear: Gear) -> None:
+    """Raise `GearError` where bore, rim and web do not fit into each other."""
+    label = f"gear {gear.name!r}: "
+    if gear.root_circle_radius <= 0.5 * gear.bore:
+        raise GearError(
+            f"{label}the bore ({gear.bore * 1e3:.4g} mm) must be smaller than the root circle "
+            f"({2e3 * gear.root_circle_radius:.4g} mm)"
+        )
+    inside = gear.rim_inner_radius
+    if inside is not None and inside <= 0.5 * gear.bore:
+        raise GearError(
+            f"{label}rim_thickness {gear.rim_thickness!r} m leaves no room between rim and bore; at most "
+            f"{(gear.root_circle_radius - 0.5 * gear.bore) * 1e3:.4g} mm, or none for a disc without a rim"
+        )
+    if gear.web_thickness is not None and inside is None:
+        raise GearError(f"{label}web_thickness needs a rim_thickness: a disc without a rim is as wide as its face")
+    if gear.web_thickness is not None and gear.web_thickness > gear.face_width:
+        raise GearError(
+            f"{label}web_thickness {gear.web_thickness * 1e3:.4g} mm must be at most the face width, "
+            f"{gear.face_width * 1e3:.4g} mm"
+        )
+
+
+def _check_rack(gear: Gear) -> None:
+    """Raise `GearError` or `PointedToothError` where no rack has the proportions."""
+    label = f"gear {gear.name!r}: "
+    full = gear.full_rack_tip_radius
+    if full < 0.0:
+        raise PointedToothError(
+            f"{label}the rack's own teeth are pointed: dedendum {gear.dedendum:g} is too much for "
+            f"{math.degrees(gear.pressure_angle):.4g} degrees"
+        )
+    if gear.root_radius is not None and gear.root_radius > full * (1.0 + 1e-12):
+        raise GearError(
+            f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the rack's tip; "
+            f"at most {full * 1e3:.4g} mm"
+        )
+    if gear.rack_corner_arc.depth <= 0.0:
+        raise GearError(
+            f"{label}profile_shift {gear.profile_shift:g} lifts the rack's corner above the pitch line; "
+            f"at most {gear.dedendum - gear.rack_tip_radius / gear.module:.4g} here"
+        )
+
+
+def _check_flank(gear: Gear) -> None:
+    """Raise `GearError`, `UndercutError` or `PointedToothError` where the teeth have no flank from foot to tip."""
+    label = f"gear {gear.name!r}: "
+    if gear.is_undercut and not gear.allow_undercut:
+        least = gear.least_generating_shift + gear.profile_shift - gear.generating_shift
+        raise UndercutError(
+            f"{label}{gear.teeth} teeth at profile_shift {gear.profile_shift:g} are undercut; "
+            f"a profile_shift of {least:.4g} or more avoids it, allow_undercut takes the teeth as they are"
+        )
+    if gear.is_undercut:
+        gamma = np.linspace(gear.fillet_end, math.pi / 2.0, 65)
+        neck = 2.0 * float(np.min(gear.rack_corner_arc.trochoid(gear.pitch_radius, gamma).half_thickness))
+        if neck <= 0.0:
+            raise UndercutError(f"{label}the rack cuts the teeth off at their feet; raise profile_shift")
+    if gear.tip_radius <= gear.form_radius:
+        raise GearError(f"{label}the tip circle lies below the start of the involute; raise the addendum")
+    if gear.tip_half_angle <= 0.0:
+        raise PointedToothError(
+            f"{label}the teeth are pointed below the tip circle; reduce profile_shift "
+            f"({gear.profile_shift:g}) or addendum ({gear.addendum:g})"
+        )
+
+
+def _check_modifications(gear: Gear) -> None:
+    """Raise `GearError` for modifications that begin off the flank, and faults on missing tooth numbers."""
+    label = f"gear {gear.name!r}: "
+    tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
+    if gear.tip_relief is not None:
+        start = gear.tip_relief.start(tip, gear.base_radius)
+        if not 0.0 <= start < tip:
+            raise GearError(
+                f"{label}tip relief must start below the tip's roll angle of {math.degrees(tip):.4g} degrees "
+                f"and on the involute, got {math.degrees(start):.4g} degrees"
+            )
+    if gear.root_relief is not None:
+        start = gear.root_relief.start(form, gear.base_radius)
+        if not form < start <= tip:
+            raise GearError(
+                f"{label}root relief must start between the roll angles of the form circle and the tip, "
+                f"{math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, "
+                f"got {math.degrees(start):.4g} degrees"
+            )
+    for fault in gear.faults:
+        fault.require_fit(gear)

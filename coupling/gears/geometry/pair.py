@@ -1,0 +1,375 @@
+"""Gear pair on parallel shafts: working pressure angle, centre distance, backlash, path of contact, contact ratio.
+
+Everything is in the transverse plane, where a pair of helical gears is a pair of spur gears whose phase moves along
+the face.  Position along the path of contact is counted in base pitches: a pair of teeth comes into contact at
+``s = 0`` (the driven gear's tip meets the driver's root) and leaves at ``s = contact_ratio`` (the driver's tip).  The
+dimensionless phase ``p = z_k theta_k / (2 pi)`` counts mesh periods; at phase ``p`` the pairs in contact are at
+``s = frac(p) + j``, j = 0, 1, ... while ``s < contact_ratio``.  The pair that enters at phase n joins tooth
+``n mod z_k`` of the driver and ``n mod z_i`` of the driven gear.
+
+With base radii ``rb_k, rb_i``, centre distance ``a`` and working pressure angle ``w``, the distance of the
+contact from the driver's tangent point is ``xi_k = xi_0 + s p_b`` with
+``xi_0 = a sin(w) - sqrt(r_a,i^2 - rb_i^2)``, and ``xi_i = a sin(w) - xi_k`` from the driven's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError
+from coupling.gears.geometry.centre_distance import backlash_free_pressure_angle
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.involute import involute
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+PRINTED_ROUNDING = 1e-3
+"""Relative rounding of printed sizes, as of a module of 3.175 mm (8 teeth per inch) printed as 3.1748. Module, pressure
+angle and helix angle of a pair agree within it, and a backlash of less, in modules, is none."""
+# One per cent of a module: as much as cutting thins a tooth for backlash.
+_ALLOWED_JAM = 0.01
+
+
+@dataclass(frozen=True)
+class GearPairGeometry:
+    """A driver and a driven gear on parallel shafts.
+
+    Parameters
+    ----------
+    driver, driven : Gear
+    centre_distance : float or None
+        Distance of the shafts [m]; None for the distance without backlash of teeth that are not thinned, so that any
+        `tooth_thinning` becomes backlash.
+
+    Raises
+    ------
+    MismatchedGearsError
+        Unequal module, pressure angle or helix angle, or helices of one hand.
+    InterferenceError
+        Contact below the involute's start on either gear, a tip in the other's root, or teeth thicker than their
+        spaces.
+    NoContactError
+        Contact ratio below one.
+    """
+
+    driver: Gear
+    driven: Gear
+    centre_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check that the gears match, the centre distance and the contact ratio."""
+        _check_match(self)
+        _check_distance(self)
+        _check_contact(self)
+
+    # ---------------------------------------------------------- working values
+
+    @property
+    def label(self) -> str:
+        """Name of the pair in messages."""
+        return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
+
+    @property
+    def ratio(self) -> float:
+        """Gear ratio, teeth of the driven over teeth of the driver: speeds divide by it."""
+        return self.driven.teeth / self.driver.teeth
+
+    @cached_property
+    def base_pitch(self) -> float:
+        """Distance between neighbouring pairs along the line of action [m]."""
+        return self.driver.base_pitch
+
+    @property
+    def face_width(self) -> float:
+        """Width of the face that both gears share [m]."""
+        return min(self.driver.face_width, self.driven.face_width)
+
+    @cached_property
+    def backlash_free_pressure_angle(self) -> float:
+        """Transverse pressure angle [rad] of the mesh without backlash, thinning included.
+
+        ``inv(w) = inv(alpha_t) + 2 tan(alpha_n) (x_k + x_i) / (z_k + z_i)``, x the generating shifts.
+        """
+        return backlash_free_pressure_angle(self.driver, self.driven, thinned=True)
+
+    @cached_property
+    def working_centre_distance(self) -> float:
+        """Working centre distance of the shafts [m]."""
+        if self.centre_distance is not None:
+            return self.centre_distance
+        return self.base_radii_sum / math.cos(self.working_pressure_angle)
+
+    @cached_property
+    def working_pressure_angle(self) -> float:
+        """Transverse working pressure angle, of the line of action to the common tangent of the pitch circles [rad]."""
+        if self.centre_distance is None:
+            return backlash_free_pressure_angle(self.driver, self.driven)
+        return math.acos(self.base_radii_sum / self.centre_distance)
+
+    @property
+    def working_pitch_radii(self) -> tuple[float, float]:
+        """Working pitch radii of driver and driven gear, which roll on each other [m]."""
+        cosine = math.cos(self.working_pressure_angle)
+        return self.driver.base_radius / cosine, self.driven.base_radius / cosine
+
+    @property
+    def working_helix_angle(self) -> float:
+        """Helix angle of the driver on its working pitch cylinder [rad], ``tan(beta_w) = tan(beta_b) / cos(w)``."""
+        return math.atan(math.tan(self.driver.base_helix_angle) / math.cos(self.working_pressure_angle))
+
+    @property
+    def backlash(self) -> float:
+        """Backlash: gap of the idle flanks along their line of action, in the transverse plane [m].
+
+        From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
+        teeth would jam.
+        """
+        return (
+            2.0
+            * self.base_radii_sum
+            * (involute(self.working_pressure_angle) - involute(self.backlash_free_pressure_angle))
+        )
+
+    @property
+    def designed_backlash(self) -> float | None:
+        """The backlash where the design has one; None below `PRINTED_ROUNDING` modules.
+
+        Nominal gears at their nominal distance have teeth as thick as the spaces, without an allowance for backlash.
+        """
+        return self.backlash if self.backlash > PRINTED_ROUNDING * self.driver.module else None
+
+    @property
+    def normal_backlash(self) -> float:
+        """Normal backlash, the shortest distance of the idle flanks [m]: ``backlash cos(beta_b)``."""
+        return self.backlash * math.cos(self.driver.base_helix_angle)
+
+    @property
+    def circumferential_backlash(self) -> float:
+        """Circumferential backlash, on the working pitch circles [m]: ``backlash / cos(w)``."""
+        return self.backlash / math.cos(self.working_pressure_angle)
+
+    def tip_clearance(self, gear: Gear) -> float:
+        """Tip clearance between the tip circle of `gear`, one of the two, and the other's root circle [m]."""
+        other = self.driven if gear is self.driver else self.driver
+        return self.working_centre_distance - gear.tip_radius - other.root_circle_radius
+
+    # --------------------------------------------------------- path of contact
+
+    @cached_property
+    def path_length(self) -> float:
+        """Length of the path of contact [m]."""
+        return tip_reach(self.driver) + tip_reach(self.driven) - self.tangent_distance
+
+    @cached_property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio, the mean number of pairs in contact in one plane: path over base pitch."""
+        return self.path_length / self.base_pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """Overlap ratio of helical teeth, ``b sin(beta) / (pi m_n)``."""
+        return self.face_width * abs(math.sin(self.driver.helix_angle)) / (math.pi * self.driver.module)
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """Total contact ratio, transverse and overlap: the mean number of pairs that touch somewhere along the face."""
+        return self.contact_ratio + self.overlap_ratio
+
+    @property
+    def pitch_point_position(self) -> float:
+        """Position of the pitch point on the path of contact, in base pitches."""
+        to_pitch_point = self.driver.base_radius * math.tan(self.working_pressure_angle)
+        return (to_pitch_point - self.start_distance) / self.base_pitch
+
+    @property
+    def back_flank_offset(self) -> float:
+        """Phase ``b`` such that the idle flanks' pairs are at ``s = frac(b - p) + j``, in 0 ... 1.
+
+        The idle flanks are the mirror image of the working ones in the line of centres, running backwards:
+        they touch the driver's tip first.  A tooth whose working flank is at ``xi`` has its idle flank at
+        ``2 rb_k (w + psi_k) - xi``, ``psi_k`` half its angle on the base circle.
+        """
+        return self._back_flank_shift % 1.0
+
+    def mating_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
+        """Mating teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
+        n = np.asarray(number, dtype=np.int64)
+        return n % self.driver.teeth, n % self.driven.teeth
+
+    def mating_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
+        """Mating teeth of the idle flanks in the pairs that enter at whole phases `number` of the idle flanks.
+
+        With B the offset before its whole periods are dropped, the idle flank of driver tooth n is at
+        ``s = B - p + n`` and so belongs to the pair that enters at ``-n - floor(B)`` of ``frac(B) - p``.  Its mate is
+        the driven tooth that follows, n + 1: n itself is on the other side.
+        """
+        n = -np.asarray(number, dtype=np.int64) - math.floor(self._back_flank_shift)
+        return n % self.driver.teeth, (n + 1) % self.driven.teeth
+
+    def line_of_action_angle(self, centre_line_angle: float, sense: int = 1) -> float:
+        """Angle from x of the unit vector along which the driver pushes the driven gear [rad].
+
+        ``psi + s (pi/2 - w)``, with `centre_line_angle` psi the angle of the line from the driver's centre to
+        the driven's and `sense` s = +1 where the driver turns counter-clockwise, -1 where clockwise.
+        """
+        if sense not in (1, -1):
+            raise GearError(f"{self.label}: sense must be +1 or -1, got {sense!r}")
+        return centre_line_angle + sense * (math.pi / 2.0 - self.working_pressure_angle)
+
+    def driver_roll_angle(self, position: npt.ArrayLike) -> FloatArray:
+        """Roll angle of the driver's contact point [rad] at `position` in base pitches."""
+        return self._driver_distance(position) / self.driver.base_radius
+
+    def driven_roll_angle(self, position: npt.ArrayLike) -> FloatArray:
+        """Roll angle of the driven gear's contact point [rad] at `position` in base pitches."""
+        return (self.tangent_distance - self._driver_distance(position)) / self.driven.base_radius
+
+    def driver_radius(self, position: npt.ArrayLike) -> FloatArray:
+        """Distance of the contact from the driver's centre [m] at `position` in base pitches."""
+        return self.driver.base_radius * np.sqrt(1.0 + self.driver_roll_angle(position) ** 2)
+
+    def driven_radius(self, position: npt.ArrayLike) -> FloatArray:
+        """Distance of the contact from the driven gear's centre [m] at `position` in base pitches."""
+        return self.driven.base_radius * np.sqrt(1.0 + self.driven_roll_angle(position) ** 2)
+
+    def driver_position(self, roll_angle: float) -> float:
+        """Position in base pitches where the driver's contact point has `roll_angle` [rad]."""
+        return (roll_angle * self.driver.base_radius - self.start_distance) / self.base_pitch
+
+    def driven_position(self, roll_angle: float) -> float:
+        """Position in base pitches where the driven gear's contact point has `roll_angle` [rad]."""
+        distance = self.tangent_distance - roll_angle * self.driven.base_radius
+        return (distance - self.start_distance) / self.base_pitch
+
+    # ----------------------------------------------------- along the line of action
+
+    @cached_property
+    def base_radii_sum(self) -> float:
+        """Sum of the base radii [m]."""
+        return self.driver.base_radius + self.driven.base_radius
+
+    @cached_property
+    def tangent_distance(self) -> float:
+        """Distance of the tangent points of the line of action on the two base circles [m]."""
+        return self.base_radii_sum * math.tan(self.working_pressure_angle)
+
+    @property
+    def _back_flank_shift(self) -> float:
+        """Sum of the positions of a driver tooth's working and idle flanks when it enters at phase 0 [base pitches]."""
+        sum_of_distances = 2.0 * self.driver.base_radius * (self.working_pressure_angle + self.driver.base_half_angle)
+        return (sum_of_distances - 2.0 * self.start_distance) / self.base_pitch
+
+    @cached_property
+    def start_distance(self) -> float:
+        """Distance of the start of contact from the driver's tangent point [m]."""
+        return self.tangent_distance - tip_reach(self.driven)
+
+    def _driver_distance(self, position: npt.ArrayLike) -> FloatArray:
+        return self.start_distance + self.base_pitch * np.asarray(position, dtype=np.float64)
+
+
+def tip_reach(gear: Gear) -> float:
+    """Distance from a gear's tangent point to where its tip circle cuts the line of action [m]."""
+    return math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
+
+
+def mismatched_sizes(
+    driver: tuple[float, float, float], driven: tuple[float, float, float]
+) -> tuple[Literal["module", "pressure_angle", "helix_angle"], ...]:
+    """Sizes in which the teeth of a driver and a driven gear do not fit each other.
+
+    Parameters
+    ----------
+    driver, driven : tuple of float
+        Normal module [m], normal pressure angle [rad] and helix angle [rad].
+
+    Returns
+    -------
+    tuple of str
+        Modules and pressure angles that differ by more than the rounding of printed sizes, helix angles that are not
+        equal and of opposite hands.
+    """
+    pairs = zip(driver, (driven[0], driven[1], -driven[2]), strict=True)
+    names: tuple[Literal["module", "pressure_angle", "helix_angle"], ...] = ("module", "pressure_angle", "helix_angle")
+    return tuple(
+        name
+        for name, (first, second) in zip(names, pairs, strict=True)
+        if not math.isclose(first, second, rel_tol=PRINTED_ROUNDING)
+    )
+
+
+def _check_match(pair: GearPairGeometry) -> None:
+    """Raise `MismatchedGearsError` unless the teeth of one gear fit the spaces of the other."""
+    degrees = 180.0 / math.pi
+    sizes = [(gear.module, gear.pressure_angle, gear.helix_angle) for gear in (pair.driver, pair.driven)]
+    for quantity in mismatched_sizes(*sizes):
+        scale, unit = (1e3, "mm") if quantity == "module" else (degrees, "degrees")
+        first, second = (scale * getattr(gear, quantity) for gear in (pair.driver, pair.driven))
+        if quantity == "helix_angle":
+            raise MismatchedGearsError(
+                f"{pair.label}: external gears on parallel shafts need equal helix_angle of opposite hands, "
+                f"got {first:+.8g} and {second:+.8g} degrees"
+            )
+        raise MismatchedGearsError(
+            f"{pair.label}: both gears need the same {quantity}, got {first:.8g} and {second:.8g} {unit}"
+        )
+
+
+def _check_distance(pair: GearPairGeometry) -> None:
+    """Raise `InterferenceError` for a centre distance at which the teeth jam."""
+    distance = pair.centre_distance
+    if distance is None:
+        return
+    if not (math.isfinite(distance) and distance > pair.base_radii_sum):
+        raise InterferenceError(
+            f"{pair.label}: the centre distance must exceed the sum of the base radii, "
+            f"{pair.base_radii_sum * 1e3:.6g} mm, got {distance * 1e3:.6g} mm"
+        )
+    if pair.normal_backlash < -_ALLOWED_JAM * pair.driver.module:
+        close = pair.base_radii_sum / math.cos(pair.backlash_free_pressure_angle)
+        raise InterferenceError(
+            f"{pair.label}: the teeth jam at a centre distance of {distance * 1e3:.6g} mm; "
+            f"they mesh without backlash at {close * 1e3:.6g} mm"
+        )
+
+
+def _check_contact(pair: GearPairGeometry) -> None:
+    """Raise where the contact ratio is below one, or a tip reaches below the other gear's flank or into its root."""
+    if pair.contact_ratio < 1.0:
+        raise NoContactError(
+            f"{pair.label}: the contact ratio is {pair.contact_ratio:.4f}, below 1, at a centre distance of "
+            f"{pair.working_centre_distance * 1e3:.6g} mm; bring the shafts closer or lengthen the teeth"
+        )
+    last = pair.tangent_distance - pair.start_distance - pair.path_length
+    for rooted, tip, lowest in ((pair.driver, pair.driven, pair.start_distance), (pair.driven, pair.driver, last)):
+        _check_active_profile(pair, rooted, tip, lowest)
+        clearance = pair.tip_clearance(tip)
+        if clearance < 0.0:
+            raise InterferenceError(
+                f"{pair.label}: the tip of {tip.name!r} hits the root of {rooted.name!r} by {-clearance * 1e3:.4g} mm"
+            )
+
+
+def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowest: float) -> None:
+    """Raise where contact would begin `lowest` [m] past the tangent point, below the flank of `rooted`."""
+    form = rooted.roll_angle(rooted.form_radius) * rooted.base_radius
+    if lowest >= form - 1e-9 * rooted.module:
+        return
+    start = (
+        f"at a radius of {math.hypot(rooted.base_radius, lowest) * 1e3:.6g} mm"
+        if lowest >= 0.0
+        else f"inside the base circle of {rooted.base_radius * 1e3:.6g} mm"
+    )
+    raise InterferenceError(
+        f"{pair.label}: the tip of {tip.name!r} reaches {(form - lowest) * 1e3:.4g} mm (along the line of action) "
+        f"below the involute of {rooted.name!r}: contact would start {start}, the flank above its fillet starts at "
+        f"a radius of {rooted.form_radius * 1e3:.6g} mm; reduce the addendum of {tip.name!r} or "
+        f"the root_radius of {rooted.name!r}"
+    )

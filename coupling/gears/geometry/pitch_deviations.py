@@ -1,0 +1,157 @@
+"""Pitch deviations and faulty teeth: how the pairs of teeth of the hunting period differ.
+
+Pitch gap: gap that the pitch deviations of two mating teeth leave between their flanks.
+
+A tooth that is ahead by ``f`` along the arc of the working pitch circle has rotated by ``f / r_w`` and its flank
+has moved by ``rb f / r_w = f cos(w)`` along the line of action, w the working pressure angle.  With the driver's
+tooth m and the driven gear's tooth n the pair's gap is
+
+    d(s) + f_pair,    f_pair = -(f_k[m] + f_i[n]) cos(w),
+
+constant while the pair is in contact.  The idle flanks of the same teeth are behind where the working ones are
+ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.mating_back_teeth`).
+
+Runout: transmission error of gears that are eccentric on their shafts.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.geometry.gear import Fault, Gear
+from coupling.gears.geometry.pair import GearPairGeometry, IntArray
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
+    """Gap of each pair of working flanks over the hunting period.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+        The `pitch_deviations` of its gears are used.
+
+    Returns
+    -------
+    ndarray, shape (h,)
+        f_pair of the pair that enters at phase n, at n mod h [m].  h is the least common multiple of the numbers
+        of teeth; of one gear's alone where the other's teeth are all alike; 0 where the teeth of both are alike.
+    """
+    return -_lead(geometry, *geometry.mating_teeth(hunting_numbers(geometry)))
+
+
+def back_flank_pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
+    """Return the gap of each pair of idle flanks [m], by its phase of entering, ``back_flank_offset - p``."""
+    return _lead(geometry, *geometry.mating_back_teeth(hunting_numbers(geometry)))
+
+
+def hunting_numbers(geometry: GearPairGeometry) -> IntArray:
+    """Numbers 0, 1, ... of the pairs over the hunting period, after which the same teeth meet again.
+
+    Only gears whose teeth differ count; empty where those of neither do.
+    """
+    differing = [
+        gear.teeth
+        for gear in (geometry.driver, geometry.driven)
+        if any(gear.pitch_deviations) or any(fault.tooth is not None for fault in gear.faults)
+    ]
+    return np.arange(math.lcm(*differing) if differing else 0)
+
+
+def _lead(geometry: GearPairGeometry, driver_teeth: IntArray, driven_teeth: IntArray) -> FloatArray:
+    """Lead of the working flanks of pairs of teeth along the line of action [m]."""
+    lead = _deviations(geometry.driver)[driver_teeth] + _deviations(geometry.driven)[driven_teeth]
+    return np.asarray(lead * math.cos(geometry.working_pressure_angle), dtype=np.float64)
+
+
+def _deviations(gear: Gear) -> FloatArray:
+    return np.array(gear.pitch_deviations or (0.0,) * gear.teeth, dtype=np.float64)
+
+
+PairFaults = tuple[tuple[Fault, ...], tuple[Fault, ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class PairVariants:
+    """Kinds of tooth pairs in a mesh, by the faults of their teeth.
+
+    Attributes
+    ----------
+    faults : tuple
+        Of every kind, the driver's tooth's and the driven's; the first kind is that of sound teeth.
+    of_pair, of_back_pair : ndarray of int, shape (h,)
+        Kind of the pair that enters at phase n, at n mod h, on the working and on the idle flanks; empty where all
+        teeth are alike.
+    """
+
+    faults: tuple[PairFaults, ...]
+    of_pair: IntArray
+    of_back_pair: IntArray
+
+
+def pair_variants(geometry: GearPairGeometry) -> PairVariants:
+    """Faults of every pair of teeth over the hunting period."""
+    everywhere: PairFaults = (_faults_of(geometry.driver, None), _faults_of(geometry.driven, None))
+    kinds: dict[tuple[int, int], int] = {(-1, -1): 0}
+    faults = [everywhere]
+    damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
+
+    def kinds_of(driver_teeth: IntArray, driven_teeth: IntArray) -> IntArray:
+        found = np.zeros(driver_teeth.size, dtype=np.int64)
+        for n, teeth in enumerate(zip(driver_teeth.tolist(), driven_teeth.tolist(), strict=True)):
+            key = tuple(tooth if tooth in bad else -1 for tooth, bad in zip(teeth, damaged, strict=True))
+            pair = (key[0], key[1])
+            if pair not in kinds:
+                kinds[pair] = len(faults)
+                faults.append((_faults_of(geometry.driver, pair[0]), _faults_of(geometry.driven, pair[1])))
+            found[n] = kinds[pair]
+        return found
+
+    numbers = hunting_numbers(geometry)
+    of_pair = kinds_of(*geometry.mating_teeth(numbers))
+    of_back_pair = kinds_of(*geometry.mating_back_teeth(numbers))
+    return PairVariants(tuple(faults), of_pair, of_back_pair)
+
+
+def _faults_of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
+    """Faults of a tooth, with those of all teeth; of a sound one for None or -1."""
+    return tuple(fault for fault in gear.faults if fault.tooth is None or fault.tooth == tooth)
+
+
+def runout_error(
+    driver: Gear,
+    driven: Gear,
+    line_of_action_angle: float,
+    driver_angle: npt.ArrayLike,
+    driven_angle: npt.ArrayLike,
+) -> FloatArray:
+    """Error ``e_err`` in the compression ``s (R_k th_k + R_i th_i) + e . (u_k - u_i) - e_err``.
+
+    A centre that circles with eccentricity ``eps`` moves the gear by ``eps (cos, sin)(theta + phase)`` on top of
+    its shaft's motion ``u``, so ``e_err = -e . (eps_k - eps_i)``.  First order in the eccentricities: the
+    pressure angle is held.
+
+    Parameters
+    ----------
+    driver, driven : Gear
+        Their `eccentricity` [m] and `eccentricity_phase` [rad] are used.
+    line_of_action_angle : float
+        Angle of e from x [rad], `GearPairGeometry.line_of_action_angle`.
+    driver_angle, driven_angle : array_like, shape (n,)
+        Rotations of the two gears, counter-clockwise positive [rad].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m].
+    """
+    components = [
+        gear.eccentricity * np.cos(np.asarray(angle, dtype=np.float64) + gear.eccentricity_phase - line_of_action_angle)
+        for gear, angle in ((driver, driver_angle), (driven, driven_angle))
+    ]
+    return np.asarray(components[1] - components[0], dtype=np.float64)

@@ -1,0 +1,193 @@
+"""Tooth thickness, and its measurement: chordal thickness, base tangent length (span), dimension over balls.
+
+On the cylinder of radius ``r_y`` a tooth spans the half angle ``psi - inv(alpha_y)`` with ``cos(alpha_y) = rb / r_y``
+and psi its half angle on the base circle; normal to the helix it is thinner by ``cos(beta_y)``.  All values include the
+thinning; formulas after ISO 21771.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from coupling.gears.errors import GearError, require_finite
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.involute import inverse_involute, involute
+
+CUSTOMARY_BALL = 1.728
+"""Diameter of measuring balls and wires in modules: for external gears by the American custom."""
+
+
+class ChordalThickness(NamedTuple):
+    """Chordal thickness and chordal height below the tip, as a tooth caliper reads them [m]."""
+
+    thickness: float
+    height: float
+
+
+@dataclass(frozen=True)
+class SpanMeasurement:
+    """Base tangent length over some teeth.
+
+    Attributes
+    ----------
+    teeth : int
+        Teeth between the anvils.
+    length : float
+        Base tangent length [m].
+    contact_radius : float
+        Radius at which the anvils touch [m].
+    """
+
+    teeth: int
+    length: float
+    contact_radius: float
+
+
+@dataclass(frozen=True)
+class BallMeasurement:
+    """Dimension over two balls in opposite spaces.
+
+    Attributes
+    ----------
+    diameter : float
+        Of a ball [m].
+    length : float
+        Dimension over the balls [m].
+    centre_radius, contact_radius : float
+        Radii of the balls' centres, and of their contact with the flanks [m].
+    """
+
+    diameter: float
+    length: float
+    centre_radius: float
+    contact_radius: float
+
+
+def half_angle(gear: Gear, radius: float) -> float:
+    """Half the angle that a tooth spans at `radius` [m], on the involute or its continuation upward [rad]."""
+    if not (math.isfinite(radius) and radius >= gear.base_radius):
+        raise GearError(
+            f"gear {gear.name!r}: there is no involute below the base circle of {gear.base_radius * 1e3:.6g} mm, "
+            f"got a radius of {radius * 1e3:.6g} mm"
+        )
+    return gear.base_half_angle - involute(math.acos(gear.base_radius / radius))
+
+
+def tooth_thickness(gear: Gear, radius: float) -> float:
+    """Thickness along the arc of `radius`, in the transverse plane [m]."""
+    return 2.0 * radius * half_angle(gear, radius)
+
+
+def normal_tooth_thickness(gear: Gear, radius: float) -> float:
+    """Thickness at `radius` normal to the helix, ``tooth_thickness cos(beta_y)`` [m]."""
+    return tooth_thickness(gear, radius) * math.cos(gear.helix_angle_at(radius))
+
+
+def pointed_radius(gear: Gear) -> float:
+    """Radius where the two flanks would meet [m]."""
+    return gear.base_radius / math.cos(inverse_involute(gear.base_half_angle))
+
+
+def chordal_thickness(gear: Gear, radius: float | None = None) -> ChordalThickness:
+    """Chord of a tooth in its normal section, and its height below the tip.
+
+    With the normal thickness ``s_n`` and the radius of curvature ``r_n = r / cos(beta_y)^2`` of the section there:
+    ``2 r_n sin(s_n / (2 r_n))``, and ``r_a - r + r_n (1 - cos(s_n / (2 r_n)))``.
+
+    Parameters
+    ----------
+    gear : Gear
+    radius : float or None
+        Radius of the measurement [m]; None for the reference circle.
+    """
+    radius = gear.pitch_radius if radius is None else radius
+    curvature = radius / math.cos(gear.helix_angle_at(radius)) ** 2
+    angle = 0.5 * normal_tooth_thickness(gear, radius) / curvature
+    return ChordalThickness(
+        2.0 * curvature * math.sin(angle), gear.tip_radius - radius + curvature * (1.0 - math.cos(angle))
+    )
+
+
+def span_measurement(gear: Gear, teeth: int | None = None) -> SpanMeasurement:
+    """Compute the base tangent length over k teeth, ``W_k = (k - 1) p_bn + s_bn`` (normal base pitch and thickness).
+
+    Parameters
+    ----------
+    gear : Gear
+    teeth : int or None
+        k; None for the number whose anvils touch closest to the middle of the flanks' height.
+
+    Raises
+    ------
+    GearError
+        Where the anvils do not touch the involute, or a helix runs out of the face between them.
+    """
+    if teeth is None:
+        middle = 0.5 * (gear.form_radius + gear.tip_radius)
+        wanted = 2.0 * gear.base_radius * gear.roll_angle(middle)
+        teeth = max(1, round((wanted - 2.0 * gear.base_radius * gear.base_half_angle) / gear.base_pitch) + 1)
+    if type(teeth) is not int or not 1 <= teeth <= gear.teeth:
+        raise GearError(f"gear {gear.name!r}: a span is over 1 to {gear.teeth} teeth, got {teeth!r}")
+    across = (teeth - 1) * gear.base_pitch + 2.0 * gear.base_radius * gear.base_half_angle
+    helix = gear.base_helix_angle
+    length = across * math.cos(helix)
+    # In the plane tangent to the base cylinder the two helices are lines, `across` apart in the transverse direction.
+    touch = math.hypot(gear.base_radius, 0.5 * length * math.cos(helix))
+    _require_on_flank(gear, touch, f"a span over {teeth} teeth")
+    if abs(length * math.sin(helix)) > gear.face_width:
+        raise GearError(
+            f"gear {gear.name!r}: a span over {teeth} teeth needs a face width of at least "
+            f"{abs(length * math.sin(helix)) * 1e3:.4g} mm"
+        )
+    return SpanMeasurement(teeth, length, touch)
+
+
+def over_balls(gear: Gear, diameter: float | None = None) -> BallMeasurement:
+    """Dimension over two balls; over two pins too, of a spur gear or a helical one with an even number of teeth.
+
+    A ball of diameter D that touches both flanks of a space has its centre where the involute of the flanks shifted by
+    half of it, measured along the base circle, meets the middle of the space:
+
+        inv(alpha_K) = D / (2 rb cos(beta_b)) - pi / z + psi,     r_K = rb / cos(alpha_K)
+        M = 2 r_K + D (even z),     2 r_K cos(pi / (2 z)) + D (odd z)
+
+    Parameters
+    ----------
+    gear : Gear
+    diameter : float or None
+        Of the balls [m]; None for 1.728 modules.
+
+    Raises
+    ------
+    GearError
+        For balls that do not touch both flanks of a space, stand below the tips, or touch the root.
+    """
+    diameter = CUSTOMARY_BALL * gear.module if diameter is None else diameter
+    require_finite(f"gear {gear.name!r}: ball diameter", diameter, minimum=0.0, strict=True)
+    helix = math.cos(gear.base_helix_angle)
+    value = diameter / (2.0 * gear.base_radius * helix) - math.pi / gear.teeth + gear.base_half_angle
+    if value < 0.0:
+        raise GearError(f"gear {gear.name!r}: balls of {diameter * 1e3:.4g} mm lie on the root; take larger ones")
+    angle = inverse_involute(value)
+    centre = gear.base_radius / math.cos(angle)
+    roll_length = gear.base_radius * math.tan(angle) - 0.5 * diameter * helix
+    what = f"a ball of {diameter * 1e3:.4g} mm"
+    # Below its own tangent point the normal would meet the far branch of the involute.
+    touch = math.hypot(gear.base_radius, roll_length) if roll_length >= 0.0 else 0.0
+    _require_on_flank(gear, touch, what)
+    if centre + 0.5 * diameter <= gear.tip_radius:
+        raise GearError(f"gear {gear.name!r}: {what} stands below the tips; take larger ones")
+    if centre - 0.5 * diameter <= gear.root_circle_radius:
+        raise GearError(f"gear {gear.name!r}: {what} lies on the root; take larger ones")
+    spread = 1.0 if gear.teeth % 2 == 0 else math.cos(math.pi / (2.0 * gear.teeth))
+    return BallMeasurement(diameter, 2.0 * centre * spread + diameter, centre, touch)
+
+
+def _require_on_flank(gear: Gear, radius: float, what: str) -> None:
+    if not gear.form_radius <= radius <= gear.tip_radius:
+        raise GearError(
+            f"gear {gear.name!r}: {what} does not touch the flank, which runs from {gear.form_radius * 1e3:.6g} to "
+            f"{gear.tip_radius * 1e3:.6g} mm radius"
+        )

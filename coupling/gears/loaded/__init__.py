@@ -1,0 +1,1 @@
+"""The mesh under a steady load: transmission error, mesh stiffness, Harris map, optimal relief, pressure, friction."""

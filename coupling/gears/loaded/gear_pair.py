@@ -1,0 +1,275 @@
+"""Gear pair: its specification, and its mesh under the mean torque: contact law, damping, transmission error.
+
+Mesh damping: damping coefficient of a gear mesh from a damping ratio.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coupling.gears.contact.contact_law import ToothContact, tooth_contact
+from coupling.gears.contact.face_slices import FaceSlices, face_slices
+from coupling.gears.errors import GearError
+from coupling.gears.geometry.faults import MissingTooth
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.pair import GearPairGeometry
+from coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, loaded_transmission_error
+from coupling.gears.stiffness.crack import ToothCrack
+from coupling.gears.stiffness.models import (
+    ConstantStiffness,
+    SquareStiffness,
+    StiffnessModel,
+    TableStiffness,
+    stiffness_under_load,
+)
+
+
+def equivalent_mass(
+    driver_inertia: float, driven_inertia: float, driver_base_radius: float, driven_base_radius: float
+) -> float:
+    """Equivalent mass of the two gears rotating against each other, along the line of action [kg].
+
+    ``J_k J_i / (J_k R_i^2 + J_i R_k^2)``, inertias [kg m^2], base radii [m].
+
+    Raises
+    ------
+    GearError
+        Unless all four are positive.
+    """
+    given = (driver_inertia, driven_inertia, driver_base_radius, driven_base_radius)
+    if not all(math.isfinite(value) and value > 0.0 for value in given):
+        raise GearError(f"equivalent mass: inertias and base radii must be above 0, got {given}")
+    return (
+        driver_inertia
+        * driven_inertia
+        / (driver_inertia * driven_base_radius**2 + driven_inertia * driver_base_radius**2)
+    )
+
+
+def mesh_damping(ratio: float, mean_mesh_stiffness: float, equivalent_mass: float) -> float:
+    """Damping coefficient of the mesh, ``2 ratio sqrt(k m)`` [N s/m].
+
+    Parameters
+    ----------
+    ratio : float
+        Fraction of critical damping of the two gears rotating against each other.
+    mean_mesh_stiffness : float
+        Mean mesh stiffness [N/m].
+    equivalent_mass : float
+        See `equivalent_mass` [kg].
+    """
+    if not (ratio >= 0.0 and mean_mesh_stiffness > 0.0 and equivalent_mass > 0.0):
+        raise GearError(
+            "mesh damping: ratio must be at least 0, stiffness and mass above 0, "
+            f"got {ratio!r}, {mean_mesh_stiffness!r}, {equivalent_mass!r}"
+        )
+    return 2.0 * ratio * math.sqrt(mean_mesh_stiffness * equivalent_mass)
+
+
+_FADING = 0.1  # part of the mean compression above which the mesh is fully damped
+_BACKLASH_DIFFERENCE = 0.1  # part of the designed backlash by which a given one may differ without a warning
+_MESH_SPRINGS = (ConstantStiffness, SquareStiffness, TableStiffness)  # models of the mesh, not of a pair of teeth
+
+
+@dataclass(frozen=True)
+class GearPair:
+    """Specification of a gear pair of a machine.
+
+    Attributes
+    ----------
+    driver, driven : str
+        Names of the gears.
+    stiffness : StiffnessModel or str
+        Of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
+    damping_ratio : float
+        Fraction of critical damping of the two gears rotating against each other.
+    damping : float, optional
+        Damping coefficient of the mesh [N s/m], in place of the ratio.
+    backlash : float, optional
+        Gap of the back flanks along the line of action [m]; None: that of tooth thickness and centre distance; where
+        these leave none the back flanks never touch.
+    friction : float
+        Coefficient of friction between the teeth.
+    misalignment : float
+        Angle between the flanks in the plane of action, open towards +z [rad].
+    corner_contact : bool, optional
+        Whether teeth touch beyond their path of contact; None: with a stiffness model of pairs of teeth.
+    """
+
+    driver: str
+    driven: str
+    stiffness: StiffnessModel | str = "elastic-ring"
+    damping_ratio: float = 0.05
+    damping: float | None = None
+    backlash: float | None = None
+    friction: float = 0.0
+    misalignment: float = 0.0
+    corner_contact: bool | None = None
+
+    @property
+    def has_corner_contact(self) -> bool:
+        """Whether teeth touch beyond their path of contact."""
+        if self.corner_contact is not None:
+            return self.corner_contact
+        return not isinstance(self.stiffness, _MESH_SPRINGS)
+
+    def backlash_of(self, geometry: GearPairGeometry) -> float | None:
+        """Gap of the back flanks along the line of action [m]; None where they never touch.
+
+        See `GearPairGeometry.designed_backlash` where none is given.
+        """
+        return geometry.designed_backlash if self.backlash is None else self.backlash
+
+    def backlash_warning(self, geometry: GearPairGeometry) -> str | None:
+        """Sentence where a given backlash differs from that of tooth thickness and centre distance; else None."""
+        made = geometry.designed_backlash
+        if self.backlash is None or made is None or abs(self.backlash - made) <= _BACKLASH_DIFFERENCE * made:
+            return None
+        return (
+            f"{geometry.label}: the backlash of {1e3 * self.backlash:.4g} mm is not the {1e3 * made:.4g} mm that the "
+            "thickness of the teeth and the distance of the shafts leave along the line of action; leave 'backlash' "
+            "out for that"
+        )
+
+    def face_slices(self, geometry: GearPairGeometry, sense: int) -> FaceSlices | None:
+        """Face slices for an uneven load across the face; None for a uniform one.
+
+        Parameters
+        ----------
+        geometry : GearPairGeometry
+        sense : int
+            Of rotation of the driver about z: 1 or -1.
+        """
+        bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
+        straight = all(deviation is None or deviation.is_straight for deviation in bent)
+        if geometry.driver.helix_angle == 0.0 and self.misalignment == 0.0 and straight:
+            return None
+        return face_slices(geometry, sense=sense, misalignment=self.misalignment)
+
+    def require_sound_faults(self, geometry: GearPairGeometry) -> None:
+        """Refuse faults for which the mesh has no solution, before it is solved.
+
+        Raises
+        ------
+        GearError
+            For a crack through the foot of a tooth, or too many missing teeth for any to meet at some phase.
+        """
+        gears = (geometry.driver, geometry.driven)
+        for gear in gears:
+            for fault in gear.faults:
+                if isinstance(fault, ToothCrack):
+                    fault.extra_compliance(gear, np.array([math.tan(geometry.working_pressure_angle)]))
+        if any(isinstance(fault, MissingTooth) for gear in gears for fault in gear.faults):
+            driver, driven = (replace(gear, faults=_missing(gear)) for gear in gears)
+            sparse = replace(geometry, driver=driver, driven=driven)
+            contact = tooth_contact(sparse, SquareStiffness(1e8), corner_contact=self.has_corner_contact)
+            hunting_period_mesh(contact, 1.0, points=4)
+
+
+@dataclass(frozen=True)
+class LoadedGearPair:
+    """A gear pair at rest under its mean torque.
+
+    Attributes
+    ----------
+    pair : GearPair
+        As specified.
+    geometry : GearPairGeometry
+    model : StiffnessModel
+        Of its teeth.
+    contact : ToothContact
+        Contact law with its damping.
+    static : StaticMesh
+        Over the first mesh period.
+    hunting : StaticMesh or None
+        Over the whole hunting period, where mesh periods differ by pitch deviations or damaged teeth.
+    mesh_frequency : float or None
+        [Hz]; None where no speed is given.
+    """
+
+    pair: GearPair
+    geometry: GearPairGeometry
+    model: StiffnessModel
+    contact: ToothContact
+    static: LoadedMesh
+    hunting: LoadedMesh | None
+    mesh_frequency: float | None
+
+    @property
+    def torque(self) -> float:
+        """Torque on the driver that the mesh carries [N m]."""
+        return self.static.force * self.geometry.driver.base_radius
+
+    @property
+    def backlash(self) -> float | None:
+        """Gap of the back flanks along their line of action [m]; None where they never meet."""
+        return self.pair.backlash_of(self.geometry)
+
+    @property
+    def has_single_pairs(self) -> bool:
+        """Whether the model describes pairs of teeth, which share the load, and not the mesh as one spring."""
+        return math.isclose(self.contact.contact_ratio, self.geometry.contact_ratio, rel_tol=1e-9)
+
+
+def load_gear_pair(
+    pair: GearPair,
+    geometry: GearPairGeometry,
+    *,
+    torque: float = 0.0,
+    inertias: tuple[float, float],
+    speed: float | None = None,
+) -> LoadedGearPair:
+    """Contact law of a gear pair, and its mesh at rest under a mean torque.
+
+    Parameters
+    ----------
+    pair : GearPair
+    geometry : GearPairGeometry
+    torque : float
+        Mean torque that the pair takes from its driver [N m], of either sign.
+    inertias : tuple of float
+        Polar inertia that rotates with the driver and with the driven gear [kg m²], for the damping ratio.
+    speed : float, optional
+        Signed speed of the driver [rad/s].
+
+    Raises
+    ------
+    GearError
+        Where the pair cannot carry the torque, or its stiffness model does not fit the geometry.
+    """
+    force = abs(torque) / geometry.driver.base_radius
+    given = pair.stiffness
+    model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
+    contact = tooth_contact(
+        geometry,
+        model,
+        corner_contact=pair.has_corner_contact,
+        faces=pair.face_slices(geometry, 1 if speed is None or speed >= 0.0 else -1),
+    )
+    static = loaded_transmission_error(contact, force)
+    # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
+    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.mean_mesh_stiffness
+    damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
+    contact = contact.with_damping(damping, _FADING * force / contact.mean_mesh_stiffness)
+    hunting = hunting_period_mesh(contact, force) if contact.hunting_period > 1 else None
+    frequency = None if speed is None else abs(speed) * geometry.driver.teeth / (2.0 * math.pi)
+    return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
+
+
+def _missing(gear: Gear) -> tuple[MissingTooth, ...]:
+    return tuple(fault for fault in gear.faults if isinstance(fault, MissingTooth))
+
+
+def _damping_coefficient(
+    pair: GearPair, geometry: GearPairGeometry, mean_mesh_stiffness: float, inertias: tuple[float, float]
+) -> float:
+    """Damping coefficient of the mesh [N s/m]."""
+    if pair.damping is not None:
+        return pair.damping
+    if pair.damping_ratio == 0.0:
+        return 0.0
+    mass = equivalent_mass(*inertias, geometry.driver.base_radius, geometry.driven.base_radius)
+    return mesh_damping(pair.damping_ratio, mean_mesh_stiffness, mass)

@@ -1,0 +1,291 @@
+"""Loaded transmission error: static equilibrium of the mesh under a steady load, with mesh stiffness and load sharing.
+
+At each phase the pairs' forces balance the load, ``sum_j k'_j max(0, x - d_j) = F``, x their compression.  The left
+side is piecewise linear and increasing, so with the pairs sorted by deviation the answer is exact: with the n
+least relieved pairs touching ``x = (F + sum k'_j d_j) / sum k'_j``, and n is the number for which this lies
+above the n-th and not above the next deviation.  The shared compliance adds, ``delta = x + C F``
+(:mod:`coupling.gears.contact.contact_law`): under a constant load it is constant, and only shifts the transmission
+error.
+
+Hunting period: the loaded mesh over it, with each different mesh period solved once.
+
+Mesh periods differ by the pairs that can touch in them: by their pitch gaps and their damaged teeth. One cracked tooth
+makes a few mesh periods different from all others, however long the hunting period is; only pitch deviations of both
+gears make every mesh period different.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.contact.contact_law import PairStates, ToothContact
+from coupling.gears.contact.face_slices import FaceSlices, face_equilibrium, face_loads
+from coupling.gears.errors import ContactAccuracyError, GearError
+from coupling.gears.geometry.faults import NO_CONTACT_GAP
+from coupling.gears.geometry.pair import IntArray
+
+FloatArray = npt.NDArray[np.float64]
+
+_HAIR = 1e-9
+"""Compression for the tangent stiffness of an unloaded face [m]."""
+_EVENT_DISTANCE = 1e-9
+"""Distance from an event of the phases for both limits of a step, in mesh periods."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMesh:
+    """A loaded mesh at n phases, up to m pairs.
+
+    Attributes
+    ----------
+    force : float
+        Load along the line of action [N].
+    phases : ndarray, shape (n,)
+        Mesh periods.
+    transmission_error : ndarray, shape (n,)
+        Compression of the mesh under the load [m]: lag of the driven gear along the line of action.
+    positions : ndarray, shape (n, m)
+        Positions of the pairs along the path of contact [base pitches].
+    pair_forces : ndarray, shape (n, m)
+        Force of each [N].
+    tangent_stiffness : ndarray, shape (n,)
+        Stiffness of the pairs in contact, dF/d delta [N/m].
+    secant_stiffness : ndarray, shape (n,)
+        Load over the compression beyond first touch [N/m]; the tangent at no load.
+    line_loads : ndarray, shape (n, m, s), or None
+        Load per width on every slice of each pair's face [N/m]; None for a uniform load.
+    """
+
+    force: float
+    phases: FloatArray
+    transmission_error: FloatArray
+    positions: FloatArray
+    pair_forces: FloatArray
+    tangent_stiffness: FloatArray
+    secant_stiffness: FloatArray
+    line_loads: FloatArray | None = None
+
+    @property
+    def load_shares(self) -> FloatArray:
+        """Fraction of the load on each pair, shape (n, m); zero everywhere at no load."""
+        return self.pair_forces / self.force if self.force > 0.0 else np.zeros_like(self.pair_forces)
+
+    @property
+    def mean_transmission_error(self) -> float:
+        """Mean over the whole periods that `phases` cover [m]."""
+        return period_mean(self.phases, self.transmission_error)
+
+    @property
+    def peak_to_peak_transmission_error(self) -> float:
+        """Peak-to-peak transmission error [m]."""
+        return float(np.ptp(self.transmission_error))
+
+    @property
+    def mean_mesh_stiffness(self) -> float:
+        """Mean mesh stiffness under the load: mean tangent stiffness over the whole periods of `phases` [N/m]."""
+        return period_mean(self.phases, self.tangent_stiffness)
+
+
+def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 1) -> FloatArray:
+    """Phases over whole mesh periods, with both sides of every step and every corner among them.
+
+    Parameters
+    ----------
+    contact : ToothContact
+    points : int
+        Equally spaced phases of a period before the events are added.
+    periods : int
+        Mesh periods; `ToothContact.hunting_period` for all pitch deviations.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Ascending, in [0, periods).
+    """
+    even = (np.arange(points) + 0.5) / points
+    events = np.array(contact.event_phases)
+    limits = np.concatenate([events - _EVENT_DISTANCE, events + _EVENT_DISTANCE, np.array(contact.corner_phases)]) % 1.0
+    period = np.unique(np.concatenate([even, limits]))
+    return np.asarray((np.arange(periods)[:, None] + period).ravel(), dtype=np.float64)
+
+
+def loaded_transmission_error(
+    contact: ToothContact, force: float, phases: npt.ArrayLike | None = None, *, states: PairStates | None = None
+) -> LoadedMesh:
+    """Equilibrium of the mesh under a load, phase by phase.
+
+    Parameters
+    ----------
+    contact : ToothContact
+    force : float
+        Load along the line of action, torque over base radius [N], at least 0.
+    phases : array_like, shape (n,), or None
+        Mesh periods; None for one period, `mesh_period_phases`: with pitch deviations the one in which teeth 0 enter;
+        means over the hunting period need its phases given.
+    states : PairStates or None
+        ``contact.pairs(phases)``, computed once for many loads at the same phases.
+
+    Returns
+    -------
+    StaticMesh
+
+    Raises
+    ------
+    GearError
+        For a negative or non-finite load, or where too many teeth are missing for any to meet.
+    ContactAccuracyError
+        If the pairs' forces miss the load by more than rounding.
+    """
+    if not (math.isfinite(force) and force >= 0.0):
+        raise GearError(f"static mesh: the load must be at least 0 N, got {force!r}")
+    at = mesh_period_phases(contact) if phases is None else np.atleast_1d(np.asarray(phases, dtype=np.float64))
+    states = contact.pairs(at) if states is None else states
+    _require_teeth(states, at)
+    if contact.faces is not None:
+        return _balanced_faces(contact.faces, contact.shared_compliance, force, at, states)
+    order = np.argsort(states.deviation, axis=1)
+    stiffness = np.take_along_axis(states.stiffness, order, axis=1)
+    gap = np.take_along_axis(states.deviation, order, axis=1)
+    # Counted from first touch, so that rounding never puts the equilibrium before it.
+    first = gap[:, :1]
+    later = np.where(np.isfinite(gap), gap - first, 0.0)
+    sum_stiffness = np.cumsum(stiffness, axis=1)
+    candidate = first + (force + np.cumsum(stiffness * later, axis=1)) / sum_stiffness
+    # The n-th candidate holds while it exceeds the n-th gap; the first always does (or equals it).
+    holds = (candidate > gap) & np.isfinite(gap)
+    holds[:, 0] = True
+    touching = np.argmin(np.column_stack([holds, np.zeros(at.size, dtype=bool)]), axis=1) - 1
+    rows = np.arange(at.size)
+    compression = candidate[rows, touching]
+    tangent = sum_stiffness[rows, touching]
+
+    forces = states.stiffness * np.maximum(0.0, compression[:, None] - states.deviation)
+    # Rounding of delta - d, times the stiffness, is the least residual of any solution.
+    rounding = 64.0 * np.finfo(np.float64).eps * (force + tangent * np.abs(compression))
+    imbalance = np.abs(forces.sum(axis=1) - force)
+    if np.any(imbalance > rounding + 1e-300):
+        raise ContactAccuracyError(
+            f"static mesh: the teeth carry {imbalance.max():.3e} N more or less than the load of {force:.6g} N; "
+            "check the contact's stiffness and deviation for extreme values"
+        )
+    compression = compression + contact.shared_compliance * force
+    tangent = tangent / (1.0 + contact.shared_compliance * tangent)
+    beyond = compression - first[:, 0]
+    secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
+    return LoadedMesh(force, at, compression, states.position, forces, tangent, secant)
+
+
+def _require_teeth(states: PairStates, at: FloatArray) -> None:
+    """Raise `GearError` at a phase where every pair that could touch lacks a tooth."""
+    apart = states.deviation.min(axis=1) > 0.5 * NO_CONTACT_GAP
+    if np.any(apart):
+        raise GearError(
+            f"static mesh: no teeth meet at phase {at[apart][0]:.4g}, counted in mesh periods; so many neighbours are "
+            "missing that the gears turn free until the next ones strike. Let fewer neighbouring teeth be missing"
+        )
+
+
+def _balanced_faces(faces: FaceSlices, shared: float, force: float, at: FloatArray, states: PairStates) -> LoadedMesh:
+    """Solve the static mesh with an uneven load across the face."""
+    assert states.faces is not None
+    rows, columns = np.nonzero(states.present)
+    base, meeting = states.faces.base, states.faces.meeting
+    gap = states.faces.gap + states.pitch_gap[rows, columns][:, None]
+    if force > 0.0:
+        compression, loads = face_equilibrium(faces, base, gap, meeting, rows, np.full(at.size, force))
+    else:
+        # Without load the first slice just touches; the stiffness is that at a small compression.
+        compression = states.deviation.min(axis=1)
+        loads = face_loads(faces, base, gap, meeting, compression[rows] + _HAIR)
+        loads = replace(loads, force=0.0 * loads.force, line_load=0.0 * loads.line_load)
+    forces, tangents = np.zeros(states.position.shape), np.zeros(states.position.shape)
+    line_loads = np.zeros((*states.position.shape, faces.z.size))
+    forces[rows, columns], tangents[rows, columns] = loads.force, loads.tangent
+    line_loads[rows, columns] = loads.line_load
+    compression = compression + shared * force
+    beyond = compression - states.deviation.min(axis=1)
+    tangent = tangents.sum(axis=1)
+    tangent = tangent / (1.0 + shared * tangent)
+    secant = np.where(beyond > 0.0, force / np.where(beyond > 0.0, beyond, 1.0), tangent)
+    return LoadedMesh(force, at, compression, states.position, forces, tangent, secant, line_loads)
+
+
+def mesh_stiffness(contact: ToothContact, phases: npt.ArrayLike) -> FloatArray:
+    """Mesh stiffness with all pairs on the path of contact touching [N/m], at `phases` (n,)."""
+    return contact.mesh_stiffness(phases, sound=False)
+
+
+def period_mean(phases: FloatArray, values: FloatArray) -> float:
+    """Mean of a periodic curve by the trapezoidal rule on ascending phases, over the whole periods they lie in."""
+    periods = max(1, math.ceil(phases[-1] - phases[0] - 1e-9))
+    closed_phases = np.append(phases, phases[0] + periods)
+    closed_values = np.append(values, values[0])
+    return float(np.sum(0.5 * np.diff(closed_phases) * (closed_values[1:] + closed_values[:-1]))) / float(periods)
+
+
+_AT_ONCE = 1000
+"""Phases solved together: more, with face slices, exceed the processor's cache."""
+
+
+def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -> LoadedMesh:
+    """Equilibrium of the mesh under a load over the hunting period.
+
+    Parameters
+    ----------
+    contact : ToothContact
+    force : float
+        Along the line of action [N], at least 0.
+    points : int
+        Equally spaced phases of a mesh period, see `mesh_period_phases`.
+
+    Returns
+    -------
+    StaticMesh
+        Result of `loaded_transmission_error` at the phases of ``contact.hunting_period`` mesh periods.
+
+    Raises
+    ------
+    GearError, ContactAccuracyError
+        As `loaded_transmission_error` does.
+    """
+    period = mesh_period_phases(contact, points)
+    first, which = _different_periods(contact)
+    at = (first[:, None] + period).ravel()
+    parts = [
+        loaded_transmission_error(contact, force, at[begin : begin + _AT_ONCE]) for begin in range(0, at.size, _AT_ONCE)
+    ]
+
+    def over_all(rows: list[FloatArray]) -> FloatArray:
+        solved = np.concatenate(rows)
+        return solved.reshape(first.size, period.size, *solved.shape[1:])[which].reshape(-1, *solved.shape[1:])
+
+    loads = [part.line_loads for part in parts if part.line_loads is not None]
+    return replace(
+        parts[0],
+        phases=(np.arange(which.size)[:, None] + period).ravel(),
+        transmission_error=over_all([part.transmission_error for part in parts]),
+        positions=over_all([part.positions for part in parts]),
+        pair_forces=over_all([part.pair_forces for part in parts]),
+        tangent_stiffness=over_all([part.tangent_stiffness for part in parts]),
+        secant_stiffness=over_all([part.secant_stiffness for part in parts]),
+        line_loads=over_all(loads) if loads else None,
+    )
+
+
+def _different_periods(contact: ToothContact) -> tuple[IntArray, IntArray]:
+    """First mesh period of every kind, and the kind of each mesh period of the hunting period."""
+    start, end = contact.contact_range
+    entered = np.arange(contact.hunting_period)[:, None] - np.arange(math.floor(start), math.ceil(end))
+    own = [
+        values[entered % values.size]
+        for values in (contact.pitch_gaps, contact.pair_variants.astype(np.float64))
+        if values.size
+    ]
+    if not own:
+        return np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
+    _, first, which = np.unique(np.concatenate(own, axis=1), axis=0, return_index=True, return_inverse=True)
+    return first, which.reshape(-1)

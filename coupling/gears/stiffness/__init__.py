@@ -1,0 +1,1 @@
+"""Tooth stiffness: tooth models, gear body, Hertzian contact, ISO 6336."""

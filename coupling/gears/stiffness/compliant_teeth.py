@@ -1,0 +1,323 @@
+r"""Tooth pair stiffness from the compliances of two teeth and their contact: the base of all tooth models.
+
+The compliances of both teeth and of their contact add up, ``c(s) = c_k(s) + c_i(s) + h(F, s)``, and the stiffness is
+its inverse.  Where the contact is Weber's, ``h`` depends on the load F of the pair.  The dynamics need a stiffness that
+is a function of position alone; it is then frozen at the load that the model is given, as the secant through it, so
+that the deflection is exact under that load and approximate under others.  `CompliantTeeth.pair_compliance` with a
+force is exact at any load.  A load that is not given is `REFERENCE_LINE_LOAD` times the face width.
+
+Neighbouring pairs stand on the same two bodies.  A load on one moves the other's flanks, along the line of action, by
+
+    C(s) = c_k(s + 1, s) + c_i(s, s + 1),
+
+c_k and c_i the cross compliances of two neighbouring teeth of each gear (:mod:`coupling.gears.stiffness.ring_body`):
+the twist of the body about its bore, which both teeth feel in full, and the dent around the root.  As one load moves
+up its tooth the other moves down, so that C varies by less than 1 % while both pairs touch; the law takes its mean for
+all pairs.
+
+A new tooth model is one subclass of `CompliantTeeth`: it gives the compliance of one tooth (`solve_tooth`) and, where
+neighbouring teeth share a body, that body (`shared_body`).  Its name in cases comes from the list in
+:mod:`coupling.gears.stiffness.models`.
+
+Normal section of a helical gear: spur gears with the virtual number of teeth.
+
+A helical tooth bends in the plane normal to its flank. There it is the tooth of a spur gear of the normal module with
+``z_n = z / (cos^2 beta_b cos beta)`` teeth (ISO 21771), and the contact is at ``rho_n = rho_t / cos beta_b`` from that
+gear's base circle, so at the same fraction of the flank from its foot to its tip. With the load ``F_t / cos beta_b`` on
+the length ``b / cos beta_b``, and the deflection seen in the transverse plane as ``delta_n / cos beta_b``, the
+compliance along the transverse line of action is
+
+    c_t = c_n / cos beta_b,
+
+c_n that of the virtual spur gears of the same face width: ISO 6336-1's own factor cos beta. Whole numbers of teeth on
+both sides of z_n are interpolated, so that a spur gear is the limit.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears import piecewise_cubic as piecewise
+from coupling.gears.errors import StiffnessModelError
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.pair import GearPairGeometry
+from coupling.gears.piecewise_cubic import PiecewiseCubic, chebyshev_interpolant
+from coupling.gears.stiffness.beam import PlaneState
+from coupling.gears.stiffness.hertz import hertz_compliance, line_contact
+from coupling.gears.stiffness.ring_body import neighbour_compliance
+
+FloatArray = npt.NDArray[np.float64]
+Compliance = Callable[..., FloatArray]
+"""From one array of positions or radii for each load to a compliance [m/N]; the shapes broadcast."""
+
+
+def normal_section_gears(gear: Gear) -> tuple[tuple[Gear, float], ...]:
+    """Spur gears with the teeth of a helical gear's normal section, and their weights, which sum to 1."""
+    below = math.floor(gear.virtual_teeth)
+    above = gear.virtual_teeth - below
+    weights = ((below, 1.0 - above), (below + 1, above))
+    return tuple((_spur(gear, teeth), weight) for teeth, weight in weights if weight > 0.0)
+
+
+def transverse_compliance(gear: Gear, solve: Callable[[Gear], Compliance]) -> Compliance:
+    """Compliance of teeth along the transverse line of action, from that of the spur gears of their normal section.
+
+    Parameters
+    ----------
+    gear : Gear
+        Spur or helical.
+    solve : callable
+        From a spur gear to the compliance of its teeth [m/N] by the radii of the loads [m], one array for each load.
+
+    Returns
+    -------
+    callable
+        From transverse radii [m] of the same loads to ``c_n / cos(beta_b)`` [m/N].
+    """
+    if gear.helix_angle == 0.0:
+        return solve(gear)
+    sections = [(weight, solve(spur), _spur_radius(gear, spur)) for spur, weight in normal_section_gears(gear)]
+
+    def compliance(*radii: FloatArray) -> FloatArray:
+        total: FloatArray = np.zeros(np.broadcast_shapes(*(radius.shape for radius in radii)))
+        for weight, of_spur, spur_radius in sections:
+            total = total + weight * of_spur(*map(spur_radius, radii))
+        return np.asarray(total / math.cos(gear.base_helix_angle), dtype=np.float64)
+
+    return compliance
+
+
+def _spur_radius(gear: Gear, spur: Gear) -> Callable[[FloatArray], FloatArray]:
+    """From transverse radii to those at the same fraction of the spur gear's flank [m]."""
+    low, high = _reach(gear, np.array([gear.form_radius, gear.tip_radius]))
+    foot, tip = _reach(spur, np.array([spur.form_radius, spur.tip_radius]))
+
+    def spur_radius(radius: FloatArray) -> FloatArray:
+        share = (_reach(gear, radius) - low) / (high - low)
+        return np.asarray(np.hypot(spur.base_radius, foot + share * (tip - foot)), dtype=np.float64)
+
+    return spur_radius
+
+
+def _reach(gear: Gear, radius: FloatArray) -> FloatArray:
+    """Distance of a flank's point from the base circle along the line of action [m]."""
+    return np.asarray(np.sqrt(np.maximum(0.0, radius**2 - gear.base_radius**2)), dtype=np.float64)
+
+
+def _spur(gear: Gear, teeth: int) -> Gear:
+    return replace(
+        gear,
+        teeth=teeth,
+        helix_angle=0.0,
+        # The same body under the teeth: bore and rim keep their share of the radius.
+        bore=gear.bore * teeth / gear.teeth * math.cos(gear.helix_angle),
+        pitch_deviations=(),
+        faults=(),
+        tip_relief=None,
+        root_relief=None,
+        profile_deviation=None,
+        helix_deviation=None,
+        allow_undercut=True,
+    )
+
+
+ContactModel = Literal["yang-sun", "weber"]
+
+REFERENCE_LINE_LOAD = 300e3
+"""Load per face width at which Weber's contact is taken where none is given [N/m]: within the 100 to 1600 N/mm that the
+constants of ISO 6336-1 are for."""
+
+_CROSS_NODES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class ToothCompliance:
+    """Compliance of one tooth and the body under it, along the line of action [m/N].
+
+    Attributes
+    ----------
+    bending, shear, axial, foundation : ndarray
+        Of the tooth as a beam, and of the body it stands on; all of the shape of the radii of the loads.
+    rim : ndarray
+        Additional compliance of a rim on a thinner web, over a body of the teeth's full width.
+    """
+
+    bending: FloatArray
+    shear: FloatArray
+    axial: FloatArray
+    foundation: FloatArray
+    rim: FloatArray = field(default_factory=lambda: np.zeros(()))
+
+    @property
+    def total(self) -> FloatArray:
+        """Sum of all parts [m/N]."""
+        return self.bending + self.shear + self.axial + self.foundation + self.rim
+
+
+SolvedTooth = Callable[[FloatArray], ToothCompliance]
+"""One tooth, with all solved that does not depend on the load: from radii on its flank [m] to its compliance."""
+
+
+@dataclass(frozen=True)
+class SharedBody:
+    """The body that neighbouring teeth of a gear share.
+
+    Attributes
+    ----------
+    state : {"plane-stress", "plane-strain"}
+    twists : bool
+        Whether the tooth's own compliance includes the twist of the whole body about its bore; a tooth on a half plane
+        has no bore.
+    """
+
+    state: PlaneState
+    twists: bool
+
+
+@dataclass(frozen=True)
+class CompliantTeeth(ABC):
+    """A pair of teeth in series with their contact.
+
+    Parameters
+    ----------
+    contact : {"yang-sun", "weber"}
+        Contact compliance, see :mod:`coupling.gears.stiffness.hertz`.
+    force : float or None
+        Load of the pair at which Weber's contact is frozen [N]; None for `REFERENCE_LINE_LOAD`.
+
+    Raises
+    ------
+    StiffnessModelError
+        For an unknown contact, or a force that is not above 0.
+    """
+
+    name: ClassVar[str]
+    """Name in cases and messages."""
+
+    contact: ContactModel = field(default="weber", kw_only=True)
+    force: float | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        """Check the contact model and the force."""
+        if self.contact not in ("yang-sun", "weber"):
+            raise StiffnessModelError(
+                f"stiffness model {self.name!r}: contact must be 'yang-sun' or 'weber', got {self.contact!r}"
+            )
+        if self.force is not None and not (math.isfinite(self.force) and self.force > 0.0):
+            raise StiffnessModelError(f"stiffness model {self.name!r}: force must be above 0 N, got {self.force!r}")
+
+    @abstractmethod
+    def solve_tooth(self, gear: Gear) -> SolvedTooth:
+        """Solve one tooth of a spur gear for loads at any radius from the form circle to the tip."""
+
+    def shared_body(self, gear: Gear) -> SharedBody | None:
+        """Body that neighbouring teeth share; None where each tooth stands on one of its own."""
+        return None
+
+    def tooth(self, gear: Gear, radius: npt.ArrayLike) -> ToothCompliance:
+        """Compliance of one tooth of a spur gear.
+
+        Parameters
+        ----------
+        gear : Gear
+        radius : array_like
+            Radii of the loaded points [m], from the form radius to the tip.
+
+        Returns
+        -------
+        ToothCompliance
+            Arrays of the shape of `radius`.
+
+        Raises
+        ------
+        GearError
+            For a radius off the involute flank.
+        StiffnessModelError
+            For a body outside the range of the model.
+        """
+        return self.solve_tooth(gear)(np.asarray(radius, dtype=np.float64))
+
+    def shared_compliance(self, geometry: GearPairGeometry) -> float:
+        """Compliance that pairs of teeth in contact at once share, of both gears [m/N].
+
+        The mean over the positions at which two neighbouring pairs touch. Zero where the model has no body, or where
+        the path of contact never holds two pairs.
+        """
+        both = geometry.contact_ratio - 1.0
+        driver, driven = self._neighbours(geometry.driver), self._neighbours(geometry.driven)
+        if driver is None or driven is None or both <= 0.0:
+            return 0.0
+        nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
+        behind = 0.5 * both * (1.0 + nodes)
+        ahead = behind + 1.0
+        # The driver pushes against its own rotation, so that its next tooth in the sense of the load entered later.
+        moved = driver(geometry.driver_radius(ahead), geometry.driver_radius(behind))
+        moved = moved + driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))
+        return float(0.5 * weights @ moved)
+
+    def _neighbours(self, gear: Gear) -> Compliance | None:
+        body = self.shared_body(gear)
+        if body is None:
+            return None
+        return transverse_compliance(gear, lambda spur: neighbour_compliance(spur, body.state, twists=body.twists))
+
+    def teeth_compliance(self, geometry: GearPairGeometry) -> Compliance:
+        """Compliance of both teeth without their contact [m/N], as a function of the position in base pitches."""
+
+        def total(spur: Gear) -> Compliance:
+            tooth = self.solve_tooth(spur)
+            return lambda radius: tooth(radius).total
+
+        driver, driven = (transverse_compliance(gear, total) for gear in (geometry.driver, geometry.driven))
+        return lambda position: driver(geometry.driver_radius(position)) + driven(geometry.driven_radius(position))
+
+    def contact_compliance(
+        self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None
+    ) -> FloatArray:
+        """Approach of the flanks over their load [m/N] at `position`, under `force` [N] (None: the model's own)."""
+        at = np.asarray(position, dtype=np.float64)
+        if self.contact == "yang-sun":
+            flattening = hertz_compliance(geometry.driver, geometry.driven)
+            return np.full(at.shape, flattening / math.cos(geometry.driver.base_helix_angle))
+        load = force if force is not None else self.force
+        if load is None:
+            load = REFERENCE_LINE_LOAD * geometry.face_width
+        approach = line_contact(geometry, at.ravel()).secant_compliance(load).reshape(at.shape)
+        return np.asarray(approach / math.cos(geometry.driver.base_helix_angle), dtype=np.float64)
+
+    def pair_compliance(
+        self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None
+    ) -> FloatArray:
+        """Compliance of one pair [m/N] at `position` in base pitches, evaluated without a table.
+
+        Parameters
+        ----------
+        geometry : GearPairGeometry
+        position : array_like
+            Base pitches.
+        force : float or None
+            Load of the pair [N] for a contact that depends on it: the deflection is ``force`` times the compliance.
+
+        Returns
+        -------
+        ndarray
+            Same shape as `position`.
+        """
+        at = np.asarray(position, dtype=np.float64)
+        return self.teeth_compliance(geometry)(at) + self.contact_compliance(geometry, at, force)
+
+    def pair_stiffness(self, geometry: GearPairGeometry) -> PiecewiseCubic:
+        """Stiffness [N/m] by position; the table is checked against the model to 1e-9."""
+        length, teeth = geometry.contact_ratio, self.teeth_compliance(geometry)
+
+        def stiffness(position: FloatArray) -> FloatArray:
+            return np.asarray(1.0 / (teeth(position) + self.contact_compliance(geometry, position)), dtype=np.float64)
+
+        return piecewise.tabulated(chebyshev_interpolant(stiffness, length), length)

@@ -1,0 +1,136 @@
+r"""Tooth root crack: its geometry, and the additional compliance of the cracked tooth.
+
+The crack runs from the root circle on the loaded side into the tooth, straight, across the whole face. Material beyond
+it carries no bending: above the crack the section that is left reaches from the sound flank to a line through the
+crack's tip along the tooth's axis (Wu, Zuo and Parey, J. Sound Vib. 317, 2008, and many after them). Where that line
+would not come out of the loaded flank, because the crack's tip is nearer to the axis than the tooth's corner, or beyond
+the axis, it leans so as to end at that corner: a line along the axis would leave no section there to carry the load.
+With the half thickness x at height y, that at the root x_r, at the tip x_a, and depth q at the angle a to the axis,
+
+    t(y) = min(2 x, x + x_c + max(0, x_a - x_c) (y - y_r) / (y_a - y_r)),    x_c = x_r - q sin(a),
+
+takes the place of 2 x in the bending, shear and compression of :mod:`coupling.gears.stiffness.beam`. The flanks'
+contact and the body below are as in a sound tooth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import GearError, require_finite
+from coupling.gears.geometry.faults import check_tooth_number, require_tooth
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
+from coupling.gears.stiffness.beam import ROOT_CIRCLE, shear_modulus, tooth_sections
+
+FloatArray = npt.NDArray[np.float64]
+
+_LEAST_LEFT = 0.1
+"""Least part of any section that a crack may leave."""
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+_PANELS = 24
+
+
+@dataclass(frozen=True)
+class ToothCrack:
+    """A crack at the foot of one tooth.
+
+    Parameters
+    ----------
+    tooth : int
+        Its number from 0, as the teeth come into mesh.
+    depth : float
+        Length of the crack [m].
+    angle : float
+        Between the crack and the tooth's axis [rad].
+    """
+
+    tooth: int
+    depth: float
+    angle: float = math.radians(70.0)
+
+    def __post_init__(self) -> None:
+        """Check the tooth number, the depth and the angle."""
+        check_tooth_number("crack", self.tooth)
+        require_finite("crack depth", self.depth, minimum=0.0)
+        if not 0.0 < self.angle <= math.pi / 2.0:
+            raise GearError(f"crack angle must be above 0 and at most 90 degrees in rad, got {self.angle!r} rad")
+
+    def require_fit(self, gear: Gear) -> None:
+        """See `coupling.gears.geometry.gear.Fault`."""
+        require_tooth(gear, self.tooth)
+
+    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+        """Zero: an unloaded flank does not move."""
+        return np.zeros_like(roll_angle)
+
+    def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """Additional compliance of the tooth [m/N] for loads at roll angles [rad].
+
+        Raises
+        ------
+        GearError
+            For a crack that leaves less than a tenth of any section of the tooth.
+        """
+        low = fillet_points(gear, np.array(ROOT_CIRCLE))
+        root = float(low.half_thickness)
+        left = root - self.depth * math.sin(self.angle)
+        least = _least_left(gear)
+        if left < least:
+            deepest = (root - least) / math.sin(self.angle)
+            raise GearError(
+                f"gear {gear.name!r}: a crack of {self.depth * 1e3:.4g} mm goes through the foot of the tooth; "
+                f"at most {deepest * 1e3:.4g} mm at this angle, or a missing tooth"
+            )
+        radius = gear.base_radius * np.sqrt(1.0 + np.asarray(roll_angle, dtype=np.float64) ** 2)
+        beta = load_angle(gear, np.clip(radius, gear.form_radius, gear.tip_radius))[..., None]
+        load = flank_points(gear, beta)
+        sine, cosine = np.sin(beta), np.cos(beta)
+        # The section has a corner where it meets the crack's line: panels keep the quadrature exact enough.
+        edges = np.linspace(0.0, 1.0, _PANELS + 1)
+        part = (0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 / _PANELS * _NODES).ravel()
+        weight = np.tile(0.5 / _PANELS * _WEIGHTS, _PANELS)
+        modulus, shear = gear.youngs_modulus * gear.face_width, shear_modulus(gear) * gear.face_width
+        corner = flank_points(gear, load_angle(gear, np.array(gear.tip_radius)))
+        lean = np.maximum(0.0, corner.half_thickness - left) / (corner.height - low.height)
+        total = np.zeros(radius.shape)
+        for points, climb in tooth_sections(gear, beta, ROOT_CIRCLE, part, weight):
+            whole = 2.0 * points.half_thickness
+            remaining = np.minimum(whole, points.half_thickness + left + lean * (points.height - low.height))
+            moment = cosine * (load.height - points.height) - sine * load.half_thickness
+            bending = 12.0 * moment**2 * (remaining**-3 - whole**-3) / modulus
+            stretching = (1.2 * cosine**2 / shear + sine**2 / modulus) * (1.0 / remaining - 1.0 / whole)
+            total = total + np.sum(climb * (bending + stretching), axis=-1)
+        return np.asarray(total, dtype=np.float64)
+
+    def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+
+def _least_left(gear: Gear) -> float:
+    """Least x_c [m] with which every section keeps its least part p: ``x_c >= -((1 - 2 p) x + x_a v) / (1 - v)``.
+
+    ``v`` runs from 0 at the root circle to 1 at the tooth's corner; that is ``t >= 2 p x`` with the leaning line.
+    """
+    low = fillet_points(gear, np.array(math.pi / 2.0))
+    ends = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
+    corner = flank_points(gear, ends[1])
+    half, height = (
+        np.concatenate(
+            [
+                getattr(part, name)
+                for part in (
+                    fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, 100)),
+                    flank_points(gear, np.linspace(ends[0], ends[1], 100)[:-1]),
+                )
+            ]
+        )
+        for name in ("half_thickness", "height")
+    )
+    up = (height - low.height) / (corner.height - low.height)
+    return float(np.max(-((1.0 - 2.0 * _LEAST_LEFT) * half + corner.half_thickness * up) / (1.0 - up)))

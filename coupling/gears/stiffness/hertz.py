@@ -1,0 +1,142 @@
+r"""Hertzian contact compliance of two flanks: Yang & Sun's constant, and Weber's load-dependent law.
+
+Two cylinders pressed together with the force F touch on a strip of half width (Hertz)
+
+    a = sqrt(4 F rho eta / (pi b)),   eta = (1 - nu_k^2)/E_k + (1 - nu_i^2)/E_i,   1/rho = 1/rho_k + 1/rho_i
+
+Each surface sinks against a point of its body at the depth t under it (Weber & Banaschek 1953; Johnson, *Contact
+Mechanics*, section 5.6) by
+
+    delta = 2 F (1 - nu^2) / (pi E b) * (ln(2 t / a) - nu / (2 (1 - nu)))
+
+In plane problems the approach of far points is unbounded: a depth must be chosen.  It is the tooth's axis on the line
+of action, ``t = x / cos(beta)``, because tooth models give the axis' motion; in a finite-element model the two add up
+(tests/validation).  With the load the strip widens: the stiffness ``dF/d delta`` grows with the logarithm of F, from
+nothing at first touch.
+
+The constant of Yang & Sun (1985), ``pi E b / (4 (1 - nu^2))`` for equal materials, has neither load nor depth.  It is
+some three times stiffer than Weber's law at common loads.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import GearError
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.pair import GearPairGeometry
+from coupling.gears.geometry.profile import flank_points, load_angle
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def hertz_compliance(driver: Gear, driven: Gear) -> float:
+    """Flattening of two flanks pressed together, per unit load [m/N].
+
+    ``2 eta / (pi b)``, b the narrower face; for equal materials ``4 (1 - nu^2) / (pi E b)``, the load-independent form
+    of Yang & Sun (1985).
+    """
+    yielding = sum((1.0 - gear.poisson_ratio**2) / gear.youngs_modulus for gear in (driver, driven))
+    return 2.0 * yielding / (math.pi * min(driver.face_width, driven.face_width))
+
+
+@dataclass(frozen=True, eq=False)
+class LineContact:
+    """Contact of two flanks at n places of their path, by Weber's law.
+
+    Attributes
+    ----------
+    curvature_radius : ndarray, shape (n,)
+        Relative radius of curvature rho [m].
+    depths : ndarray, shape (2, n)
+        From the surface to the axis of the driver's and of the driven gear's tooth, along the line of action [m].
+    yielding : ndarray, shape (2,)
+        ``(1 - nu^2) / E`` of both [1/Pa].
+    poisson_ratios : ndarray, shape (2,)
+    width : float
+        Of the face that both share [m].
+    """
+
+    curvature_radius: FloatArray
+    depths: FloatArray
+    yielding: FloatArray
+    poisson_ratios: FloatArray
+    width: float
+
+    def half_width(self, force: npt.ArrayLike) -> FloatArray:
+        """Half the width of the strip of contact under `force` [N], in m."""
+        line_load = _positive(force) / self.width
+        return np.asarray(
+            np.sqrt(4.0 * line_load * self.curvature_radius * self.yielding.sum() / math.pi), dtype=np.float64
+        )
+
+    def approach(self, force: npt.ArrayLike) -> FloatArray:
+        """Approach of the axes of the two teeth by the flattening alone [m], under `force` [N]."""
+        return _positive(force) * self.secant_compliance(force)
+
+    def secant_compliance(self, force: npt.ArrayLike) -> FloatArray:
+        """Approach over force [m/N]."""
+        return self._compliance(force, 0.0)
+
+    def tangent_compliance(self, force: npt.ArrayLike) -> FloatArray:
+        """Slope of the approach by the force [m/N]."""
+        # a grows as sqrt(F), so that the logarithm falls by half of dF/F.
+        return self._compliance(force, 0.5)
+
+    def _compliance(self, force: npt.ArrayLike, less: float) -> FloatArray:
+        strip = self.half_width(force)
+        if np.any(2.0 * strip > self.depths):
+            raise GearError(
+                f"contact of flanks: under {float(np.max(force)):.6g} N the strip of contact is "
+                f"{2e3 * strip.max():.3g} mm wide, more than the tooth behind it is thick "
+                f"({1e3 * self.depths.min():.3g} mm); lower the load"
+            )
+        nu = self.poisson_ratios[:, None]
+        parts = np.log(2.0 * self.depths / strip) - 0.5 * nu / (1.0 - nu) - less
+        return np.asarray(2.0 / (math.pi * self.width) * (self.yielding @ parts), dtype=np.float64)
+
+
+def line_contact(geometry: GearPairGeometry, position: npt.ArrayLike) -> LineContact:
+    """Compute the line contact of a tooth pair at positions along the path of contact.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    position : array_like, shape (n,)
+        Base pitches.
+
+    Returns
+    -------
+    LineContact
+    """
+    at = np.atleast_1d(np.asarray(position, dtype=np.float64))
+    gears = (geometry.driver, geometry.driven)
+    radii = (geometry.driver_radius(at), geometry.driven_radius(at))
+    # A flank's radius of curvature is the length of the line of action to its base circle; none at its very start.
+    curvatures = [
+        1.0 / np.maximum(np.sqrt(np.maximum(radius**2 - gear.base_radius**2, 0.0)), 1e-6 * gear.module)
+        for gear, radius in zip(gears, radii, strict=True)
+    ]
+    depths = []
+    for gear, radius in zip(gears, radii, strict=True):
+        beta = load_angle(gear, radius)
+        depths.append(flank_points(gear, beta).half_thickness / np.cos(beta))
+    return LineContact(
+        # In the normal section of helical teeth the flanks are flatter.
+        curvature_radius=1.0 / (curvatures[0] + curvatures[1]) / math.cos(geometry.driver.base_helix_angle),
+        depths=np.array(depths),
+        yielding=np.array([(1.0 - gear.poisson_ratio**2) / gear.youngs_modulus for gear in gears]),
+        poisson_ratios=np.array([gear.poisson_ratio for gear in gears]),
+        width=geometry.face_width,
+    )
+
+
+def _positive(force: npt.ArrayLike) -> FloatArray:
+    load = np.asarray(force, dtype=np.float64)
+    if not np.all(np.isfinite(load) & (load > 0.0)):
+        raise GearError(f"contact of flanks: the force must be above 0 N, got {np.min(load):.6g}")
+    return load

@@ -1,0 +1,481 @@
+r"""Elastic ring: exact flexibility of a gear's body under its teeth.
+
+The body is a flat ring between the root circle (radius 1 here) and a circle where it is held.  Tractions on the root
+circle are split into waves ``n`` around it.  In one wave the displacements are combinations of powers of ``r`` that
+follow from the complex potentials ``z^k`` (Kolosov; Muskhelishvili 1953), with ``kappa = (3 - nu)/(1 + nu)`` in plane
+stress, ``3 - 4 nu`` in plane strain:
+
+    2 mu (u_r + i u_t) = e^{-i t} (kappa phi(z) - z conj(phi'(z)) - conj(psi(z)))
+    s_r - i s_rt       = phi' + conj(phi') - e^{2 i t} (conj(z) phi'' + psi')
+
+so that each wave has four coefficients: two conditions at the held circle, two at the root circle.  A rim on a thinner
+web is two such rings, one in the other: the flexibility of the web at its outer circle is the condition at the rim's
+inner one.
+
+The tooth stands on the arc ``|t| < theta``.  A beam's sections stay plane, so the arc moves as a rigid one, and the
+tractions under it are those that make the energy least among all that carry the load (Castigliano): those of a rigid
+stamp.  They are sought as ``T_k(t/theta) / sqrt(1 - (t/theta)^2)``, whose waves are Bessel functions,
+``pi theta J_k(n theta)``; a few terms give all digits that matter.
+
+The arc of another tooth, an angle away on the same ring, moves with the ring.  Tractions ``s`` of waves ``s_n`` shifted
+by the angle D do the work ``1/pi sum_n Re(conj(s_n) H_n s'_n e^{-i n D})`` on the displacement of the tractions ``s'``,
+H_n the wave's flexibility, Hermitian in this form.  With the tractions of each arc alone this is the cross flexibility
+of two teeth; with the flexibility of each it is the energy of real tractions, so positive definite.
+
+Gear body compliance: an exact elastic ring under a tooth, and the additional compliance of a rim on a web.
+
+The load of a tooth is carried to the root circle as a force ``cos(beta)`` across the tooth's axis, ``sin(beta)`` along
+it, and the torque ``rb`` about the gear's centre.  With the flexibility of the rigid root arc
+(:mod:`coupling.gears.stiffness.ring_body`) under (across, torque / r_f) and along,
+
+    q = (f^T L f + R sin(beta)^2) / (E b),    f = (cos(beta), rb / r_f)
+
+The ring is held at its bore.  A gear in one piece with its shaft (``bore = 0``) has no such place: its ring is held at
+a third of the root circle, and the twist of the whole ring, which is the shaft's own, is left out.
+
+A rim with a web of another width is two rings.  Its share is their compliance less that of one ring of the teeth's
+width down to the same bore; finite elements of two widths agree within 4 % (tests/validation).  The model is plane: a
+web off the middle of the face, and spokes, also tilt the rim, which is left out.  A rim alone (no web) is held at its
+inside.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.errors import StiffnessModelError
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.profile import load_angle, root_half_angle
+from coupling.gears.stiffness.beam import PlaneState, plane_modulus
+from coupling.gears.stiffness.foundation import held_radius
+
+FloatArray = npt.NDArray[np.float64]
+
+_SHAPES = 8
+"""Chebyshev polynomials in each traction: the compliance is within 1e-4 of its limit."""
+_WAVES_ACROSS = 60.0
+"""n theta of the last wave that is counted; those beyond act on a half plane and are summed in closed form."""
+
+_POINTS = 100
+"""Points of quadrature on the arc, an even number, enough beyond `_WAVES_ACROSS` for all digits."""
+_FADED = 25.0
+"""A wave n with n ln(outer / inner) above this has decayed to 1e-11 at the inside."""
+
+
+@dataclass(frozen=True)
+class Annulus:
+    """A flat ring of one width.
+
+    Attributes
+    ----------
+    inner, outer : float
+        Radii, in root circle radii.
+    width : float
+        In the units of the rim's.
+    """
+
+    inner: float
+    outer: float
+    width: float
+
+
+@dataclass(frozen=True, eq=False)
+class RootFlexibility:
+    """Flexibility of the rigid root arc, times E and width.
+
+    Attributes
+    ----------
+    lateral : ndarray, shape (2, 2)
+        Under (force across the tooth's axis, torque about the gear's centre over root radius).
+    radial : float
+        Under a force along the tooth's axis.
+    """
+
+    lateral: FloatArray
+    radial: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Stamp:
+    """The tractions under a rigid root arc, for unit resultants (across, torque, along).
+
+    Attributes
+    ----------
+    waves : ndarray of complex, shape (3, n, 2)
+        ``int s e^{-i n t} dt`` of the radial and the tangential traction, n = 1, 2, ...
+    uniform : ndarray, shape (3, 2)
+        The same for n = 0.
+    flexibility : ndarray, shape (n, 2, 2)
+        As of `_wave_flexibility`.
+    even : ndarray, shape (2,)
+        Breathing and twist: displacement under uniform tractions.
+    own : RootFlexibility
+    """
+
+    waves: npt.NDArray[np.complex128]
+    uniform: FloatArray
+    flexibility: FloatArray
+    even: FloatArray
+    own: RootFlexibility
+
+
+def root_flexibility(
+    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float
+) -> RootFlexibility:
+    """Flexibility of the arc that one tooth stands on.
+
+    Parameters
+    ----------
+    rings : tuple of Annulus
+        From the held circle outward, each beginning where the last ends; the last ends at the root circle, 1.
+    half_angle : float
+        Of the tooth on the root circle [rad].
+    poisson_ratio, kappa : float
+        Of the material, and Kolosov's constant.
+
+    Returns
+    -------
+    RootFlexibility
+    """
+    return _stamp(rings, half_angle, poisson_ratio, kappa).own
+
+
+def neighbour_flexibility(
+    rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float, angle: float
+) -> FloatArray:
+    """Motion of one root arc under loads on another one of the same ring, times E and width.
+
+    Parameters
+    ----------
+    rings, half_angle, poisson_ratio, kappa
+        As for `root_flexibility`.
+    angle : float
+        From the middle of the first arc to that of the second [rad], counted in the sense of the force across.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Row: motion of the first arc in the sense of (force across the tooth's axis, torque about the gear's centre over
+        root radius, force outward along the axis); column: these loads on the second arc.
+    """
+    stamp = _stamp(rings, half_angle, poisson_ratio, kappa)
+    numbers = np.arange(1, stamp.waves.shape[1] + 1)
+    hermitian = stamp.flexibility.astype(np.complex128)
+    hermitian[:, 0, 1] *= 1j
+    hermitian[:, 1, 0] *= -1j
+    moved = np.einsum("nab,jnb,n->jna", hermitian, stamp.waves, np.exp(-1j * numbers * angle))
+    work = np.einsum("ina,jna->ij", stamp.waves.conj(), moved).real / math.pi
+    work += (stamp.uniform * stamp.even) @ stamp.uniform.T / (2.0 * math.pi)
+    return np.asarray((1.0 + poisson_ratio) * work, dtype=np.float64)
+
+
+@lru_cache(maxsize=16)
+def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float) -> _Stamp:
+    """Solve the rigid stamp on a ring."""
+    last = math.ceil(_WAVES_ACROSS / half_angle)
+    waves = np.arange(1, last + 1)
+    # Waves much shorter than the thickness of the outermost ring do not reach its inside.
+    deep = math.ceil(_FADED / math.log(rings[-1].outer / rings[-1].inner))
+    flexibility = np.concatenate(
+        [
+            _wave_flexibility(rings, waves[:1], kappa),
+            _wave_flexibility(rings, waves[1:deep], kappa),
+            _short_wave_flexibility(waves[max(1, deep) :], kappa),
+        ]
+    )
+    even, odd = np.arange(0, _SHAPES, 2), np.arange(1, _SHAPES, 2)
+    # int f_k cos(n t) dt for even k, int f_k sin(n t) dt for odd k, by Gauss and Chebyshev: many times faster than jv.
+    # Shape times wave is even in t, so half the points do.
+    phase = math.pi * (np.arange(_POINTS // 2) + 0.5) / _POINTS
+    turns, weight = _multiples(last, half_angle * np.cos(phase)), 2.0 * math.pi * half_angle / _POINTS
+    content = [
+        weight * np.cos(np.outer(even, phase)) @ turns.real.T,
+        weight * np.cos(np.outer(odd, phase)) @ turns.imag.T,
+    ]
+    # Beyond, J_k J_l averages to +-1 / (pi n theta) and the flexibility falls as 1/n: all terms of a block alike.
+    tail = half_angle * last / (last + 0.5) * np.diagonal(flexibility[-1])
+    twist, breathing = twist_flexibility(rings), _breathing(rings, kappa)
+    # Across the axis: radial tractions odd, tangential ones even.  Shifted by a quarter wave, tangential changes sign.
+    lateral = _energy(content[1], content[0], flexibility, -1.0, tail)
+    whole = np.where(even == 0, math.pi * half_angle, 0.0)
+    lateral[odd.size :, odd.size :] += np.outer(whole, whole) / (2.0 * math.pi) * twist
+    radial = _energy(content[0], content[1], flexibility, 1.0, tail)
+    radial[: even.size, : even.size] += np.outer(whole, whole) / (2.0 * math.pi) * breathing
+    first_even, first_odd = content[0][:, 0], content[1][:, 0]
+    across = np.array([np.concatenate([first_odd, first_even]), np.concatenate([np.zeros(odd.size), whole])])
+    along = np.concatenate([first_even, -first_odd])[None, :]
+    scale = 1.0 + poisson_ratio  # E / (2 mu)
+    least, sideways = _least_work(lateral, across)
+    outward, upright = _least_work(radial, along)
+    held = np.asarray(scale * least, dtype=np.float64)
+    held.setflags(write=False)
+    # Of even shapes e^{-i n t} leaves the cosine, of odd ones -i times the sine; across the axis the radial are odd.
+    waves = np.array(
+        [
+            *([-1j * tractions[: odd.size] @ content[1], tractions[odd.size :] @ content[0]] for tractions in sideways),
+            [upright[0, : even.size] @ content[0], -1j * upright[0, even.size :] @ content[1]],
+        ]
+    )
+    uniform = np.zeros((3, 2))
+    uniform[:2, 1], uniform[2, 0] = sideways[:, odd.size :] @ whole, upright[0, : even.size] @ whole
+    return _Stamp(
+        waves=np.ascontiguousarray(waves.swapaxes(1, 2), dtype=np.complex128),
+        uniform=uniform,
+        flexibility=flexibility,
+        even=np.array([breathing, twist]),
+        own=RootFlexibility(lateral=held, radial=float(scale * outward[0, 0])),
+    )
+
+
+def _multiples(last: int, angle: FloatArray) -> npt.NDArray[np.complex128]:
+    """``e^{i n angle}`` for n = 1 ... `last`, (last, points), as products of few exponentials."""
+    few = math.ceil(math.sqrt(last))
+    ones, tens = np.outer(np.arange(1, few + 1), angle), np.outer(few * np.arange(few), angle)
+    turns = np.exp(1j * tens)[:, None] * np.exp(1j * ones)
+    return np.asarray(turns.reshape(-1, angle.size)[:last], dtype=np.complex128)
+
+
+def _energy(
+    radial: FloatArray, tangential: FloatArray, flexibility: FloatArray, sign: float, tail: FloatArray
+) -> FloatArray:
+    """Work of each traction on each other's displacement, radial shapes first, waves of n >= 1."""
+    blocks = [
+        [np.einsum("in,n,jn->ij", a, flexibility[:, i, j], b) / math.pi for j, b in enumerate((radial, tangential))]
+        for i, a in enumerate((radial, tangential))
+    ]
+    return np.block([[blocks[0][0] + tail[0], sign * blocks[0][1]], [sign * blocks[1][0], blocks[1][1] + tail[1]]])
+
+
+def _least_work(energy: FloatArray, resultants: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Flexibility (r, r) under r resultants with the tractions of least energy, and those of unit resultants (r, k)."""
+    free = np.linalg.solve(energy, resultants.T)
+    flexibility = np.asarray(np.linalg.inv(resultants @ free), dtype=np.float64)
+    return flexibility, np.asarray((free @ flexibility).T, dtype=np.float64)
+
+
+def _wave_flexibility(rings: tuple[Annulus, ...], waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:
+    """Displacement (u_r, u_t), times 2 mu, under unit tractions (s_r cos n t, s_rt sin n t) on the last ring's outside.
+
+    Shape (waves, 2, 2).
+    """
+    support = np.zeros((waves.size, 2, 2))
+    for ring, inside in zip(rings, (None, *rings[:-1]), strict=True):
+        inner_motion, inner_stress = _fields(ring.inner, ring, waves, kappa)
+        motion, stress = _fields(ring.outer, ring, waves, kappa)
+        ratio = 1.0 if inside is None else ring.width / inside.width
+        held = inner_motion - ratio * support @ inner_stress
+        conditions = np.concatenate([held, stress], axis=1)
+        loads = np.broadcast_to(np.vstack([np.zeros((2, 2)), np.eye(2)]), (waves.size, 4, 2))
+        support = motion @ np.linalg.solve(conditions, loads)
+    return support
+
+
+def _short_wave_flexibility(waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:
+    """`_wave_flexibility` of a full disc of radius 1: of the growing solutions alone."""
+    n = waves.astype(np.float64)
+    # Rows: weights of z^(n+1) and z^(n-1) under each traction, from the inverse of their two tractions.
+    determinant = 2.0 * (n**2 - 1.0)
+    first = np.array([n - 1.0, n - 1.0]) / determinant
+    second = np.array([-(n + 1.0) * n, (n + 1.0) * (2.0 - n)]) / determinant
+    radial = (kappa - n - 1.0) * first - second
+    tangential = (kappa + n + 1.0) * first + second
+    return np.moveaxis(np.array([radial, tangential]), 2, 0)
+
+
+def _fields(radius: float, ring: Annulus, waves: npt.NDArray[np.int64], kappa: float) -> tuple[FloatArray, FloatArray]:
+    """Displacements and tractions of the four solutions of a wave at `radius`, each shape (waves, 2, 4).
+
+    Two grow outward and are one at the ring's outside, two fade outward and are one at its inside, so that no power
+    overflows.
+    """
+    n = waves.astype(np.float64)
+    one, none = np.ones_like(n), np.zeros_like(n)
+    outward, inward = radius / ring.outer, ring.inner / radius
+    grow, fade = outward**n, inward**n
+    r = radius
+    if waves.size == 1 and waves[0] == 1:
+        # z^0 is the rigid-body motion of the ring, and the resultant force of wave 1 needs a logarithm.
+        log, inside = math.log(outward), inward**2
+        columns = [
+            _potential(2.0 * one, grow * outward, grow * outward / r, kappa, 1.0),
+            (
+                (2.0 * kappa * log - 1.0) * one,
+                -(2.0 * kappa * log + 1.0) * one,
+                (3.0 + kappa) / r * one,
+                (1.0 - kappa) / r * one,
+            ),
+            (-inside * one, -inside * one, 2.0 * inside / r * one, 2.0 * inside / r * one),
+            (one, -one, none, none),
+        ]
+    else:
+        columns = [
+            _potential(n + 1.0, grow * outward, grow * outward / r, kappa, 1.0),
+            _potential(1.0 - n, fade / inward, fade / inward / r, kappa, -1.0),
+            (-grow / outward, grow / outward, -(n - 1.0) * grow / outward / r, (n - 1.0) * grow / outward / r),
+            (-fade * inward, -fade * inward, (n + 1.0) * fade * inward / r, (n + 1.0) * fade * inward / r),
+        ]
+    table = np.moveaxis(np.array(columns), 0, -1)  # (4 quantities, waves, 4 solutions)
+    return np.moveaxis(table[:2], 0, 1), np.moveaxis(table[2:], 0, 1)
+
+
+def _potential(
+    k: FloatArray, power: FloatArray, rate: FloatArray, kappa: float, side: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Fields of ``phi = z^k``: `power` is r^k, `rate` r^(k-1), `side` +1 for k > 0 and -1 for k < 0."""
+    return (kappa - k) * power, side * (kappa + k) * power, k * (3.0 - k) * rate, side * k * (k - 1.0) * rate
+
+
+def twist_flexibility(rings: tuple[Annulus, ...]) -> float:
+    """Rotation of the root circle (times 2 mu) under a uniform tangential traction 1 on it."""
+    outermost = rings[-1].width
+    return sum(outermost / ring.width * (ring.inner**-2 - ring.outer**-2) for ring in rings)
+
+
+def _breathing(rings: tuple[Annulus, ...], kappa: float) -> float:
+    """Radial displacement of the root circle (times 2 mu) under a uniform radial traction 1 on it."""
+    support, width = 0.0, rings[0].width
+    for ring in rings:
+        a, b = ring.inner, ring.outer
+        held = np.array([(kappa - 1.0) * a, -1.0 / a]) - ring.width / width * support * np.array([2.0, a**-2])
+        amplitude = np.linalg.solve(np.array([held, [2.0, b**-2]]), np.array([0.0, 1.0]))
+        support, width = float(np.array([(kappa - 1.0) * b, -1.0 / b]) @ amplitude), ring.width
+    return support
+
+
+SOLID_HOLD = 1.0 / 3.0
+"""Radius at which a gear without a bore is held, in root circle radii."""
+
+
+BodyCompliance = Callable[[FloatArray], FloatArray]
+"""From radii of loaded points [m] to the compliance of the body along the line of action [m/N], of the same shape."""
+CrossCompliance = Callable[[FloatArray, FloatArray], FloatArray]
+"""From radii of the loaded points of two teeth [m] to the motion of one by a unit load on the other [m/N]."""
+
+
+def ring_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
+    """Compliance of a body of the teeth's full width, solved once for loads at any radius.
+
+    Parameters
+    ----------
+    gear : Gear
+    state : {"plane-stress", "plane-strain"}
+    """
+    return _solved(gear, (Annulus(_hold(gear), 1.0, gear.face_width),), state, twists=held_radius(gear) is not None)
+
+
+def rim_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
+    """Additional compliance of a rim on a thinner web over `ring_compliance`, solved once for loads at any radius.
+
+    Zero for a gear without a rim or with a rim alone.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a web that begins inside the bore's circle.
+    """
+    if gear.rim_inner_radius is None or gear.web_thickness is None:
+        return lambda radius: np.zeros(np.shape(radius))
+    rings = _rings(gear)
+    plain = (Annulus(_hold(gear), 1.0, gear.face_width),)
+    with_rim, without = (_solved(gear, body, state, twists=True) for body in (rings, plain))
+    return lambda radius: with_rim(radius) - without(radius)
+
+
+def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twists: bool = True) -> CrossCompliance:
+    """Cross compliance of two neighbouring teeth: motion of one flank by a load on the other, along the line of action.
+
+    Both teeth are rigid on their root arcs, each loaded on the same side; their own flexure is not felt next door. The
+    twist of the ring between the held circle and the root circle is felt by both teeth in full.
+
+    Parameters
+    ----------
+    gear : Gear
+        A spur gear.
+    state : {"plane-stress", "plane-strain"}
+    twists : bool
+        Whether the twist of the whole body is counted; never that of a gear in one piece with its shaft. Without it the
+        bore and the rim are left out too, as for a tooth on a half plane: the dent of a solid gear remains.
+
+    Returns
+    -------
+    callable
+        From radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
+        the compliance.
+    """
+    rings = _rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
+    nu, kappa = gear.poisson_ratio, _kolosov(gear, state)
+    cross = neighbour_flexibility(rings, root_half_angle(gear), nu, kappa, 2.0 * math.pi / gear.teeth)
+    if not (twists and held_radius(gear) is not None):
+        cross = cross.copy()
+        cross[1, 1] -= _whole_twist(rings, nu)
+    torque = gear.base_radius / gear.root_circle_radius
+
+    def loads(radius: FloatArray) -> FloatArray:
+        beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
+        return np.array([np.cos(beta), np.full(beta.shape, torque), -np.sin(beta)])
+
+    def compliance(behind: FloatArray, ahead: FloatArray) -> FloatArray:
+        work = np.einsum("i...,ij,j...->...", loads(behind), cross, loads(ahead))
+        return np.asarray(work / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
+
+    return compliance
+
+
+def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, twists: bool) -> BodyCompliance:
+    """Work of a unit load on the root arc; `twists` keeps the twist of the whole body."""
+    nu = gear.poisson_ratio
+    arc = root_flexibility(rings, root_half_angle(gear), nu, _kolosov(gear, state))
+    torque = gear.base_radius / gear.root_circle_radius
+    twist = 0.0 if twists else _whole_twist(rings, nu)
+
+    def compliance(radius: FloatArray) -> FloatArray:
+        beta = load_angle(gear, np.asarray(radius, dtype=np.float64))
+        across, along = np.cos(beta), np.sin(beta)
+        work = arc.lateral[0, 0] * across**2 + 2.0 * arc.lateral[0, 1] * across * torque + arc.lateral[1, 1] * torque**2
+        work = work - twist * torque**2 + arc.radial * along**2
+        return np.asarray(work / (gear.youngs_modulus * gear.face_width), dtype=np.float64)
+
+    return compliance
+
+
+def _whole_twist(rings: tuple[Annulus, ...], nu: float) -> float:
+    """Twist of the whole body under a torque alone, times E and width, independent of the tractions."""
+    return (1.0 + nu) / (2.0 * math.pi) * twist_flexibility(rings)
+
+
+def _kolosov(gear: Gear, state: PlaneState) -> float:
+    plane_modulus(gear, state)  # refuses an unknown state
+    nu = gear.poisson_ratio
+    return (3.0 - nu) / (1.0 + nu) if state == "plane-stress" else 3.0 - 4.0 * nu
+
+
+def _rings(gear: Gear) -> tuple[Annulus, ...]:
+    """Divide the gear body into annuli, from the radius where it is held to the root circle.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a web that begins inside the bore's circle.
+    """
+    held = _hold(gear)
+    if gear.rim_inner_radius is None or gear.web_thickness is None:
+        return (Annulus(held, 1.0, gear.face_width),)
+    inside = gear.rim_inner_radius / gear.root_circle_radius
+    if inside <= held:
+        raise StiffnessModelError(
+            f"gear {gear.name!r}: the inside of the rim ({gear.rim_inner_radius * 1e3:.4g} mm radius) must be outside "
+            f"the circle where the body is held ({held * gear.root_circle_radius * 1e3:.4g} mm); leave out the rim"
+        )
+    return Annulus(held, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width)
+
+
+def _hold(gear: Gear) -> float:
+    """Radius at which the body is held, in root circle radii."""
+    held = held_radius(gear)
+    return SOLID_HOLD if held is None else held / gear.root_circle_radius

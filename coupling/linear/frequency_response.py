@@ -1,0 +1,450 @@
+"""Frequency response of a machine: gear forces, bearing loads and sensors under harmonic excitation.
+
+A transmission error e = e^{iwt} at one mesh presses its contact by δ = dᵀq - e. It drives the coordinates with the load
+(k + iwc) d e, and every contact carries F = (k + iwc)(dᵀq - e), the error being its own alone: the dynamic mesh force
+by unit error, d.c. limit k of the mesh in series with all that gives way behind it.
+
+Receptance of the coupled system about a contact state, by direct solution or by mode superposition.
+
+With q = H(s) f, H(s) = (s² I + s C + K)⁻¹ and s = iw. Superposition uses the expansion of
+:mod:`coupling.linear.eigenpairs`,
+
+    H(s) = X / s² - (Σ q pᴴ) / s + Σ q pᴴ / (s - λ),
+
+over all modes, rigid-body motions included, so that both ways give one function; nothing is truncated.
+
+Modal truncation error of frequency responses, estimated from two modal bases of one machine.
+
+The error of a basis is estimated from another basis that differs from it by the part least well represented. Both are
+coupled to the same bearings, teeth and loads, and excited alike: with the response H by the one and H' by the other at
+a frequency w, the relative error of a sensor's line there is about
+
+    u(w) = max(2 max |H'(v) - H(v)| / |H(v)|, 0.5 %),        v within 1.5 % of w,
+
+the norms over all excitations that make lines. The difference of whole machines holds the shift of a resonance too,
+which turns small errors into large ones. The neighbourhood covers lines at frequencies where the two curves cross by
+chance; the factor of two covers directions in which the other basis is no better; and the least value covers errors
+that both bases share, such as the one damping ratio of all modes above the limit.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError, ModesError
+from coupling.linear.complex_modes import CoupledModes
+from coupling.linear.eigenpairs import Eigenpairs
+from coupling.machine.assembly import CoupledMachine
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_EVEN_POINTS = 600  # across a band, beside those of each resonance
+_AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])  # half-power half-widths
+_SUM_RULE = 1e-6  # largest error of the modes' sum rule for a superposition
+
+
+def receptance(
+    system: CoupledSystem,
+    outputs: FloatArray,
+    inputs: FloatArray,
+    frequencies: FloatArray,
+    *,
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> ComplexArray:
+    """Motions along output directions by unit harmonic forces along input directions.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    outputs, inputs : ndarray, shapes (o, n) and (i, n)
+        Directions of motion; a motion of a component by :func:`coupling.machine.coupled_system.embed`.
+    frequencies : ndarray, shape (f,)
+        w [rad/s], not 0; the response at -w is the conjugate.
+    contact : ContactState, optional
+        By default the mean contact.
+    modes : CoupledModes, optional
+        Modes about the same contact, to be superposed; by default the system is solved at every frequency.
+
+    Returns
+    -------
+    ndarray of complex, shape (f, o, i)
+        [m/N] between translations.
+
+    Raises
+    ------
+    CouplingError
+        For directions of another length, or a frequency of 0.
+    ModesError
+        Where the modes are not complete, or an undamped mode is driven at its own frequency.
+    """
+    for what, rows in (("outputs", outputs), ("inputs", inputs)):
+        if rows.ndim != 2 or rows.shape[1] != system.size:
+            raise CouplingError(f"{what} of shape {rows.shape}; expected (any, {system.size})")
+    loads = np.broadcast_to(inputs, (len(frequencies), *inputs.shape))
+    return np.asarray(np.einsum("fin,on->foi", response(system, loads, frequencies, contact, modes), outputs))
+
+
+def response(
+    system: CoupledSystem,
+    loads: npt.NDArray[np.float64] | ComplexArray,
+    frequencies: FloatArray,
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> ComplexArray:
+    """Coordinates H(iw) f under loads f of shape (f, i, n): shape (f, i, n). See :func:`receptance`."""
+    w = np.asarray(frequencies, dtype=np.float64)
+    if not np.all(np.isfinite(w)) or np.any(w == 0.0):
+        raise CouplingError("frequencies that are 0 or not finite; expected others: a free machine drifts at 0")
+    if modes is not None:
+        return superposed(modes.pairs, loads, w)
+    stiffness, damping = linear_matrices(system, mean_contact(system) if contact is None else contact)
+    found = np.empty(loads.shape, dtype=np.complex128)
+    for number, (each, load) in enumerate(zip(w, loads, strict=True)):
+        dynamic = stiffness + 1j * each * damping
+        dynamic[np.diag_indices(system.size)] -= each**2
+        try:
+            found[number] = np.linalg.solve(dynamic, load.T).T
+        except np.linalg.LinAlgError as error:
+            raise ModesError(
+                f"an undamped mode is driven at its own frequency, {each / (2.0 * np.pi):.6g} Hz; give it damping or "
+                "leave that frequency out"
+            ) from error
+    return found
+
+
+def superposed(
+    pairs: Eigenpairs, loads: npt.NDArray[np.float64] | ComplexArray, frequencies: FloatArray
+) -> ComplexArray:
+    """H(iw) f from all eigenpairs, loads and result of shape (f, i, n).
+
+    Raises
+    ------
+    ModesError
+        Where the eigenpairs fail their sum rule: at a nearly defective eigenvalue.
+    """
+    if not pairs.sum_rule <= _SUM_RULE:
+        raise ModesError(
+            f"the coupled modes miss their sum rule by {pairs.sum_rule:.1e}: two of them are all but one, as at "
+            "critical damping, and cannot be superposed; solve the system directly instead"
+        )
+    s = 1j * frequencies
+    distance = s[:, None] - pairs.values
+    if np.any(distance == 0.0):
+        raise ModesError("an undamped mode is driven at its own frequency; give it damping or leave that frequency out")
+    # 1 / (s - λ) - 1 / s = λ / (s (s - λ)), without the difference's loss of digits at high frequency.
+    gains = pairs.values / (s[:, None] * distance)
+    driven = np.einsum("mn,fin->fim", pairs.left.conj(), loads, optimize=True)
+    moved = np.einsum("fim,mn->fin", driven * gains[:, None, :], pairs.right, optimize=True)
+    if pairs.drifts:
+        moved = moved + np.einsum("fin,kn->fik", loads, pairs.drift, optimize=True) / (s**2)[:, None, None]
+    return np.asarray(moved)
+
+
+def resonance_grid(modes: CoupledModes, low: float, high: float) -> FloatArray:
+    """Frequency grid of a band that resolves every resonance, ascending [rad/s].
+
+    Raises
+    ------
+    CouplingError
+        Unless 0 < low < high.
+    """
+    if not 0.0 < low < high:
+        raise CouplingError(f"a band from {low:g} to {high:g} rad/s; expected 0 < from < to")
+    swinging = modes.eigenvalues[modes.eigenvalues.imag > 0.0]
+    near = swinging.imag[:, None] + np.abs(swinging.real)[:, None] * _AROUND
+    grid = np.unique(np.concatenate([np.linspace(low, high, _EVEN_POINTS), near.ravel()]))
+    # An undamped mode has no finite response at its own frequency.
+    undamped = swinging.imag[np.abs(swinging.real) <= 1e-12 * np.abs(swinging)]
+    return np.asarray(grid[(grid >= low) & (grid <= high) & ~np.isin(grid, undamped)])
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Complex amplitudes under a harmonic excitation at f frequencies; the signals are the real parts of a e^{iwt}.
+
+    Attributes
+    ----------
+    excitation : str
+        Name of the excitation.
+    unit : str
+        Unit of the excitation, which has the amplitude 1.
+    frequencies : ndarray, shape (f,)
+        w [rad/s].
+    coordinates : ndarray of complex, shape (f, n)
+        Amplitudes of the whole system.
+    sensor_acceleration : dict of str to ndarray of complex, shape (f,)
+        Along each sensor [m/s²].
+    bearing_load : dict of str to ndarray of complex, shape (f, 5)
+        Of each shaft on its bearing: forces along x, y, z [N], moments about x and y [N m]; 0 where nothing holds.
+    mesh_force : dict of str to ndarray of complex, shape (f,)
+        Force along each line of action [N]; contacts that do not touch are left out.
+    """
+
+    excitation: str
+    unit: str
+    frequencies: FloatArray
+    coordinates: ComplexArray
+    sensor_acceleration: dict[str, ComplexArray]
+    bearing_load: dict[str, ComplexArray]
+    mesh_force: dict[str, ComplexArray]
+
+    @property
+    def bearing_force(self) -> dict[str, ComplexArray]:
+        """Force of each shaft on its bearing along x and y [N], shape (f, 2) each."""
+        return {name: load[:, :2] for name, load in self.bearing_load.items()}
+
+    def peaks(self, curve: ComplexArray, count: int = 8) -> npt.NDArray[np.int64]:
+        """Places along the frequencies at which the size of a curve (f,) has its highest maxima, highest first."""
+        size = np.abs(curve)
+        tops = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
+        return np.asarray(tops[np.argsort(-size[tops], kind="stable")][:count])
+
+
+def mesh_error_response(
+    machine: CoupledMachine,
+    frequencies: FloatArray,
+    *,
+    mesh: int = 0,
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> FrequencyResponse:
+    """Response to a unit transmission error along one line of action [1/m].
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+    frequencies : ndarray, shape (f,)
+        w > 0 [rad/s].
+    mesh : int
+        Number of the gear mesh.
+    contact : ContactState, optional
+        By default the mean contact.
+    modes : CoupledModes, optional
+        Modes about the same contact, to be superposed; by default the system is solved at every frequency.
+
+    Raises
+    ------
+    CouplingError
+        Where the machine has no such mesh, or it does not touch.
+    ModesError
+        As :func:`coupling.linear.frequency_response`.
+    """
+    if not 0 <= mesh < len(machine.meshes):
+        raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
+    state = mean_contact(machine.system) if contact is None else contact
+    tooth = machine.system.contacts[mesh]
+    law = state.stiffness[mesh] + 1j * frequencies * state.damping[mesh]
+    if state.stiffness[mesh] == 0.0:
+        raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
+    loads = law[:, None, None] * tooth.direction
+    moved = response(machine.system, loads, frequencies, state, modes)[:, 0]
+    return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", mesh)
+
+
+def sensor_force_response(
+    machine: CoupledMachine,
+    frequencies: FloatArray,
+    *,
+    sensor: str,
+    contact: ContactState | None = None,
+    modes: CoupledModes | None = None,
+) -> FrequencyResponse:
+    """Response to a unit force along a sensor [1/N], as of a hammer blow.
+
+    Raises
+    ------
+    CouplingError
+        Where the housing has no such sensor.
+    ModesError
+        As :func:`coupling.linear.frequency_response`.
+    """
+    rows = machine.sensor_rows
+    if sensor not in rows:
+        raise CouplingError(f"no sensor {sensor!r}; there are: {', '.join(rows) or 'none'}")
+    state = mean_contact(machine.system) if contact is None else contact
+    loads = np.broadcast_to(rows[sensor], (len(frequencies), 1, machine.system.size))
+    moved = response(machine.system, loads, frequencies, state, modes)[:, 0]
+    return _named(machine, state, frequencies, moved, f"force at {sensor}", "N")
+
+
+def unbalance_response(
+    machine: CoupledMachine,
+    speeds: Sequence[float] | FloatArray,
+    *,
+    rotor: str,
+    contact: ContactState | None = None,
+) -> FrequencyResponse:
+    """Unbalance response of a rotor with its own unbalances, over the speed of the leading rotor.
+
+    The machine is assembled at each speed: gyroscopic terms and bearings with tables follow.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+    speeds : sequence of float
+        Of the leading rotor [rad/s], none 0.
+    rotor : str
+    contact : ContactState, optional
+        At every speed; by default the mean contact under the machine's load.
+
+    Returns
+    -------
+    FrequencyResponse
+        With w the signed speeds of that rotor: amplitudes rotate with it.
+
+    Raises
+    ------
+    CouplingError
+        Where the rotor has no unbalance, or a speed is 0.
+    """
+    if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.unbalances):
+        raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
+    turned = [machine.at_speed(float(speed)) for speed in speeds]
+    frequencies = np.array([one.speeds[rotor] for one in turned])
+    if np.any(frequencies == 0.0):
+        raise CouplingError("a speed of 0, where an unbalance has no force; expected others")
+    state = mean_contact(turned[0].system) if contact is None else contact
+    number = [part.name for part in machine.system.components].index(rotor)
+    rows = _rows_of(machine.system, number)
+    parts = []
+    for one, w in zip(turned, frequencies, strict=True):
+        # Other rotors of the same speed have loads of that frequency too, on their own coordinates.
+        load = sum(
+            (each.amplitude for each in one.system.harmonic_loads if each.frequency == w),
+            np.zeros(one.system.size, dtype=np.complex128),
+        )
+        alone = np.where(rows, load, 0.0)
+        moved = response(one.system, alone[None, None, :], np.array([w]), state)[:, 0]
+        parts.append(_named(one, state, np.array([w]), moved, f"unbalance of {rotor}", "unbalance as it is"))
+    first = parts[0]
+    return FrequencyResponse(
+        excitation=first.excitation,
+        unit=first.unit,
+        frequencies=frequencies,
+        coordinates=np.concatenate([part.coordinates for part in parts]),
+        sensor_acceleration=_joined([part.sensor_acceleration for part in parts]),
+        bearing_load=_joined([part.bearing_load for part in parts]),
+        mesh_force=_joined([part.mesh_force for part in parts]),
+    )
+
+
+def _rows_of(system: CoupledSystem, number: int) -> npt.NDArray[np.bool_]:
+    """Mask of a component's coordinates, shape (n,)."""
+    owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
+    return np.asarray(owners == number)
+
+
+def _joined(each: list[dict[str, ComplexArray]]) -> dict[str, ComplexArray]:
+    return {name: np.concatenate([one[name] for one in each]) for name in each[0]}
+
+
+def _named(
+    machine: CoupledMachine,
+    state: ContactState,
+    frequencies: FloatArray,
+    moved: ComplexArray,
+    excitation: str,
+    unit: str,
+    erring: int | None = None,
+) -> FrequencyResponse:
+    """Response at sensors, bearings and meshes from coordinates (f, n); one mesh may have a unit error."""
+    system, rate = machine.system, 1j * frequencies
+    loads = {}
+    for connector in system.linear[: len(machine.bearings)]:
+        deflection = moved @ connector.directions
+        loads[connector.name] = np.zeros((len(moved), 5), dtype=np.complex128)
+        loads[connector.name][:, list(connector.axes or range(deflection.shape[1]))] = (
+            deflection @ connector.stiffness.T + (rate[:, None] * deflection) @ connector.damping.T
+        )
+    pressed = {}
+    for number, tooth in enumerate(system.contacts):
+        if state.stiffness[number] != 0.0 or state.damping[number] != 0.0:
+            compression = moved @ tooth.direction - (1.0 if number == erring else 0.0)
+            pressed[tooth.name] = (state.stiffness[number] + rate * state.damping[number]) * compression
+    return FrequencyResponse(
+        excitation=excitation,
+        unit=unit,
+        frequencies=np.asarray(frequencies),
+        coordinates=moved,
+        sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in machine.sensor_rows.items()},
+        bearing_load=loads,
+        mesh_force=pressed,
+    )
+
+
+_NEIGHBOURHOOD = np.linspace(-0.015, 0.015, 7)  # relative frequencies at which the two bases are compared
+_SAFETY = 2.0
+_LEAST = 0.005
+_HIGHEST = 10.0  # errors beyond ten times the line carry no information
+
+
+@dataclass(frozen=True)
+class BasisError:
+    """Modal truncation error of a machine, by the same machine on another basis.
+
+    Attributes
+    ----------
+    machine : CoupledMachine
+        On the basis whose error is estimated.
+    other : CoupledMachine
+        The same machine on another basis, its sensors, meshes and bearings in the same order.
+    """
+
+    machine: CoupledMachine
+    other: CoupledMachine
+
+    def at(self, frequencies: Sequence[float] | FloatArray) -> dict[str, FloatArray]:
+        """Relative error of the motion of each sensor.
+
+        Parameters
+        ----------
+        frequencies : ndarray, shape (f,)
+            w > 0 [rad/s].
+
+        Returns
+        -------
+        dict of str to ndarray, shape (f,)
+            By name of the sensor; between 0.005 and 10.
+
+        Raises
+        ------
+        CouplingError
+            Where a frequency is 0.
+        ModesError
+            Where an undamped mode is driven at its own frequency.
+        """
+        asked = np.asarray(frequencies, dtype=np.float64)
+        if not asked.size or not self.machine.sensor_rows:
+            return {name: np.zeros(asked.size) for name in self.machine.sensor_rows}
+        w = (asked[:, None] * (1.0 + _NEIGHBOURHOOD)).ravel()
+        ours, others = _sensor_responses(self.machine, w), _sensor_responses(self.other, w)
+        found = {}
+        for name, motion in ours.items():
+            size = np.linalg.norm(motion, axis=1)
+            apart = np.linalg.norm(motion - others[name], axis=1)
+            part = np.divide(apart, size, out=np.zeros_like(apart), where=size > 0.0)
+            found[name] = np.clip(_SAFETY * part.reshape(asked.size, -1).max(axis=1), _LEAST, _HIGHEST)
+        return found
+
+
+def _sensor_responses(machine: CoupledMachine, frequencies: FloatArray) -> dict[str, ComplexArray]:
+    """Motion along each sensor by each excitation, shape (f, e)."""
+    state = mean_contact(machine.system)
+    loads = np.broadcast_to(_excitations(machine), (len(frequencies), *_excitations(machine).shape))
+    moved = response(machine.system, loads, frequencies, state)
+    return {name: moved @ row for name, row in machine.sensor_rows.items()}
+
+
+def _excitations(machine: CoupledMachine) -> FloatArray:
+    """Unit loads of the excitations, shape (e, n): along each line of action; without gears, at each bearing."""
+    drives = [contact.direction for contact in machine.system.contacts if contact.drives]
+    if drives:
+        return np.array(drives)
+    across = [connector.directions[:, :2].T for connector in machine.system.linear[: len(machine.bearings)]]
+    return np.concatenate(across) if across else np.zeros((0, machine.system.size))

@@ -1,0 +1,489 @@
+"""Assembly of the coupled system: components, connectors of bearings and gear pairs, and loads."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.gears import ToothContact
+from coupling.gears.contact.sliding_friction import sliding_friction
+from coupling.machine.components import (
+    Component,
+    HousingComponent,
+    PedestalComponent,
+    RotorComponent,
+    pedestal_component,
+)
+from coupling.machine.connectors import (
+    ContactConnector,
+    GearMesh,
+    LinearConnector,
+    MountedBearing,
+    NonlinearConnector,
+    RollingLaw,
+    ShaftDashpots,
+    Sliding,
+    SpeedTable,
+    shaft_dashpots,
+)
+from coupling.machine.coupled_system import CoupledSystem, embed
+from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing
+from coupling.machine.loads import (
+    AnyTorque,
+    BaseMotion,
+    BowReactions,
+    Drive,
+    Loads,
+    MachineCoordinates,
+    Unbalance,
+    base_loads,
+    constant_torques,
+    gravity_load,
+)
+from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried, shuttling_loads
+from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
+from coupling.statics.mean_mesh import mean_meshes
+from coupling.statics.static_equilibrium import with_loaded_flanks
+from rotors import Bearing
+
+FloatArray = npt.NDArray[np.float64]
+
+# Part of the normal module: the clearance between tip and root. Teeth pressed in by more would touch there, and no
+# steel bends so far.
+_GREATEST_COMPRESSION = 0.25
+
+_PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two speeds of its table
+
+
+@dataclass(frozen=True)
+class CoupledMachine:
+    """The parts of a machine, and the coupled system assembled of them.
+
+    Attributes
+    ----------
+    rotors : tuple of RotorComponent
+    housing : HousingComponent or None
+    bearings : tuple of MountedBearing
+    meshes : tuple of GearMesh
+    system : CoupledSystem
+        Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
+        couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
+    unbalances, bows, torques, drives, base, gravity
+        The loads in the system.
+    dashpots : tuple of ShaftDashpots
+        In the rotors' couplings.
+    """
+
+    rotors: tuple[RotorComponent, ...]
+    housing: HousingComponent | None
+    bearings: tuple[MountedBearing, ...]
+    meshes: tuple[GearMesh, ...]
+    system: CoupledSystem
+    unbalances: tuple[Unbalance, ...] = ()
+    bows: tuple[BowReactions, ...] = ()
+    torques: tuple[AnyTorque, ...] = ()
+    drives: tuple[Drive, ...] = ()
+    base: BaseMotion | None = None
+    gravity: tuple[float, ...] | None = None
+    dashpots: tuple[ShaftDashpots, ...] = ()
+
+    @property
+    def speeds(self) -> dict[str, float]:
+        """Signed speed of each rotor [rad/s]."""
+        return {rotor.name: speed for rotor, speed in zip(self.rotors, self.system.speeds, strict=False)}
+
+    @property
+    def leading_rotor(self) -> str:
+        """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
+        return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+
+    @property
+    def loaded_contacts(self) -> tuple[int, ...]:
+        """Number of the contact of each mesh that carries the mean load: its drive flanks, or back flanks if braked."""
+        contacts = self.system.contacts
+        return tuple(
+            number if back is None or not contacts[back].drives else back
+            for number, back in enumerate(_back_contacts(self.meshes))
+        )
+
+    def rows(self, component: str, rows: FloatArray) -> FloatArray:
+        """Rows over the coordinates of one component, shape (..., m), as rows over all of them, shape (..., n)."""
+        components = self.system.components
+        return embed(components, [part.name for part in components].index(component), rows)
+
+    @property
+    def sensor_rows(self) -> dict[str, FloatArray]:
+        """Motion along each sensor by the coordinates of the whole system, shape (n,) each."""
+        if self.housing is None:
+            return {}
+        name = self.housing.name
+        return {sensor: self.rows(name, row) for sensor, row in self.housing.sensors.items()}
+
+    def at_speed(self, speed: float) -> "CoupledMachine":
+        """The machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
+
+        Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; the components
+        keep their modes, which are a basis at any speed.
+
+        Raises
+        ------
+        CouplingError
+            Where the machine stands still, which leaves the ratios of its speeds open.
+        rotors.RotorError
+            Where the speed is beyond the table of a bearing.
+        """
+        present = self.speeds[self.leading_rotor]
+        if present == 0.0:
+            raise CouplingError(f"rotor {self.leading_rotor!r} stands still; expected a machine that turns")
+        return assemble_machine(
+            self.rotors,
+            self.housing,
+            speeds={name: value * (speed / present) for name, value in self.speeds.items()},
+            bearings=self.bearings,
+            meshes=self.meshes,
+            unbalances=self.unbalances,
+            bows=self.bows,
+            torques=self.torques,
+            drives=self.drives,
+            base=self.base,
+            gravity=self.gravity,
+            dashpots=self.dashpots,
+        )
+
+
+def assemble_machine(
+    rotors: Sequence[RotorComponent],
+    housing: HousingComponent | None,
+    *,
+    speeds: dict[str, float],
+    bearings: Sequence[MountedBearing] = (),
+    meshes: Sequence[GearMesh] = (),
+    unbalances: Sequence[Unbalance] = (),
+    bows: Sequence[BowReactions] = (),
+    torques: Sequence[AnyTorque] = (),
+    drives: Sequence[Drive] = (),
+    base: BaseMotion | None = None,
+    gravity: Sequence[float] | None = None,
+    rates: tuple[float, float] = (1.0, 1.0),
+    dashpots: Sequence[ShaftDashpots] = (),
+) -> CoupledMachine:
+    """Assemble the coupled system of components that exist already; :class:`coupling.Machine` makes them of its parts.
+
+    Parameters
+    ----------
+    rotors, housing
+        The components.
+    speeds : dict of str to float
+        Signed speed of each rotor [rad/s].
+    bearings, meshes, unbalances, bows, torques
+        Connectors and loads.
+    drives
+        Stations of the torques that accelerate a train, see
+        :meth:`coupling.machine.loads.MachineCoordinates.acceleration_load`.
+    base
+        Motion of the ground: under bearings, pedestals and the housing's supports alike.
+    gravity
+        Acceleration of free fall along x, y, z [m/s²]; none by default.
+    dashpots
+        In the rotors' couplings.
+    rates
+        The least and the highest speed that the machine will run at, as parts of ``speeds``: bearings' tables over
+        speed are followed between them.
+
+    Raises
+    ------
+    CouplingError
+        Where a name has no component, two components share one, a rotor has no speed, a seat no housing, a train more
+        than one drive, helical gears push a rotor that no bearing holds along its axis, or the gears of a pair cannot
+        be in mesh: by speeds that are not in the ratio of their teeth, or of one sense; by axes that are not at their
+        centre distance; by faces that do not overlap.
+    rotors.RotorError
+        Where a bearing's table does not reach as far as the speeds.
+    """
+    pedestals = [
+        pedestal_component(mounted.bearing.name, mounted.bearing.pedestal)
+        for mounted in bearings
+        if mounted.seat is None and mounted.bearing.pedestal is not None
+    ]
+    components: tuple[Component, ...] = (*rotors, *(() if housing is None else (housing,)), *pedestals)
+    if len({component.name for component in components}) < len(components):
+        raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
+    without = [rotor.name for rotor in rotors if rotor.name not in speeds]
+    if without:
+        raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
+    coordinates = MachineCoordinates(components, speeds)
+
+    require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
+    require_balance(meshes, torques, speeds)
+    _require_thrust_carried(rotors, speeds, bearings, meshes, torques)
+    feet = {foot.name: foot for foot in pedestals}
+    held = [_bearing(coordinates, housing, feet, mounted, rates) for mounted in bearings]
+    within = []
+    for given in dashpots:
+        rows, law = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], rates)
+        within.append(replace(law, directions=coordinates.rows(given.rotor, rows).T))
+
+    senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
+    phases = mesh_phases(
+        [mesh.driver.name for mesh in meshes],
+        [mesh.driven.name for mesh in meshes],
+        [mesh.geometry for mesh in meshes],
+        [mesh.centre_line_angle for mesh in meshes],
+        senses,
+    )
+    sides = list(zip(meshes, senses, phases, strict=True))
+    with_back = [side for side in sides if side[0].backlash is not None]
+    contacts = [_contact(coordinates, *side) for side in sides]
+    contacts += [_contact(coordinates, *side, back=True) for side in with_back]
+
+    loads = _loads(coordinates, bearings, unbalances, bows, torques, base, gravity)
+    system = CoupledSystem(
+        components=components,
+        speeds=tuple(speeds.get(component.name, 0.0) for component in components),
+        linear=(*(linear for linear, _ in held), *within, *loads.dashpots),
+        contacts=tuple(contacts),
+        load=loads.constant,
+        harmonic_loads=tuple(loads.harmonic),
+        timed_loads=tuple(loads.timed),
+        acceleration_load=coordinates.acceleration_load(
+            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives
+        ),
+        nonlinear=tuple(own for _, own in held if own is not None),
+    )
+    system = with_loaded_flanks(system, _back_contacts(meshes))
+    flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
+    system = with_balanced_friction(_with_shuttling(system, coordinates, flanks))
+    return CoupledMachine(
+        tuple(rotors),
+        housing,
+        tuple(bearings),
+        tuple(meshes),
+        system,
+        tuple(unbalances),
+        tuple(bows),
+        tuple(torques),
+        tuple(drives),
+        base,
+        None if gravity is None else tuple(gravity),
+        tuple(dashpots),
+    )
+
+
+def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:
+    """Number of the contact of each mesh's back flanks, which follow all drive flanks; None where they never meet."""
+    after = len(meshes) + np.cumsum([mesh.backlash is not None for mesh in meshes]) - 1
+    return [None if mesh.backlash is None else int(at) for mesh, at in zip(meshes, after, strict=True)]
+
+
+def _bearing(
+    coordinates: MachineCoordinates,
+    housing: HousingComponent | None,
+    feet: dict[str, PedestalComponent],
+    mounted: MountedBearing,
+    rates: tuple[float, float],
+) -> tuple[LinearConnector, NonlinearConnector | None]:
+    """A bearing between its shaft and its seat, pedestal or the ground; with the connector of a law of its own."""
+    rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
+    law = mounted.bearing.at_speed(speed)
+    table = _over_speed(mounted.bearing, speed, rates)
+    # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
+    held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
+    held = np.union1d(held, [0, 1])
+    if isinstance(mounted.law, RollingLaw):
+        # Its tangent may vanish where its force does not stay zero.
+        held = np.arange(5)
+    if table is not None:
+        ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
+        held = np.union1d(held, np.flatnonzero(ever))
+    relative = coordinates.rows(rotor.name, rotor.motions(at))
+    if mounted.seat is not None:
+        if housing is None or mounted.seat not in housing.seats:
+            raise CouplingError(f"bearing {law.name!r}: no seat {mounted.seat!r} in the housing")
+        relative = relative - coordinates.rows(housing.name, housing.seat_motions(mounted.seat, rotor.start + at))
+    elif law.pedestal is not None:
+        relative[:2] -= coordinates.rows(law.name, feet[law.name].motion)
+    nonlinear = None
+    if mounted.law is not None:
+        moving = held[np.any(relative[held] != 0.0, axis=1)]
+        tangent = law.spatial_stiffness[np.ix_(moving, moving)]
+        nonlinear = NonlinearConnector(law.name, relative[moving].T, moving, mounted.law, tangent, speed)
+    if table is not None:
+        table = SpeedTable(table.rates, *(part[:, held[:, None], held] for part in (table.stiffness, table.damping)))
+    among = np.ix_(held, held)
+    stiffness, damping = law.spatial_stiffness[among], law.spatial_damping[among]
+    axes = tuple(held.tolist())
+    return LinearConnector(law.name, relative[held].T, stiffness, damping, over_speed=table, axes=axes), nonlinear
+
+
+def _contact(
+    coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
+) -> ContactConnector:
+    """The drive flanks of a mesh, or its back flanks; the driver turns in the given sense."""
+    rate = abs(coordinates.speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
+    name, law, clearance = mesh.name, mesh.contact, 0.0
+    if back:
+        name, law, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
+        sense, rate, phase = -sense, -rate, mesh.contact.back_flank_offset - phase
+    direction, errors = _flank(coordinates, mesh, sense)
+    return ContactConnector(
+        name,
+        direction,
+        law,
+        phase,
+        rate,
+        errors,
+        clearance,
+        drives=not back,
+        sliding=_sliding(coordinates, mesh, law, sense),
+        compression_limit=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
+    )
+
+
+def _loads(
+    coordinates: MachineCoordinates,
+    bearings: Sequence[MountedBearing],
+    unbalances: Sequence[Unbalance],
+    bows: Sequence[BowReactions],
+    torques: Sequence[AnyTorque],
+    base: BaseMotion | None,
+    gravity: Sequence[float] | None,
+) -> Loads:
+    """All loads on the coordinates."""
+    loads = Loads(np.zeros(coordinates.size))
+    for torque in torques:
+        coordinates.add_torque(loads, torque)
+    for unbalance in unbalances:
+        coordinates.add_unbalance(loads, unbalance)
+    for bow in bows:
+        coordinates.add_bow(loads, bow)
+    places = {
+        mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
+        for mounted in bearings
+        for rotor in [coordinates.rotor(mounted.rotor)]
+    }
+    components = coordinates.components
+    if base is not None:
+        speeds = [coordinates.speeds.get(part.name, 0.0) for part in components]
+        harmonic, timed = base_loads(components, speeds, base, places)
+        loads.harmonic += harmonic
+        loads.timed += timed
+    if gravity is not None:
+        loads.constant += gravity_load(components, gravity, places)
+    return loads
+
+
+def _with_shuttling(
+    system: CoupledSystem, coordinates: MachineCoordinates, flanks: Sequence[tuple[GearMesh, int]]
+) -> CoupledSystem:
+    """The system with the moments of load shuttling; ``flanks`` are mesh and sense of each of its contacts."""
+    if all(contact.contact.faces is None for contact in system.contacts):
+        return system
+    constant, harmonics = system.load.copy(), list(system.harmonic_loads)
+    for contact, mean, (mesh, sense) in zip(system.contacts, mean_meshes(system), flanks, strict=True):
+        if mean is None or mean.force <= 0.0:
+            continue
+        push, axial = _push(mesh, sense)
+        tilting = np.zeros(system.size)
+        for mounted, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+            rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
+            tilting += side * coordinates.rows(mounted.rotor, push[0] * rows[4] - push[1] * rows[3])
+        shifted, moving = shuttling_loads(
+            contact.contact, mesh.geometry, mean.force, axial, tilting, contact.phase, contact.rate
+        )
+        constant += shifted
+        harmonics += moving
+    return replace(system, load=constant, harmonic_loads=tuple(harmonics))
+
+
+def _push(mesh: GearMesh, sense: int) -> tuple[tuple[float, float], float]:
+    """Unit vector e in the x-y plane along which the driver pushes on one side of the teeth, and the axial part."""
+    angle = mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense)
+    return (float(np.cos(angle)), float(np.sin(angle))), -sense * float(np.tan(mesh.geometry.driver.base_helix_angle))
+
+
+def _require_thrust_carried(
+    rotors: Sequence[RotorComponent],
+    speeds: dict[str, float],
+    bearings: Sequence[MountedBearing],
+    meshes: Sequence[GearMesh],
+    torques: Sequence[AnyTorque],
+) -> None:
+    """Refuse helical gears that push a rotor without an axial coordinate or a bearing that holds it axially."""
+    pairs = [
+        ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
+        for mesh in meshes
+    ]
+    held = axially_held(bearings, speeds)
+    carriers = {rotor.name: rotor.modal.axial is not None and rotor.name in held for rotor in rotors}
+    if all(name in carriers for pair in pairs for name in pair.rotors):
+        require_thrust_carried(axial_forces(pairs, speeds, constant_torques(torques)), carriers)
+
+
+def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:
+    """A bearing's law between two speeds, as parts of a nominal one [rad/s]; None where it does not change.
+
+    Its monotone cubic is cut into straight pieces.
+    """
+    if bearing.speeds is None or rates[0] == rates[1] or speed == 0.0:
+        return None
+    table = bearing.speeds / abs(speed)
+    knots = np.unique([*rates, *(knot for knot in [1.0, *table] if rates[0] < knot < rates[1])])
+    cuts = [np.linspace(low, high, _PER_GAP, endpoint=False) for low, high in pairwise(knots)]
+    at = np.append(np.concatenate(cuts), knots[-1])
+    laws = [bearing.at_speed(float(rate) * speed) for rate in at]
+    return SpeedTable(
+        at, np.array([law.spatial_stiffness for law in laws]), np.array([law.spatial_damping for law in laws])
+    )
+
+
+def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothContact, sense: int) -> Sliding | None:
+    """Sliding of one side of the teeth, with the law ``contact``; None without friction, or where nothing turns."""
+    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == 0.0:
+        return None
+    return sliding_flanks(
+        coordinates,
+        [(gear.rotor, gear.at) for gear in (mesh.driver, mesh.driven)],
+        mesh.geometry,
+        sliding_friction(mesh.geometry, contact, mesh.friction),
+        mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense),
+        sense,
+    )
+
+
+def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple[FloatArray, FloatArray]:
+    """Direction of compression and the harmonics of the runout error on one side of the teeth.
+
+    With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
+    whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
+    e_err = -e (ε_k - ε_i): the same first-order runout as :func:`coupling.gears.runout_error`.
+
+    A helical driver of hand h (+1 for a right-hand helix) that moves along z leaves the contact as if it had turned
+    back by z tan β_b / R_k, so δ gains -s h tan β_b (w_k - w_i), w the axial motions where the teeth touch: at the
+    pitch point, r from a gear's centre, w = z + φ_x r_y - φ_y r_x with the tilts φ. The force has its axial part and
+    tilting moment from the same rows.
+    """
+    driver, driven = mesh.driver, mesh.driven
+    line = np.subtract(driven.axis, driver.axis)
+    push, thrust = _push(mesh, sense)
+    angle = np.arctan2(push[1], push[0])
+    towards = line / np.hypot(*line) if np.any(line) else line
+    direction = np.zeros(coordinates.size)
+    errors = []
+    sides = ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0))
+    for (mounted, gear, side), radius in zip(sides, mesh.geometry.working_pitch_radii, strict=True):
+        rotor = coordinates.rotor(mounted.rotor)
+        motion = sense * gear.base_radius * rotor.rotation(mounted.at)
+        for axis in (0, 1):
+            motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)
+        if thrust != 0.0:
+            rows = rotor.motions(mounted.at)
+            x, y = side * radius * towards
+            motion = motion + side * thrust * (rows[2] + y * rows[3] - x * rows[4])
+        direction += coordinates.rows(mounted.rotor, motion)
+        if gear.eccentricity:
+            speed = coordinates.speeds[mounted.rotor]
+            errors.append([-side * gear.eccentricity, speed, gear.eccentricity_phase - angle])
+    return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)

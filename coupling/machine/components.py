@@ -1,0 +1,322 @@
+"""Components for mode synthesis: each part of the machine in mass-normalised modal coordinates.
+
+Component mode synthesis here takes the free modes of a part and, for the static response of the truncated ones,
+residual attachment modes (MacNeal 1971, Rubin 1975), in place of the fixed-interface and constraint modes of Craig and
+Bampton. A component's own equation of motion, with no connector attached, is
+
+    q'' + (C + Ω G) q' + K q = f,
+
+the mass being the identity. A *direction* is a row vector d such that d q is a motion of the component at one of
+its ports; by virtual work a force F along it adds F d to f.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from housing import HousingModes, ModeSet
+from rotors import ModalRotor, Pedestal
+from rotors.modes.modal_rotor import gyroscopic_matrix
+
+FloatArray = npt.NDArray[np.float64]
+
+_ROUNDING = 1e-10  # tolerance of a symmetric, positive semidefinite damping matrix, relative to its largest entry
+
+
+@dataclass(frozen=True)
+class Component:
+    """A part of the machine in modal coordinates.
+
+    Attributes
+    ----------
+    name : str
+    kinds : tuple of str
+        Kind of each coordinate: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``pedestal``, or
+        ``residual``: a residual attachment mode of the housing, the static response of its truncated modes. Its own
+        frequency is no natural frequency of the housing, and motion at that frequency means nothing.
+    stiffness : ndarray, shape (n, n)
+        K [1/s²], symmetric.
+    damping : ndarray, shape (n, n)
+        C [1/s], symmetric.
+    gyroscopic : ndarray, shape (n, n)
+        G, skew: multiplied by the speed of rotation [rad/s] it joins the damping.
+    """
+
+    name: str
+    kinds: tuple[str, ...]
+    stiffness: FloatArray
+    damping: FloatArray
+    gyroscopic: FloatArray
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.kinds)
+
+
+@dataclass(frozen=True)
+class HousingComponent(Component):
+    """The housing on its supports: its modes, then its residual attachments where it has them.
+
+    Attributes
+    ----------
+    seats : mapping of str to ndarray, shape (n, 6)
+        Motion of each seat's centre by the coordinates: translations x, y, z, rotations about x, y, z.
+    seat_z : mapping of str to float
+        z of each seat's centre [m].
+    sensors : mapping of str to ndarray, shape (n,)
+        Motion along each sensor by the coordinates.
+    participation : ndarray, shape (n, 6), or None
+        φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m]; needed where the base moves
+        or there is weight.
+    seat_axes : mapping of str to tuple of float
+        x and y of each seat's centre [m], where they are known.
+    """
+
+    seats: Mapping[str, FloatArray]
+    seat_z: Mapping[str, float]
+    sensors: Mapping[str, FloatArray]
+    participation: FloatArray | None = None
+    seat_axes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def seat_motions(self, seat: str, z: float) -> FloatArray:
+        """A seat's rigid motion, taken at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n)."""
+        x, y, along, about_x, about_y = self.seats[seat].T[:5]
+        arm = z - self.seat_z[seat]
+        # A rotation about y moves a point above the centre towards +x, one about x towards -y.
+        return np.array([x + arm * about_y, y - arm * about_x, along, about_x, about_y])
+
+
+@dataclass(frozen=True)
+class RotorComponent(Component):
+    """A rotor: lateral modes in the x and in the y plane, torsional modes, motion along its axis, in this order.
+
+    Attributes
+    ----------
+    modal : ModalRotor
+        Its planar modes on averaged supports are the basis in both planes; the torsional ones are free.
+    start : float
+        z of the rotor's left end [m].
+    mixture : ndarray, shape (m, m)
+        The plane's coordinates in terms of the planar modes, orthogonal: columns diagonalise the free shaft.
+    axis : tuple of float
+        x and y of the shaft's line [m].
+    """
+
+    modal: ModalRotor
+    start: float
+    mixture: FloatArray
+    axis: tuple[float, float] = (0.0, 0.0)
+
+    def direction(self, at: float, axis: int) -> FloatArray:
+        """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
+        return np.asarray(self.motions(at)[axis])
+
+    def motions(self, at: float) -> FloatArray:
+        """Motion of a section: x, y, z, rotations about x and y, shape (5, n), not to be written to."""
+        if at not in self._sections:
+            self._sections[at] = self._motions(at)
+            self._sections[at].setflags(write=False)
+        return self._sections[at]
+
+    @cached_property
+    def _sections(self) -> dict[float, FloatArray]:
+        # A machine is put together anew at every speed, with its bearings and gears at the same places.
+        return {}
+
+    def _motions(self, at: float) -> FloatArray:
+        rows, m = self.modal.motions(at), self.modal.lateral.count
+        for plane in (slice(0, m), slice(m, 2 * m)):
+            rows[:, plane] = rows[:, plane] @ self.mixture
+        return rows
+
+    def rotation(self, at: float) -> FloatArray:
+        """Rotation about z at a distance from the left end [m], shape (n,)."""
+        return self.modal.rotation(at)
+
+    @property
+    def turning(self) -> FloatArray:
+        """Coordinates of a rotation of the whole rotor about z by one radian, shape (n,).
+
+        Its first torsional mode, to which the others are orthogonal: as a row, the same is ∫ dI_p of their rotations,
+        and its square the rotor's polar inertia [kg m²].
+        """
+        row = np.zeros(self.size)
+        row[2 * self.modal.lateral.count] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
+        return row
+
+
+def housing_component(
+    modes: ModeSet,
+    damping_ratios: FloatArray,
+    *,
+    seats: Mapping[str, FloatArray],
+    seat_z: Mapping[str, float],
+    sensors: Mapping[str, FloatArray],
+    damping_matrix: FloatArray | None = None,
+    participation: FloatArray | None = None,
+    seat_axes: Mapping[str, tuple[float, float]] | None = None,
+    name: str = "housing",
+) -> HousingComponent:
+    """The housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
+
+    Parameters
+    ----------
+    modes : ModeSet
+        With m modes and, where it has attachments, k of them: n = m + k coordinates.
+    damping_ratios : ndarray, shape (m,)
+        Parts of critical. Attachments take the highest of them.
+    seats, seat_z, sensors, participation, seat_axes
+        See :class:`HousingComponent`; by :meth:`housing.ModeSet.project_all`.
+    damping_matrix : ndarray, shape (n, n), optional
+        Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
+
+    Raises
+    ------
+    CouplingError
+        Where the damping does not fit the modes, the matrix would feed energy in, or motions and coordinates differ in
+        number.
+    """
+    m = len(modes.frequencies)
+    if damping_ratios.shape != (m,):
+        raise CouplingError(f"{len(damping_ratios)} damping ratios for {m} housing modes; expected as many")
+    omega, ratios = modes.frequencies, damping_ratios
+    if modes.residual_modes is not None:
+        omega = np.concatenate([omega, modes.residual_modes.frequencies])
+        ratios = np.concatenate([ratios, np.full(len(omega) - m, damping_ratios.max(initial=0.0))])
+    n = len(omega)
+    for place, motion in [*seats.items(), *sensors.items()]:
+        if len(motion) != n:
+            raise CouplingError(f"{place!r}: motions of {len(motion)} coordinates; expected {n}, attachments included")
+    damping = np.diag(2.0 * ratios * omega)
+    if damping_matrix is not None:
+        _check_damping(damping_matrix, n)
+        damping = damping + damping_matrix
+    return HousingComponent(
+        name=name,
+        kinds=("housing",) * m + ("residual",) * (n - m),
+        stiffness=np.diag(omega**2),
+        damping=damping,
+        gyroscopic=np.zeros((n, n)),
+        seats=seats,
+        seat_z=seat_z,
+        sensors=sensors,
+        participation=participation,
+        seat_axes=seat_axes or {},
+    )
+
+
+def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingComponent:
+    """The housing from its natural modes, see :meth:`housing.Housing.modes`."""
+    seats = {seat.name: seat.center for seat in modes.housing.seats}
+    return housing_component(
+        modes.mode_set,
+        np.full(len(modes.mode_set.frequencies), modes.housing.damping_ratio),
+        seats=modes.seats,
+        seat_z={seat: center[2] for seat, center in seats.items()},
+        seat_axes={seat: center[:2] for seat, center in seats.items()},
+        sensors=modes.sensors,
+        damping_matrix=modes.damping_matrix,
+        participation=modes.participation,
+        name=name,
+    )
+
+
+@dataclass(frozen=True)
+class PedestalComponent(Component):
+    """Pedestal of a grounded bearing: its motions along x and y, times the root of its mass.
+
+    Attributes
+    ----------
+    motion : ndarray, shape (2, 2)
+        Motion of the bearing's foot along x and y by the coordinates [1/√kg].
+    """
+
+    motion: FloatArray
+
+
+def pedestal_component(name: str, pedestal: Pedestal) -> PedestalComponent:
+    """A pedestal as a component of two coordinates.
+
+    Raises
+    ------
+    CouplingError
+        Where it has no mass, so that no time step could resolve its motion.
+    """
+    if pedestal.mass <= 0.0:
+        raise CouplingError(
+            f"{name}: a pedestal without mass cannot be followed in time; expected a mass, even a small one"
+        )
+    return PedestalComponent(
+        name=name,
+        kinds=("pedestal",) * 2,
+        stiffness=pedestal.stiffness / pedestal.mass,
+        damping=pedestal.damping / pedestal.mass,
+        gyroscopic=np.zeros((2, 2)),
+        motion=np.eye(2) / np.sqrt(pedestal.mass),
+    )
+
+
+def _check_damping(matrix: FloatArray, n: int) -> None:
+    """Refuse a damping matrix of another order, or one that is not symmetric and free of gain."""
+    if matrix.shape != (n, n):
+        raise CouplingError(f"damping matrix of shape {matrix.shape} for {n} housing modes; expected ({n}, {n})")
+    scale = float(np.abs(matrix).max(initial=0.0))
+    if not np.isfinite(scale) or np.abs(matrix - matrix.T).max(initial=0.0) > _ROUNDING * scale:
+        raise CouplingError("the damping matrix of the housing modes is not symmetric, or not finite")
+    if n and np.linalg.eigvalsh(matrix)[0] < -_ROUNDING * n * scale:
+        raise CouplingError("the damping matrix of the housing modes has a negative eigenvalue: it feeds energy in")
+
+
+def rotor_component(
+    name: str,
+    modal: ModalRotor,
+    *,
+    start: float,
+    damping_ratio: float = 0.0,
+    axis: tuple[float, float] = (0.0, 0.0),
+) -> RotorComponent:
+    """A rotor from its modes, freed of the springs that its planar basis was found on.
+
+    The planar modes are those at averaged support stiffness k̄ (TM-101442 Eq. 7). The springs come back with the
+    bearings' connectors, so they are taken out here, K = diag(ω²) - Σ k̄ φ(z_b) φ(z_b)ᵀ in each plane (the
+    *compensation* of TM-104434 Eqs. 11 to 15), and the same span is taken in coordinates that diagonalise K: the free
+    shaft's own. Its damping acts on these, so that it resists bending and twisting but no motion of the shaft as a
+    whole. The gyroscopic coupling of the planes is +G in the x rows and -G in the y rows, G_ij = ∫ φ'_i dI_p φ'_j, so
+    that C + ΩG gives the terms G_v of Eqs. 1 and 2.
+
+    Parameters
+    ----------
+    name : str
+    modal : ModalRotor
+        m planar, t torsional and a axial modes, vectors included: the component has 2 m + t + a coordinates.
+    start : float
+        z of the rotor's left end [m].
+    damping_ratio : float
+        Of the shaft's own material and fits, on every mode of the free shaft.
+    axis : tuple of float
+        x and y of the shaft's line [m], which matter where the base turns.
+    """
+    lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
+    m, n = lateral.count, modal.size
+    values, mixture = np.linalg.eigh(lateral.free_stiffness)
+    # Motions of the whole shaft have no stiffness; what rounding leaves of it is taken off.
+    values = np.where(np.abs(values) < 1e-9 * values[-1], 0.0, np.maximum(values, 0.0))
+    squared = np.concatenate([values, values, modal.torsional.frequencies**2, along**2])
+    gyroscopic = np.zeros((n, n))
+    gyroscopic[: 2 * m, : 2 * m] = gyroscopic_matrix(mixture.T @ lateral.polar_inertia_matrix @ mixture)
+    return RotorComponent(
+        name=name,
+        kinds=("rotor",) * (2 * m) + ("torsion",) * modal.torsional.count + ("axial",) * len(along),
+        stiffness=np.diag(squared),
+        damping=np.diag(2.0 * damping_ratio * np.sqrt(squared)),
+        gyroscopic=gyroscopic,
+        modal=modal,
+        start=start,
+        mixture=mixture,
+        axis=axis,
+    )

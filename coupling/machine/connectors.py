@@ -1,0 +1,427 @@
+r"""Connectors between components: bearings, couplings and tooth contacts.
+
+A connector is a matrix of directions D, shape (n, d), that turns the n coordinates of the whole system into
+relative deflections δ = Dᵀ q, and a law that turns deflections, rates and phase into forces f. It adds -D f to the
+equations of motion, so the two sides feel equal and opposite forces, whatever the law.
+
+Nonlinear bearing laws: rolling elements with clearance, and gaps that close.
+
+A law turns the deflections δ of the shaft against its seat (x, y, z and the rotations about x and y) into the forces of
+the shaft on the seat; :mod:`coupling.time.bearing_kernels` is its compiled form.
+
+Mounted bearings and gears: their places in the machine, and gear pairs in mesh.
+
+Dashpots of flexible shaft couplings: internal damping, which rotates with the shaft.
+
+A coupling of length L yields by the sway of its right end over its left one, δ = u_r - u_l - L (φ_l + φ_r)/2 across the
+axis, by the tilt φ_r - φ_l, and along and about the axis by the differences of its ends. Dashpots resist the rates of
+these in the rotating shaft. Across the axis that is, in the frame at rest and at a speed Ω,
+
+    f = c (δ' + Ω (δ_y, -δ_x)),
+
+damping and a circulatory stiffness: internal damping, which feeds forward whirl above its natural frequency (Genta,
+Dynamics of Rotating Systems, 2005, section 4.4).
+"""
+
+import math
+from dataclasses import dataclass
+from math import atan2
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.gears import GearPairGeometry, ToothContact
+from coupling.gears.contact.sliding_friction import SlidingFriction
+from coupling.machine.components import RotorComponent
+from rotors import Bearing
+from rotors.rolling_bearings import RollingState
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RollingLaw:
+    """Hertzian force of every rolling element, with the clearance, as the cage carries the elements round.
+
+    The elements have no inertia. The compliance of the bearing depends on the cage angle, so it varies with the
+    element-passing frequency.
+
+    Attributes
+    ----------
+    state : RollingState
+        The bearing at its mean load: start of the search for equilibrium, and position of the ring along directions
+        in which the shaft cannot move.
+    cage_angle : float
+        Azimuth of the first element of every row at t = 0 [rad].
+    """
+
+    state: RollingState
+    cage_angle: float = 0.0
+
+    @property
+    def reference(self) -> FloatArray:
+        """Displacement at the mean load [m, rad], shape (5,)."""
+        return self.state.displacement
+
+
+@dataclass(frozen=True)
+class GapLaw:
+    """Radial gap law of a ring around the shaft: beyond the gap the force is F (penetration / depth)^n.
+
+    Attributes
+    ----------
+    force : float
+        F, at a penetration of ``depth`` [N].
+    depth : float
+        Penetration beyond the gap at which the force is F [m].
+    exponent : float
+        n, at least 1.
+    gap : float
+        Radial [m]; 0 for a spring of this law without one.
+    """
+
+    force: float
+    depth: float
+    exponent: float = 1.0
+    gap: float = 0.0
+
+    def __post_init__(self) -> None:
+        for what in ("force", "depth"):
+            value = getattr(self, what)
+            if not (math.isfinite(value) and value > 0.0):
+                raise CouplingError(f"{what} of a gap's law of {value!r}; expected a positive number")
+        if not (math.isfinite(self.exponent) and self.exponent >= 1.0):
+            raise CouplingError(f"exponent of a gap's law of {self.exponent!r}; expected 1 or more")
+        if not (math.isfinite(self.gap) and self.gap >= 0.0):
+            raise CouplingError(f"gap of {self.gap!r} m; expected 0 or more")
+
+    @property
+    def reference(self) -> FloatArray:
+        """Displacement at which the search for equilibrium begins: the centre, shape (5,)."""
+        return np.zeros(5)
+
+    def tangent(self, load: npt.ArrayLike) -> FloatArray:
+        """Tangent stiffness over x, y [N/m] under a radial load (2,) [N]; zero without a load.
+
+        With F the load's size and r = gap + depth (F / force)^(1/n) the shaft's radial position: n F / (r - gap) along
+        the load, F / r across it.
+        """
+        push = np.asarray(load, dtype=np.float64)
+        size = float(np.hypot(*push))
+        if size == 0.0:
+            return np.zeros((2, 2)) if self.gap > 0.0 or self.exponent > 1.0 else self.force / self.depth * np.eye(2)
+        beyond = self.depth * (size / self.force) ** (1.0 / self.exponent)
+        along = np.outer(push, push) / size**2
+        across = size / (self.gap + beyond)
+        return np.asarray(self.exponent * size / beyond * along + across * (np.eye(2) - along))
+
+
+BearingLaw = RollingLaw | GapLaw
+
+
+@dataclass(frozen=True)
+class MountedBearing:
+    """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
+
+    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take.
+    """
+
+    bearing: Bearing
+    rotor: str
+    seat: str | None
+    law: BearingLaw | None = None
+
+
+@dataclass(frozen=True)
+class MountedGear:
+    """Place of a gear: its rotor, the distance from the rotor's left end and the axis in the x-y plane [m]."""
+
+    name: str
+    rotor: str
+    at: float
+    axis: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class GearMesh:
+    """A driver and a driven gear with the law of their contact.
+
+    Attributes
+    ----------
+    driver, driven : MountedGear
+    geometry : GearPairGeometry
+    contact : ToothContact
+    backlash : float, optional
+        Gap between the back flanks along their line of action [m]; None where they can never meet.
+    friction : float
+        Coefficient of friction between the teeth, from 0 to 0.5.
+    """
+
+    driver: MountedGear
+    driven: MountedGear
+    geometry: GearPairGeometry
+    contact: ToothContact
+    backlash: float | None = None
+    friction: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """Names of both gears."""
+        return f"{self.driver.name} -> {self.driven.name}"
+
+    @property
+    def centre_line_angle(self) -> float:
+        """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
+        return atan2(self.driven.axis[1] - self.driver.axis[1], self.driven.axis[0] - self.driver.axis[0])
+
+    @property
+    def label(self) -> str:
+        """The pair's name in messages."""
+        return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
+
+
+_JUST_AFTER = 1e-9  # mesh periods
+
+
+@dataclass(frozen=True)
+class LinearConnector:
+    """A connector whose law is f = K δ + C δ': a bearing, a coupling, a mount.
+
+    Attributes
+    ----------
+    name : str
+    directions : ndarray, shape (n, d)
+        D.
+    stiffness : ndarray, shape (d, d)
+        K [N/m], not necessarily symmetric.
+    damping : ndarray, shape (d, d)
+        C [N s/m].
+    over_speed : SpeedTable, optional
+        K and C at other speeds than the nominal one, where they depend on it.
+    axes : tuple of int
+        Of a bearing, the axis of each direction: x, y, z and the rotations about x and y (0 to 4); empty otherwise.
+    """
+
+    name: str
+    directions: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    over_speed: "SpeedTable | None" = None
+    axes: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        d = self.directions.shape[1]
+        for what, matrix in (("stiffness", self.stiffness), ("damping", self.damping)):
+            if matrix.shape != (d, d):
+                raise CouplingError(f"{self.name}: {what} of shape {matrix.shape}; expected ({d}, {d})")
+
+
+@dataclass(frozen=True)
+class SpeedTable:
+    """A linear law over speed, linear between t speeds and constant beyond them.
+
+    Attributes
+    ----------
+    rates : ndarray, shape (t,)
+        Speeds as parts of the nominal one, ascending.
+    stiffness : ndarray, shape (t, d, d)
+        K [N/m].
+    damping : ndarray, shape (t, d, d)
+        C [N s/m].
+    """
+
+    rates: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def at(self, rate: float) -> tuple[FloatArray, FloatArray]:
+        """K and C at a speed."""
+        after = min(max(int(np.searchsorted(self.rates, rate)), 1), len(self.rates) - 1)
+        gap = self.rates[after] - self.rates[after - 1]
+        part = min(max(float((rate - self.rates[after - 1]) / gap), 0.0), 1.0)
+        first, second = (
+            matrix[after - 1] + part * (matrix[after] - matrix[after - 1]) for matrix in (self.stiffness, self.damping)
+        )
+        return first, second
+
+
+@dataclass(frozen=True)
+class NonlinearConnector:
+    """A connector with a nonlinear bearing law, in place of the linear law of its tangent.
+
+    The linear connector of the same bearing stays among the system's, so that linear analyses see the tangent K about
+    the bearing's mean load; this one adds f(δ) - K δ to it.
+
+    Attributes
+    ----------
+    name : str
+    directions : ndarray, shape (n, d)
+        D.
+    axes : ndarray of int, shape (d,)
+        Axis of each direction: x, y, z and the rotations about x and y, 0 to 4.
+    law : BearingLaw
+    stiffness : ndarray, shape (d, d)
+        K [N/m], symmetric.
+    speed : float
+        Signed speed of the shaft [rad/s], which carries the rolling elements round.
+    """
+
+    name: str
+    directions: FloatArray
+    axes: npt.NDArray[np.int64]
+    law: BearingLaw
+    stiffness: FloatArray
+    speed: float
+
+    def __post_init__(self) -> None:
+        d = self.directions.shape[1]
+        if self.axes.shape != (d,) or self.stiffness.shape != (d, d):
+            raise CouplingError(
+                f"{self.name}: {self.axes.shape} axes and a stiffness of shape {self.stiffness.shape}; "
+                f"expected ({d},) and ({d}, {d})"
+            )
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Sliding of the flanks of a tooth contact, see :mod:`coupling.machine.tooth_friction`.
+
+    Attributes
+    ----------
+    friction : SlidingFriction
+    directions : ndarray, shape (n, 2)
+        a and b: a pair at the position x along its path slides by (a + x b)ᵀ q' beside the nominal rotation.
+    nominal : ndarray, shape (2,)
+        W_a [m/s] and W_b [m/s per base pitch]: it slides by W_a + x W_b in the nominal rotation.
+    """
+
+    friction: SlidingFriction
+    directions: FloatArray
+    nominal: FloatArray
+
+
+@dataclass(frozen=True)
+class ContactConnector:
+    """A connector whose law is a tooth contact: one line of action of a gear pair.
+
+    With the mesh phase p(t) = phase + rate t and the runout error e(t) = Σ a cos(w t + c), the compression is
+    δ = dᵀ q - e(t) - clearance and the force is :func:`coupling.gears.contact.tooth_force_kernels.tooth_force`.
+
+    Attributes
+    ----------
+    name : str
+    direction : ndarray, shape (n,)
+        d, the compression by each coordinate.
+    contact : ToothContact
+    phase : float
+        At t = 0 [mesh periods].
+    rate : float
+        Mesh frequency [Hz]; negative for flanks met in the opposite order.
+    errors : ndarray, shape (h, 3)
+        a [m], w [rad/s] and c [rad] of each harmonic of the runout error.
+    clearance : float
+        Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
+    drives : bool
+        Whether these flanks carry the mean load.
+    greatest_compression : float
+        Largest compression that the teeth can follow [m]; a motion that exceeds it is refused.
+    sliding : Sliding or None
+        Friction, which adds μ Σ ± F_j (a + x_j b) to what the pairs' forces F_j do along d; None for none.
+    """
+
+    name: str
+    direction: FloatArray
+    contact: ToothContact
+    phase: float
+    rate: float
+    errors: FloatArray
+    clearance: float = 0.0
+    drives: bool = True
+    sliding: Sliding | None = None
+    compression_limit: float = np.inf
+
+    @property
+    def friction_law(self) -> tuple[FloatArray, bool]:
+        """Law table by which the pairs share friction, and whether it is by slices of the face."""
+        shares = np.zeros(0) if self.sliding is None else self.sliding.friction.shares
+        return (shares, True) if shares.size else (self.contact.kernel_arguments[0], False)
+
+    def runout(self, time: float) -> float:
+        """Runout error at a time [m]."""
+        return float(np.sum(self.errors[:, 0] * np.cos(self.errors[:, 1] * time + self.errors[:, 2])))
+
+    def phase_after(self, time: float) -> float:
+        """Mesh phase just after a time [mesh periods]: a pair that enters contact then counts."""
+        return self.phase + self.rate * time + _JUST_AFTER
+
+    def event_times(self, start: float, end: float) -> FloatArray:
+        """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
+
+        The force may jump at the former; at the latter its rate and the power of the turning teeth do. With friction
+        also those at which a pair passes the pitch point.
+        """
+        turns = () if self.sliding is None else self.sliding.friction.event_phases
+        marks = np.unique([*self.contact.event_phases, *self.contact.corner_phases, *turns])
+        if self.rate == 0.0 or not marks.size:
+            return np.empty(0)
+        first, last = sorted((self.phase + self.rate * start, self.phase + self.rate * end))
+        whole = np.arange(np.floor(first) - 1.0, np.ceil(last) + 1.0)
+        phases = (whole[:, None] + marks).ravel()
+        times = np.sort((phases - self.phase) / self.rate)
+        return np.asarray(times[(times > start) & (times < end)])
+
+
+@dataclass(frozen=True)
+class ShaftDashpots:
+    """Dashpots of a flexible coupling in a rotor.
+
+    Attributes
+    ----------
+    name, rotor : str
+    left, right : float
+        Its ends, from the rotor's left one [m].
+    lateral, axial : float
+        [N s/m].
+    tilt, torsional : float
+        [N m s/rad].
+    """
+
+    name: str
+    rotor: str
+    left: float
+    right: float
+    lateral: float = 0.0
+    tilt: float = 0.0
+    torsional: float = 0.0
+    axial: float = 0.0
+
+
+def shaft_dashpots(
+    given: ShaftDashpots, rotor: RotorComponent, speed: float, rates: tuple[float, float] = (1.0, 1.0)
+) -> tuple[FloatArray, LinearConnector]:
+    """Deflections of a coupling by its rotor's coordinates, shape (6, m), and the law over these as a connector.
+
+    Parameters
+    ----------
+    speed : float
+        Ω, signed [rad/s].
+    rates : two of float
+        Lowest and highest speed of the run, as parts of Ω: the circulatory stiffness is proportional to the speed.
+    """
+    left, right = rotor.motions(given.left), rotor.motions(given.right)
+    middle = 0.5 * (given.right - given.left) * (left[3:] + right[3:])
+    # A tilt about y moves what is further along z to +x, one about x to -y.
+    sway = right[:2] - left[:2] - np.array([middle[1], -middle[0]])
+    tilt = right[3:] - left[3:]
+    turn = rotor.rotation(given.right) - rotor.rotation(given.left)
+    rows = np.vstack([sway, tilt, turn[None], right[2:3] - left[2:3]])
+    damping = np.diag([given.lateral, given.lateral, given.tilt, given.tilt, given.torsional, given.axial])
+    circulating = np.zeros((6, 6))
+    for first, value in ((0, given.lateral), (2, given.tilt)):
+        circulating[first, first + 1], circulating[first + 1, first] = speed * value, -speed * value
+    table = None
+    if rates[0] != rates[1] and np.any(circulating):
+        ends = np.array(rates)
+        table = SpeedTable(ends, ends[:, None, None] * circulating, np.stack([damping, damping]))
+    return rows, LinearConnector(given.name, rows.T, circulating, damping, over_speed=table)

@@ -1,0 +1,234 @@
+"""Coupled system: components, connectors and loads in one set of coordinates, with its matrices."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+
+
+@dataclass(frozen=True)
+class HarmonicLoad:
+    """A harmonic load F(t) = Re(amplitude e^{i w t}) on the coordinates, such as an unbalance.
+
+    Attributes
+    ----------
+    frequency : float
+        w [rad/s], at the nominal speeds.
+    amplitude : ndarray of complex, shape (n,)
+    follows : "time", "turning" or "unbalance"
+        Dependence on the speed where it is not the nominal one, see :mod:`coupling.time.speed_profile`: constant
+        frequency; phase that follows the rotation, e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/w)
+        e^{iws}.
+    """
+
+    frequency: float
+    amplitude: ComplexArray
+    follows: Literal["time", "turning", "unbalance"] = "time"
+
+
+@dataclass(frozen=True)
+class TimedLoad:
+    """A load that varies in time: direction times a value that is linear between the times, constant beyond them.
+
+    Attributes
+    ----------
+    times : ndarray, shape (l,)
+        [s], ascending.
+    values : ndarray, shape (l,)
+    direction : ndarray, shape (n,)
+    """
+
+    times: FloatArray
+    values: FloatArray
+    direction: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.times.shape != self.values.shape or self.times.ndim != 1 or not self.times.size:
+            raise CouplingError(f"a load of {self.values.shape} values at {self.times.shape} times; expected as many")
+        if np.any(np.diff(self.times) <= 0.0):
+            raise CouplingError("the times of a load do not ascend")
+
+    def at(self, time: float) -> FloatArray:
+        """The load at a time, shape (n,)."""
+        return np.asarray(np.interp(time, self.times, self.values) * self.direction)
+
+
+@dataclass(frozen=True)
+class CoupledSystem:
+    """All components, connectors and loads in one set of coordinates.
+
+    The equation of motion is q'' + C q' + K q + Σ d f(δ, δ', t) = F + Σ Re(F_w e^{iwt}) with the tooth contacts and the
+    nonlinear parts of bearings in the sum; all linear terms are in C and K.
+
+    Attributes
+    ----------
+    components : tuple of Component
+        Their coordinates follow each other.
+    speeds : tuple of float
+        Signed speed of rotation of each component [rad/s]; 0 for the housing.
+    linear : tuple of LinearConnector
+    contacts : tuple of ContactConnector
+    load : ndarray, shape (n,)
+        F, constant; zero by default.
+    harmonic_loads : tuple of HarmonicLoad
+    timed_loads : tuple of TimedLoad
+    acceleration_load : ndarray, shape (n,)
+        Load of an angular acceleration s'' = 1/s of the nominal speeds: the shafts' own inertia, and the torque that
+        the drive adds to overcome it; zero by default.
+    nonlinear : tuple of NonlinearConnector
+    """
+
+    components: tuple[Component, ...]
+    speeds: tuple[float, ...]
+    linear: tuple[LinearConnector, ...] = ()
+    contacts: tuple[ContactConnector, ...] = ()
+    load: FloatArray = field(default_factory=lambda: np.zeros(0))
+    harmonic_loads: tuple[HarmonicLoad, ...] = ()
+    timed_loads: tuple[TimedLoad, ...] = ()
+    acceleration_load: FloatArray = field(default_factory=lambda: np.zeros(0))
+    nonlinear: tuple[NonlinearConnector, ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.speeds) != len(self.components):
+            raise CouplingError(f"{len(self.speeds)} speeds for {len(self.components)} components; expected as many")
+        for what in ("load", "acceleration_load"):
+            if getattr(self, what).shape == (0,):
+                object.__setattr__(self, what, np.zeros(self.size))
+            if getattr(self, what).shape != (self.size,):
+                raise CouplingError(f"a {what} of shape {getattr(self, what).shape}; expected ({self.size},)")
+
+    @cached_property
+    def size(self) -> int:
+        """Number of coordinates, n."""
+        return sum(component.size for component in self.components)
+
+    @cached_property
+    def kinds(self) -> tuple[str, ...]:
+        """Kind of each coordinate."""
+        return tuple(kind for component in self.components for kind in component.kinds)
+
+    @cached_property
+    def resolved(self) -> npt.NDArray[np.bool_]:
+        """Coordinates whose own vibration is resolved in time, shape (n,): all but the residual ones.
+
+        A residual coordinate responds as a spring. The frequency of its stiffness and mass is an artefact of the
+        reduction, above every valid frequency of the component.
+        """
+        return np.array([kind != "residual" for kind in self.kinds])
+
+    @cached_property
+    def own_stiffness(self) -> FloatArray:
+        """K of the components alone [1/s²], shape (n, n)."""
+        return self._blocks([component.stiffness for component in self.components])
+
+    @cached_property
+    def own_damping(self) -> FloatArray:
+        """C of the components alone, without gyroscopic terms [1/s], shape (n, n)."""
+        return self._blocks([component.damping for component in self.components])
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """K without the tooth contacts [1/s²], shape (n, n)."""
+        return self.own_stiffness + self.connector_matrices()[0]
+
+    @cached_property
+    def damping(self) -> FloatArray:
+        """C with the gyroscopic terms and without the tooth contacts [1/s], shape (n, n)."""
+        return self.own_damping + self.gyroscopic + self.connector_matrices()[1]
+
+    @cached_property
+    def gyroscopic(self) -> FloatArray:
+        """G of all components, each times its nominal speed [1/s], shape (n, n): skew, and a part of C."""
+        pairs = zip(self.components, self.speeds, strict=True)
+        return self._blocks([speed * component.gyroscopic for component, speed in pairs])
+
+    @cached_property
+    def connector_rates(self) -> FloatArray:
+        """Relative speeds between which the linear connectors change linearly, shape (t,)."""
+        tables = [connector.over_speed.rates for connector in self.linear if connector.over_speed is not None]
+        return np.unique(np.concatenate(tables)) if tables else np.ones(1)
+
+    def connector_matrices(self, rate: float = 1.0) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping of the linear connectors at a relative speed, shapes (n, n)."""
+        stiffness, damping = np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
+        for connector in self.linear:
+            law = (connector.stiffness, connector.damping)
+            if connector.over_speed is not None:
+                law = connector.over_speed.at(rate)
+            for total, matrix in zip((stiffness, damping), law, strict=True):
+                total += connector.directions @ matrix @ connector.directions.T
+        return stiffness, damping
+
+    @cached_property
+    def contact_directions(self) -> FloatArray:
+        """Directions of the tooth contacts, shape (n, n_contacts)."""
+        return np.array([contact.direction for contact in self.contacts]).reshape(-1, self.size).T
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether the tooth contacts, without friction, are the only nonlinearity."""
+        return not self.nonlinear and all(contact.sliding is None for contact in self.contacts)
+
+    @cached_property
+    def drive_stiffness(self) -> FloatArray:
+        """Mean mesh stiffness of every drive flank, 0 of the others [N/m], shape (c,)."""
+        return np.array([one.contact.mean_mesh_stiffness * one.drives for one in self.contacts], dtype=np.float64)
+
+    @cached_property
+    def drive_damping(self) -> FloatArray:
+        """Mesh damping of every drive flank, 0 of the others [N s/m], shape (c,)."""
+        return np.array([one.contact.damping * one.drives for one in self.contacts], dtype=np.float64)
+
+    @cached_property
+    def mean_stiffness(self) -> FloatArray:
+        """K with every drive flank at its mean mesh stiffness [1/s²], shape (n, n)."""
+        return self.stiffness + (self.contact_directions * self.drive_stiffness) @ self.contact_directions.T
+
+    @cached_property
+    def mean_damping(self) -> FloatArray:
+        """C with every drive flank's damping [1/s], shape (n, n)."""
+        return self.damping + (self.contact_directions * self.drive_damping) @ self.contact_directions.T
+
+    @cached_property
+    def highest_frequency(self) -> float:
+        """Highest natural frequency of the resolved coordinates, the residual ones held [rad/s]."""
+        stiffness = self.mean_stiffness[np.ix_(self.resolved, self.resolved)]
+        return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max(initial=0.0)))
+
+    @cached_property
+    def rigid_body_motions(self) -> tuple[FloatArray, float]:
+        """Rigid-body motions: orthonormal motions that no spring resists, in columns; and the largest stiffness [1/s²].
+
+        Teeth and nonlinear bearings count with their linear stiffness.
+        """
+        values, vectors = np.linalg.eigh(0.5 * (self.mean_stiffness + self.mean_stiffness.T))
+        return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
+
+    def _blocks(self, matrices: Sequence[FloatArray]) -> FloatArray:
+        total = np.zeros((self.size, self.size))
+        start = 0
+        for matrix in matrices:
+            end = start + len(matrix)
+            total[start:end, start:end] = matrix
+            start = end
+        return total
+
+
+def embed(components: Sequence[Component], which: int, directions: FloatArray) -> FloatArray:
+    """Directions of one component, shape (..., m), as directions of the whole system, shape (..., n)."""
+    whole = np.zeros((*directions.shape[:-1], sum(component.size for component in components)))
+    start = sum(component.size for component in components[:which])
+    whole[..., start : start + components[which].size] = directions
+    return whole

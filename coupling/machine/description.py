@@ -1,0 +1,436 @@
+"""Machine description: shafts, gears, gear pairs, bearings, a housing; the quantities derived from them, and checks.
+
+Speed ratios and senses of rotation follow from the teeth, centre distances from the shafts' axes, torques of the gear
+pairs from the torques that enter and leave the train. Parts that cannot form a machine are refused before anything is
+solved. :meth:`Machine.assemble` reduces shafts and housing to modes (component mode synthesis) and couples them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import copysign, hypot
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.gears import GearPairGeometry
+from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.machine.assembly import CoupledMachine, assemble_machine
+from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
+from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
+from coupling.machine.gear_train import (
+    LARGEST_IMBALANCE,
+    GearedShafts,
+    GearTrain,
+    Output,
+    gear_train,
+    require_balanced_outputs,
+    require_one_plane,
+    shared_torques,
+)
+from coupling.machine.loads import BowReactions, Torque, Unbalance, constant_torques
+from coupling.machine.parts import (
+    CONSTANT,
+    Driving,
+    Shaft,
+    ShaftGear,
+    pair_label,
+    require_names,
+    require_seats,
+    require_stations,
+)
+from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
+from coupling.signals.histories import histories, transient_outputs
+from coupling.time.settings import TransientSettings
+from coupling.time.transient import Motion, simulate
+from housing import HousingModes
+from rotors import Coupling, Disc, Rotor, modal_rotor
+from rotors.analyses.unbalance import bow_shape
+
+FloatArray = npt.NDArray[np.float64]
+
+_LATERAL_LIMIT = 2.0 * np.pi * 8000.0  # of the bending modes of a shaft that says nothing of its own [rad/s]
+_SAME_STATION = 1e-6  # part of the rotor's length
+_NO_TORQUE = 1e-9  # part of the input torque below which a gear pair carries none but for rounding
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A gearbox or a rotor train as a list of its parts, at one speed and torque.
+
+    Attributes
+    ----------
+    shafts : sequence of Shaft
+    bearings : sequence of MountedBearing
+        Each on a shaft, in a seat of the housing or on the ground.
+    gears : sequence of ShaftGear
+    gear_pairs : sequence of GearPair
+        The driver of the first one turns at ``speed`` and takes ``torque`` in.
+    speed : float
+        Signed speed of the first driver's shaft about z [rad/s]; of every shaft where there are no gear pairs.
+    torque : float
+        Driving torque on the first driver's shaft [N m]; negative where it brakes.
+    outputs : sequence of Output
+        Shafts where the torque leaves; by default the shafts that drive no other, with equal power.
+    housing : housing.HousingModes or HousingComponent, optional
+    torque_at : float
+        Station of the input torque, from the left end of its shaft [m].
+
+    Raises
+    ------
+    CouplingError
+        Where a name is given twice or unknown, no gear pair turns a shaft, a loop of pairs locks, gears are a pair
+        twice, both gears of a pair sit on one shaft, faces do not overlap along z, outputs do not balance the torque or
+        nothing takes it, power flows from driven to driver, a bearing sits in a seat that the housing does not have or
+        that is off its shaft, or nothing carries the thrust of helical gears.
+    coupling.gears.GearError
+        Where the gears of a pair do not fit each other at the distance of their shafts.
+    rotors.RotorError
+        Where a gear, bearing or torque is beyond the end of its shaft.
+    """
+
+    shafts: Sequence[Shaft]
+    bearings: Sequence[MountedBearing] = ()
+    gears: Sequence[ShaftGear] = ()
+    gear_pairs: Sequence[GearPair] = ()
+    speed: float = 0.0
+    torque: float = 0.0
+    outputs: Sequence[Output] = ()
+    housing: HousingComponent | HousingModes | None = None
+    torque_at: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_names(self)
+        require_stations(self)
+        require_seats(self, self.housing_component)
+        _ = self.speeds, self.pair_geometries, self.constant_torques
+        for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
+            places = [self.shaft(one.shaft).start + one.at for one in self._gears_of(pair)]
+            require_one_plane(pair_label(pair), places, geometry.face_width)
+        self._require_power_flow()
+        self._require_thrust_carried()
+
+    @cached_property
+    def housing_component(self) -> HousingComponent | None:
+        """The housing as a component of the coupled system."""
+        return component_of_housing(self.housing) if isinstance(self.housing, HousingModes) else self.housing
+
+    @cached_property
+    def train(self) -> GearTrain:
+        """The gear train."""
+        geared = [self._gears_of(pair) for pair in self.gear_pairs]
+        return gear_train(
+            GearedShafts(driver.shaft, driven.shaft, (driver.gear.teeth, driven.gear.teeth))
+            for driver, driven in geared
+        )
+
+    @cached_property
+    def speeds(self) -> dict[str, float]:
+        """Signed speed of each shaft [rad/s]."""
+        names = [shaft.name for shaft in self.shafts]
+        if not self.gear_pairs:
+            return dict.fromkeys(names, self.speed)
+        ratios = self.train.require_turning(names, [pair_label(pair) for pair in self.gear_pairs])
+        return {name: self.speed * float(ratios[name]) for name in names}
+
+    @cached_property
+    def mesh_frequencies(self) -> tuple[float, ...]:
+        """Tooth-mesh frequency of each gear pair [Hz]."""
+        drivers = [self._gears_of(pair)[0] for pair in self.gear_pairs]
+        return tuple(abs(self.speeds[one.shaft]) * one.gear.teeth / (2.0 * np.pi) for one in drivers)
+
+    @cached_property
+    def pair_geometries(self) -> tuple[GearPairGeometry, ...]:
+        """Both gears of every pair in mesh, at the distance of their shafts."""
+        found = []
+        for pair in self.gear_pairs:
+            driver, driven = self._gears_of(pair)
+            axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
+            distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
+            found.append(GearPairGeometry(driver.gear, driven.gear, distance))
+        return tuple(found)
+
+    @cached_property
+    def constant_torques(self) -> tuple[Torque, ...]:
+        """Torques about z that act from outside: the input first, then the outputs, by default at right ends."""
+        if not self.gear_pairs:
+            ratios = dict.fromkeys((shaft.name for shaft in self.shafts), 1.0)
+            first = self.outputs[0].shaft if self.outputs else None
+            self._require_balance_of_each_shaft()
+        else:
+            ratios = {name: float(ratio) for name, ratio in self.train.ratios.items()}
+            first = next(iter(ratios))
+            if any(output.shaft == first for output in self.outputs):
+                raise CouplingError(
+                    f"an output on shaft {first!r}; expected a shaft other than {first!r}, where the torque comes in"
+                )
+        require_balanced_outputs(ratios, self.torque, self.outputs)
+        if first is None or self.torque == 0.0:
+            return ()
+        sense = copysign(1.0, self.speed)
+        found = [Torque(first, self.torque_at, sense * self.torque)]
+        for output, torque in shared_torques(self.train, ratios, self.torque, self.outputs):
+            at = self.shaft(output.shaft).rotor.length if output.at is None else output.at
+            against = -sense * copysign(1.0, ratios[output.shaft])
+            found.append(Torque(output.shaft, at, against * torque))
+        return tuple(found)
+
+    @cached_property
+    def pair_torques(self) -> tuple[float, ...]:
+        """Mean torque that each pair takes off its driver [N m], positive where power flows to the driven gear."""
+        sense = copysign(1.0, self.speed)
+        along = dict.fromkeys(self.train.ratios, 0.0)
+        for torque in self.constant_torques:
+            along[torque.rotor] += torque.value * sense * copysign(1.0, self.train.ratios[torque.rotor])
+        return self.train.pair_torques(along)
+
+    def shaft(self, name: str) -> Shaft:
+        """The shaft of this name."""
+        return next(shaft for shaft in self.shafts if shaft.name == name)
+
+    def rotor(self, name: str) -> Rotor:
+        """A shaft's rotor with its gears as discs."""
+        rotor = self.shaft(name).rotor
+        rigid = [(gear.at, *gear.mass_and_inertias) for gear in self.gears if gear.shaft == name]
+        discs = [Disc(*one) for one in rigid if any(one[1:])]
+        return Rotor(rotor.name, rotor.segments, [*rotor.discs, *discs], rotor.mass_model)
+
+    def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
+        """Contact law of every gear pair, and its static mesh under the mean torque."""
+        found = []
+        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+            driver, driven = self._gears_of(pair)
+            inertias = self._inertia_at(driver), self._inertia_at(driven)
+            speed = self.speeds[driver.shaft]
+            found.append(load_gear_pair(pair, geometry, torque=torque, inertias=inertias, speed=speed))
+        return tuple(found)
+
+    def rotor_components(
+        self, *, reach: float = 1.0, progress: Callable[[str], None] = lambda text: None
+    ) -> tuple[RotorComponent, ...]:
+        """Shafts with their gears, reduced to modes on the bearings' mean stiffness.
+
+        Parameters
+        ----------
+        reach : float
+            Multiplies the frequency limit, or the number, of the retained modes of the shafts.
+        progress : callable
+            Called with a line of text for each shaft.
+        """
+        return tuple(self._component(shaft, reach, progress) for shaft in self.shafts)
+
+    def assemble(
+        self,
+        pairs: Sequence[LoadedGearPair] | None = None,
+        components: Sequence[RotorComponent] | None = None,
+        driving: Driving = CONSTANT,
+    ) -> CoupledMachine:
+        """Assemble the coupled equations of motion.
+
+        Parameters
+        ----------
+        pairs : sequence of LoadedGearPair, optional
+            By default :meth:`loaded_pairs`.
+        components : sequence of RotorComponent, optional
+            By default :meth:`rotor_components`.
+        driving : Driving
+            Torques that vary, motion of the base, gravity.
+
+        Raises
+        ------
+        CouplingError
+            As :func:`coupling.assemble_machine`.
+        rotors.RotorError
+            Where a bearing's table over speed does not reach as far as the speeds.
+        """
+        pairs = self.loaded_pairs() if pairs is None else pairs
+        components = self.rotor_components() if components is None else components
+        bows = [
+            BowReactions(shaft.name, shaft.bow.at, bow_shape(self.rotor(shaft.name), shaft.bow).reactions)
+            for shaft in self.shafts
+            if shaft.bow is not None
+        ]
+        return assemble_machine(
+            components,
+            self.housing_component,
+            speeds=self.speeds,
+            bearings=self.bearings,
+            meshes=[self._mesh(pair) for pair in pairs],
+            unbalances=[
+                Unbalance(shaft.name, one.at, one.moment, one.phase)
+                for shaft in self.shafts
+                for one in shaft.unbalances
+            ],
+            bows=bows,
+            torques=self.constant_torques if driving.torques is None else driving.torques,
+            drives=driving.drives,
+            rates=driving.rates,
+            base=driving.base,
+            gravity=driving.gravity,
+            dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
+        )
+
+    def simulate(
+        self,
+        revolutions: int,
+        discard: int,
+        *,
+        points_per_revolution: int = 1024,
+        tolerance: float = 5e-4,
+        driving: Driving = CONSTANT,
+    ) -> Motion:
+        """Integrate the motion from static equilibrium, by Newmark's method with adaptive steps.
+
+        Parameters
+        ----------
+        revolutions : int
+            Of the first driver.
+        discard : int
+            Revolutions before the record begins.
+        points_per_revolution : int
+            Samples of the record, and the largest step.
+        tolerance : float
+            Of the local error of a step, see :class:`coupling.TransientSettings`.
+        driving : Driving
+            Torques that vary, motion of the base, gravity.
+
+        Raises
+        ------
+        CouplingError
+            Where the machine stands still.
+        TransientError
+            Where the motion cannot be followed or its energies do not balance.
+        """
+        if self.speed == 0.0:
+            raise CouplingError("a machine that stands still has no revolutions; expected a speed")
+        period = 2.0 * np.pi / abs(self.speed)
+        coupled = self.assemble(driving=driving)
+        settings = TransientSettings(
+            duration=revolutions * period,
+            record_from=discard * period,
+            sample_interval=period / points_per_revolution,
+            largest_step=period / points_per_revolution,
+            tolerance=tolerance,
+        )
+        result = simulate(coupled.system, settings, transient_outputs(coupled))
+        return Motion(coupled, result, histories(coupled, result))
+
+    def _require_thrust_carried(self) -> None:
+        """Refuse helical gears that push a shaft which no bearing holds along its axis.
+
+        Raises
+        ------
+        CouplingError
+            With the shafts, the gears and the forces [N].
+        """
+        pairs = [
+            ThrustPair((driver.shaft, driven.shaft), (driver.name, driven.name), geometry)
+            for (driver, driven), geometry in zip(
+                map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True
+            )
+        ]
+        forces = axial_forces(pairs, self.speeds, constant_torques(self.constant_torques))
+        held = axially_held(self.bearings, self.speeds, forces)
+        require_thrust_carried(forces, {name: name in held for name in forces})
+
+    def _require_balance_of_each_shaft(self) -> None:
+        """Refuse torques that no gear pair leads away and that do not balance on their own shaft.
+
+        Raises
+        ------
+        CouplingError
+            Also where a torque comes in and no output takes it.
+        """
+        if self.torque != 0.0 and not self.outputs:
+            raise CouplingError(
+                f"a torque of {self.torque:g} N m that nothing takes; expected a gear pair or an output that leads it "
+                "away"
+            )
+        if len(self.shafts) == 1 or any(output.torque is None for output in self.outputs):
+            return
+        for place, name in enumerate(dict.fromkeys(output.shaft for output in self.outputs)):
+            entering = self.torque if place == 0 else 0.0
+            taken = sum(output.torque or 0.0 for output in self.outputs if output.shaft == name)
+            if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
+                raise CouplingError(
+                    f"shaft {name!r} takes in {entering:g} N m and gives out {taken:g} N m; expected torques that "
+                    f"balance on shaft {name!r}, as no gear pair leads to or from it"
+                )
+
+    def _require_power_flow(self) -> None:
+        """Refuse pairs whose driven gear drives the driver, and braked pairs without back flanks."""
+        least = _NO_TORQUE * abs(self.torque)
+        sense = copysign(1.0, self.torque)
+        if self.torque == 0.0:
+            return
+        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+            if sense * torque < -least:
+                raise CouplingError(
+                    f"{pair_label(pair)}: {-sense * torque:g} N m flow from {pair.driven!r} to {pair.driver!r}; "
+                    "expected power to flow from driver to driven; swap the two names"
+                )
+            if torque < -least and pair.backlash_of(geometry) is None:
+                raise CouplingError(
+                    f"{pair_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by "
+                    "the back flanks, which never meet without one"
+                )
+
+    def _component(self, shaft: Shaft, reach: float, progress: Callable[[str], None]) -> RotorComponent:
+        progress(f"modes of rotor {shaft.name}")
+        held = [mounted for mounted in self.bearings if mounted.rotor == shaft.name]
+        limit, count = shaft.frequency_limit, shaft.mode_count
+        if limit is None and count is None:
+            limit = _LATERAL_LIMIT
+        if shaft.rotor.mass_model == "distributed":
+            # A lumped rotor has no more modes than its masses allow.
+            limit, count = None if limit is None else reach * limit, None if count is None else round(reach * count)
+        gears = [gear for gear in self.gears if gear.shaft == shaft.name]
+        # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
+        pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
+        pushed_at += [mounted.bearing.at for mounted in held if isinstance(mounted.law, RollingLaw)]
+        modal = modal_rotor(
+            self.rotor(shaft.name),
+            [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in held],
+            frequency_limit=limit,
+            count=count,
+            gears_at=[gear.at for gear in gears],
+            forces_at=() if shaft.bow is None else shaft.bow.at.tolist(),
+            moments_at=pushed_at,
+            thrusts_at=pushed_at,
+        )
+        return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
+
+    def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
+        """Driver and driven gear of a pair."""
+        gears = {gear.name: gear for gear in self.gears}
+        return gears[pair.driver], gears[pair.driven]
+
+    def _mesh(self, loaded: LoadedGearPair) -> GearMesh:
+        driver, driven = (
+            MountedGear(one.name, one.shaft, one.at, self.shaft(one.shaft).axis) for one in self._gears_of(loaded.pair)
+        )
+        return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
+
+    def _inertia_at(self, gear: ShaftGear) -> float:
+        """Polar inertia of a gear with the discs at its station [kg m²]; of its whole rotor where that is nothing."""
+        rotor = self.shaft(gear.shaft).rotor
+        inertia = gear.mass_and_inertias[1]
+        inertia += sum(
+            disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length
+        )
+        if inertia == 0.0:
+            inertia = self.rotor(gear.shaft).polar_inertia
+        return inertia if inertia > 0.0 else gear.gear.polar_inertia
+
+
+def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
+    """Dashpots of the flexible couplings of a rotor."""
+    found, left = list[ShaftDashpots](), 0.0
+    for part in rotor.segments:
+        if isinstance(part, Coupling) and part.is_damped:
+            label = f"coupling {len(found) + 1} of {rotor.name}"
+            values = (part.lateral_damping, part.tilt_damping, part.torsional_damping, part.axial_damping)
+            found.append(ShaftDashpots(label, rotor.name, left, left + part.length, *values))
+        left += part.length
+    return found

@@ -1,0 +1,413 @@
+"""Gear train: speed ratios, senses of rotation, power flow through the pairs; checks that a train can exist.
+
+External gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂; their shafts are as far apart as the geometry
+of the pair says, and their faces overlap along the shafts. A train at constant speed takes as much power as it gives,
+Σ T ω = 0 over its shafts.
+
+Mesh phases of gear pairs that share gears.
+
+Each gear is fitted to its shaft so that the first pair it belongs to begins a mesh period at t = 0. The phase of
+every further pair of the same gear follows from the gear's teeth: as gears roll without slip, tooth 0 of driver and
+driven gear lie at angles that are linear in the pair's phase (`coupling.gears.meshing_rotations`), and an angle that is
+known already gives the phase. Gears that close a loop must fit: where teeth would clash, they cannot be assembled.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import hypot
+
+from coupling.errors import CouplingError
+from coupling.gears import GearPairGeometry
+from coupling.gears.geometry.profile import meshing_rotations
+from coupling.machine.connectors import GearMesh
+from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, constant_torques, trains
+
+LARGEST_OFFSET = 1e-6
+"""Largest difference of the distance of two axes from the centre distance of the gears on them [m]."""
+
+LARGEST_IMBALANCE = 0.01
+"""Largest imbalance of the power of a train, relative."""
+
+_RATIO_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class GearedShafts:
+    """Two shafts that a gear pair connects.
+
+    Attributes
+    ----------
+    driver, driven : str
+        Names of the shafts.
+    teeth : tuple of int
+        Tooth numbers of the driver and of the driven gear.
+    """
+
+    driver: str
+    driven: str
+    teeth: tuple[int, int]
+
+    @property
+    def ratio(self) -> Fraction:
+        """Speed of the driven shaft over that of the driver, negative: external gears turn opposite ways."""
+        return Fraction(-self.teeth[0], self.teeth[1])
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """A gear pair that closes a loop in which the shafts cannot turn.
+
+    Attributes
+    ----------
+    pair : int
+        Index of the pair.
+    shaft : str
+        Shaft that would have to turn at two speeds.
+    ratio, other : Fraction
+        Its speed over that of the first driver by the other pairs, and by this one.
+    """
+
+    pair: int
+    shaft: str
+    ratio: Fraction
+    other: Fraction
+
+
+@dataclass(frozen=True)
+class GearTrain:
+    """Gear pairs followed from the first driver on; see :func:`gear_train`.
+
+    Attributes
+    ----------
+    pairs : tuple of GearedShafts
+    ratios : mapping of str to Fraction
+        Signed speed of each shaft over that of the first driver; shafts that no pair leads to are absent.
+    contradictions : tuple of Contradiction
+        Empty in a train that can turn.
+    """
+
+    pairs: tuple[GearedShafts, ...]
+    ratios: Mapping[str, Fraction]
+    contradictions: tuple[Contradiction, ...]
+
+    @property
+    def output_shafts(self) -> tuple[str, ...]:
+        """Shafts that drive no other: the power leaves there unless outputs are given."""
+        drivers = {pair.driver for pair in self.pairs}
+        return tuple(shaft for shaft in self.ratios if shaft not in drivers)
+
+    def require_turning(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
+        """Speed ratios of a train in which every shaft turns.
+
+        Parameters
+        ----------
+        shafts : sequence of str
+            Names of all shafts.
+        labels : sequence of str
+            Names of the pairs in messages.
+
+        Raises
+        ------
+        CouplingError
+            Where a shaft is in no gear pair that the first driver turns, or a loop of pairs cannot turn.
+        """
+        for wrong in self.contradictions:
+            raise CouplingError(
+                f"{labels[wrong.pair]} closes a loop that cannot turn: shaft {wrong.shaft!r} would turn at "
+                f"{float(wrong.ratio):.6g} of the first driver's speed by the other pairs, and at "
+                f"{float(wrong.other):.6g} by this one"
+            )
+        idle = [name for name in shafts if name not in self.ratios]
+        if idle:
+            raise CouplingError(
+                f"no gear pair leads from shaft {self.pairs[0].driver!r}, the first driver, to "
+                f"{', '.join(map(repr, idle))}; expected a pair that turns each shaft"
+            )
+        return self.ratios
+
+    def pair_torques(self, torques: Mapping[str, float]) -> tuple[float, ...]:
+        """Mean torque that each pair takes from its driver [N m].
+
+        Parameters
+        ----------
+        torques : mapping of str to float
+            External torques on the shafts [N m], each positive in the sense in which its shaft turns.
+
+        Returns
+        -------
+        tuple of float
+            Positive where power flows from driver to driven.
+
+        Notes
+        -----
+        Speeds fix the power through every pair of a tree. Where pairs form a loop, the smallest flows that balance are
+        taken, which is what equal contacts carry: f = Bᵀ p with B Bᵀ p = P, B the incidence matrix of the train's
+        graph and P the power that enters each shaft over the speed of the first driver.
+        """
+        entering = {shaft: torques.get(shaft, 0.0) * abs(float(ratio)) for shaft, ratio in self.ratios.items()}
+        potential = _potentials(self.pairs, entering)
+        return tuple(
+            (potential[pair.driver] - potential[pair.driven]) / abs(float(self.ratios[pair.driver]))
+            for pair in self.pairs
+        )
+
+
+def gear_train(pairs: Iterable[GearedShafts]) -> GearTrain:
+    """Follow tooth ratios from the driver of the first pair through all pairs."""
+    pairs = tuple(pairs)
+    ratios = {pairs[0].driver: Fraction(1)} if pairs else {}
+    found: dict[int, Contradiction] = {}
+    waiting = list(enumerate(pairs))
+    while waiting:
+        left = []
+        for place, pair in waiting:
+            first, second = ratios.get(pair.driver), ratios.get(pair.driven)
+            if first is not None and second is not None:
+                if second != first * pair.ratio:
+                    found[place] = Contradiction(place, pair.driven, second, first * pair.ratio)
+            elif first is not None:
+                ratios[pair.driven] = first * pair.ratio
+            elif second is not None:
+                ratios[pair.driver] = second / pair.ratio
+            else:
+                left.append((place, pair))
+        if len(left) == len(waiting):
+            break
+        waiting = left
+    return GearTrain(pairs, ratios, tuple(found[place] for place in sorted(found)))
+
+
+def _potentials(pairs: Sequence[GearedShafts], entering: Mapping[str, float]) -> dict[str, float]:
+    """Solve L p = P on the graph of a connected train, p of its first shaft zero.
+
+    The Laplacian L = B Bᵀ is positive definite without the first shaft, so elimination needs no pivoting.
+    """
+    shafts = list(entering)
+    place = {shaft: index for index, shaft in enumerate(shafts)}
+    size = len(shafts)
+    rows = [[0.0] * size + [entering[shaft]] for shaft in shafts]
+    for pair in pairs:
+        i, j = place[pair.driver], place[pair.driven]
+        rows[i][i] += 1.0
+        rows[j][j] += 1.0
+        rows[i][j] -= 1.0
+        rows[j][i] -= 1.0
+    for pivot in range(size - 1, 0, -1):
+        for row in range(pivot):
+            factor = rows[row][pivot] / rows[pivot][pivot]
+            if factor != 0.0:
+                rows[row] = [a - factor * b for a, b in zip(rows[row], rows[pivot], strict=True)]
+    solution = [0.0] * size
+    for row in range(1, size):
+        known = sum(rows[row][column] * solution[column] for column in range(row))
+        solution[row] = (rows[row][size] - known) / rows[row][row]
+    return dict(zip(shafts, solution, strict=True))
+
+
+@dataclass(frozen=True)
+class Output:
+    """Output torque of a train.
+
+    Attributes
+    ----------
+    shaft : str
+    torque : float, optional
+        Against the rotation of the shaft [N m]; None: the outputs share the power equally.
+    at : float, optional
+        Distance from the shaft's left end [m]; None: the right end.
+    """
+
+    shaft: str
+    torque: float | None = None
+    at: float | None = None
+
+
+def shared_torques(
+    train: GearTrain, ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]
+) -> list[tuple[Output, float]]:
+    """Torque of each output [N m], against the rotation of its shaft.
+
+    Without outputs, the shafts that drive no other take equal power. Given torques are proportions: they are scaled to
+    balance the input exactly.
+
+    Parameters
+    ----------
+    train : GearTrain
+    ratios : mapping of str to float
+        Signed speed of each shaft over that of the first driver.
+    torque : float
+        At the first driver, in the sense in which it turns [N m].
+    outputs : sequence of Output
+    """
+    outputs = list(outputs) or [Output(shaft) for shaft in train.output_shafts]
+    if not any(output.torque for output in outputs):
+        outputs = [
+            Output(output.shaft, torque / len(outputs) / abs(ratios[output.shaft]), output.at) for output in outputs
+        ]
+    power = sum((output.torque or 0.0) * abs(ratios[output.shaft]) for output in outputs)
+    return [(output, (output.torque or 0.0) * torque / power) for output in outputs]
+
+
+def require_balanced_outputs(ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]) -> None:
+    """Refuse outputs whose power is not the input power; see :func:`shared_torques`.
+
+    Raises
+    ------
+    CouplingError
+        Where only some outputs have torques, or their power is off by more than one in a hundred.
+    """
+    given = [output for output in outputs if output.torque is not None]
+    if not given:
+        return
+    if len(given) < len(outputs):
+        raise CouplingError("outputs of which some have a torque and some have none; expected all or none")
+    power = sum((output.torque or 0.0) * abs(ratios[output.shaft]) for output in outputs)
+    if abs(power - torque) > LARGEST_IMBALANCE * max(abs(torque), abs(power)):
+        raise CouplingError(
+            f"outputs that amount to {power:g} N m at the first driver; expected outputs that balance the input torque "
+            f"of {torque:g} N m through the tooth ratios"
+        )
+
+
+def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], speeds: Mapping[str, float]) -> None:
+    """Refuse gear pairs that cannot be in mesh.
+
+    Parameters
+    ----------
+    meshes : sequence of GearMesh
+    starts : mapping of str to float
+        Left end of each rotor along z [m].
+    speeds : mapping of str to float
+        Signed speed of each rotor [rad/s].
+
+    Raises
+    ------
+    CouplingError
+        Where both gears of a pair sit on one rotor, turn the same way or not in the ratio of their teeth, have axes
+        that are not at the centre distance of their geometry, or faces that do not overlap.
+    """
+    for mesh in meshes:
+        _require_ratio(mesh, speeds)
+        _require_place(mesh, starts)
+
+
+def require_balance(meshes: Sequence[GearMesh], torques: Sequence[AnyTorque], speeds: Mapping[str, float]) -> None:
+    """Refuse constant torques that do not balance in their gear train.
+
+    Trains that stand still, or whose torques vary over time or with the speed, are left to the solution.
+
+    Raises
+    ------
+    CouplingError
+        Where the power that a train takes in and the power that it gives out differ by more than one in a hundred.
+    """
+    varying = {one.rotor for one in torques if not isinstance(one, Torque | TorqueRipple)}
+    total = constant_torques(torques)
+    for train in trains(list(speeds), [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]):
+        if len(train) < 2 or varying.intersection(train):
+            continue
+        powers = {name: total.get(name, 0.0) * speeds[name] for name in train}
+        taken = sum(power for power in powers.values() if power > 0.0)
+        given = -sum(power for power in powers.values() if power < 0.0)
+        if abs(taken - given) > LARGEST_IMBALANCE * max(taken, given):
+            listed = ", ".join(f"{total.get(name, 0.0):.6g} N m on {name!r}" for name in train)
+            raise CouplingError(
+                f"torques of {listed} bring {taken:.6g} W into their gear train and take {given:.6g} W out of it; "
+                "expected torques that balance through the tooth ratios"
+            )
+
+
+def _require_ratio(mesh: GearMesh, speeds: Mapping[str, float]) -> None:
+    rotors = mesh.driver.rotor, mesh.driven.rotor
+    if rotors[0] == rotors[1]:
+        raise CouplingError(f"{mesh.label}: both gears are on rotor {rotors[0]!r}; expected the driven one on another")
+    first, second = (speeds[name] for name in rotors)
+    teeth = mesh.geometry.driver.teeth, mesh.geometry.driven.teeth
+    needed = -first * teeth[0] / teeth[1]
+    if abs(second - needed) <= _RATIO_ROUNDING * abs(needed):
+        return
+    if first * second > 0.0:
+        raise CouplingError(
+            f"{mesh.label}: rotors {rotors[0]!r} and {rotors[1]!r} turn the same way; expected speeds of opposite "
+            "signs, since external gears turn opposite ways"
+        )
+    raise CouplingError(
+        f"{mesh.label}: rotor {rotors[1]!r} turns at {second:.6g} rad/s; expected {needed:.6g} rad/s, by {teeth[0]} "
+        f"and {teeth[1]} teeth with rotor {rotors[0]!r} at {first:.6g} rad/s"
+    )
+
+
+def _require_place(mesh: GearMesh, starts: Mapping[str, float]) -> None:
+    gears = mesh.driver, mesh.driven
+    apart = hypot(gears[0].axis[0] - gears[1].axis[0], gears[0].axis[1] - gears[1].axis[1])
+    distance = mesh.geometry.working_centre_distance
+    if abs(apart - distance) > LARGEST_OFFSET:
+        raise CouplingError(
+            f"{mesh.label}: the axes of rotors {gears[0].rotor!r} and {gears[1].rotor!r} are {1e3 * apart:.6g} mm "
+            f"apart; expected the gears' centre distance, {1e3 * distance:.6g} mm"
+        )
+    require_one_plane(mesh.label, [starts[gear.rotor] + gear.at for gear in gears], mesh.geometry.face_width)
+
+
+def require_one_plane(label: str, places: Sequence[float], face_width: float) -> None:
+    """Refuse gears whose faces do not overlap: two middles of faces along z, and the width of the common face [m]."""
+    shift, reach = abs(places[0] - places[1]), 0.5 * face_width
+    if shift > reach + LARGEST_OFFSET:
+        raise CouplingError(
+            f"{label}: the gears are {1e3 * shift:.6g} mm apart along z; expected them in one plane, within half a "
+            f"face width, {1e3 * reach:.6g} mm"
+        )
+
+
+_MISFIT = 1e-3  # of a pitch: larger misfits are no rounding of the axes
+
+
+def mesh_phases(
+    drivers: Sequence[str],
+    drivens: Sequence[str],
+    geometries: Sequence[GearPairGeometry],
+    centre_lines: Sequence[float],
+    senses: Sequence[int],
+) -> list[float]:
+    """Phase of each pair at t = 0 [mesh periods].
+
+    Parameters
+    ----------
+    drivers, drivens : sequence of str
+        The gears' names, pair by pair.
+    geometries : sequence of GearPairGeometry
+    centre_lines : sequence of float
+        Angle from x of the line from the driver's centre to the driven gear's [rad].
+    senses : sequence of int
+        +1 where the driver turns counter-clockwise, -1 where clockwise.
+
+    Raises
+    ------
+    CouplingError
+        Where a loop of gears cannot be assembled.
+    """
+    turned: dict[str, float] = {}
+    phases = []
+    for driver, driven, pair, line, sense in zip(drivers, drivens, geometries, centre_lines, senses, strict=True):
+        at_zero = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
+        pitches = sense * 2.0 * math.pi / pair.driver.teeth, -sense * 2.0 * math.pi / pair.driven.teeth
+        if driver in turned:
+            phase = (turned[driver] - at_zero[0]) / pitches[0]
+        elif driven in turned:
+            phase = (turned[driven] - at_zero[1]) / pitches[1]
+        else:
+            phase = 0.0
+        for gear, zero, pitch in zip((driver, driven), at_zero, pitches, strict=True):
+            stands = zero + phase * pitch
+            # A whole number of pitches is the same place.
+            misfit = (turned.setdefault(gear, stands) - stands) / pitch
+            if abs(misfit - round(misfit)) > _MISFIT:
+                raise CouplingError(
+                    f"{driver} -> {driven}: the gears form a loop that cannot be assembled: teeth of {gear} would "
+                    f"stand {abs(misfit - round(misfit)):.3f} pitches beside the gaps that they belong in; move an "
+                    "axis, or change a number of teeth"
+                )
+        phases.append(phase)
+    return phases

@@ -1,0 +1,211 @@
+"""Parts of a machine: shafts, gears on shafts, excitation; and checks of their names, stations and seats."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot
+from typing import Protocol
+
+from coupling.errors import CouplingError
+from coupling.gears import Gear
+from coupling.gears.loaded.gear_pair import GearPair
+from coupling.machine.components import HousingComponent
+from coupling.machine.connectors import MountedBearing
+from coupling.machine.gear_train import LARGEST_OFFSET, Output
+from coupling.machine.loads import AnyTorque, BaseMotion, Drive
+from rotors import Rotor
+from rotors import Unbalance as ShaftUnbalance
+from rotors.model.loads import Bow
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """A rotor on its axis in the machine, without its gears.
+
+    Attributes
+    ----------
+    rotor : rotors.Rotor
+        Its name is the shaft's.
+    axis : tuple of float
+        x and y of the shaft's line [m].
+    start : float
+        z of the left end [m].
+    damping_ratio : float
+        Modal damping ratio of the shaft's own material and fits, on every mode of the free shaft.
+    unbalances : sequence of rotors.Unbalance
+    bow : rotors.Bow, optional
+    frequency_limit : float, optional
+        Highest natural frequency of the retained bending modes [rad/s]; higher modes respond statically. 8 kHz by
+        default.
+    mode_count : int, optional
+        Number of retained modes of each kind, in place of the limit.
+    """
+
+    rotor: Rotor
+    axis: tuple[float, float] = (0.0, 0.0)
+    start: float = 0.0
+    damping_ratio: float = 0.0
+    unbalances: Sequence[ShaftUnbalance] = ()
+    bow: Bow | None = None
+    frequency_limit: float | None = None
+    mode_count: int | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the rotor."""
+        return self.rotor.name
+
+
+@dataclass(frozen=True)
+class ShaftGear:
+    """A gear on a shaft.
+
+    Attributes
+    ----------
+    gear : coupling.gears.Gear
+    shaft : str
+        Name of the shaft.
+    at : float
+        Distance of the middle of the face from the shaft's left end [m].
+    inertia : tuple of float, optional
+        Mass [kg], polar and diametral moment of inertia [kg m²], in place of those of the gear's geometry; zeros where
+        a disc of the rotor stands for the gear.
+    """
+
+    gear: Gear
+    shaft: str
+    at: float
+    inertia: tuple[float, float, float] | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the gear."""
+        return self.gear.name
+
+    @property
+    def mass_and_inertias(self) -> tuple[float, float, float]:
+        """Mass [kg], polar and diametral moment of inertia [kg m²]."""
+        if self.inertia is not None:
+            return self.inertia
+        return self.gear.mass, self.gear.polar_inertia, self.gear.diametral_inertia
+
+
+@dataclass(frozen=True)
+class Driving:
+    """Excitation of a machine beside its constant torques.
+
+    Attributes
+    ----------
+    torques : sequence of coupling torques, or None
+        In place of the constant torques that follow from the machine's torque; with stations on their rotors.
+    drives : sequence of Drive
+        Stations of the torques that accelerate a train.
+    rates : tuple of float
+        Lowest and highest speed of the run, as parts of the machine's speed.
+    base : BaseMotion, optional
+        Motion of the ground.
+    gravity : sequence of float, optional
+        Acceleration of free fall along x, y, z [m/s²].
+    """
+
+    torques: Sequence[AnyTorque] | None = None
+    drives: Sequence[Drive] = ()
+    rates: tuple[float, float] = (1.0, 1.0)
+    base: BaseMotion | None = None
+    gravity: Sequence[float] | None = None
+
+
+CONSTANT = Driving()
+
+
+class MachineParts(Protocol):
+    """The lists of parts in a machine, see :class:`coupling.Machine`."""
+
+    @property
+    def shafts(self) -> Sequence[Shaft]: ...
+    @property
+    def bearings(self) -> Sequence[MountedBearing]: ...
+    @property
+    def gears(self) -> Sequence[ShaftGear]: ...
+    @property
+    def gear_pairs(self) -> Sequence[GearPair]: ...
+    @property
+    def outputs(self) -> Sequence[Output]: ...
+    @property
+    def torque_at(self) -> float: ...
+
+
+def pair_label(pair: GearPair) -> str:
+    """Name of a gear pair in messages."""
+    return f"gear pair {pair.driver!r} -> {pair.driven!r}"
+
+
+def require_names(machine: MachineParts) -> None:
+    """Refuse names given twice, unknown names, and gears that are a pair twice or with themselves."""
+    kinds: Mapping[str, Sequence[str]] = {
+        "shaft": [shaft.name for shaft in machine.shafts],
+        "gear": [gear.name for gear in machine.gears],
+        "bearing": [mounted.bearing.name for mounted in machine.bearings],
+    }
+    for kind, names in kinds.items():
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
+    if not machine.shafts:
+        raise CouplingError("a machine without shafts; expected at least one")
+    needed = [(f"bearing {one.bearing.name!r}", "shaft", one.rotor) for one in machine.bearings]
+    needed += [(f"gear {one.name!r}", "shaft", one.shaft) for one in machine.gears]
+    needed += [(pair_label(pair), "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
+    needed += [("an output", "shaft", one.shaft) for one in machine.outputs]
+    for where, kind, name in needed:
+        if name not in kinds[kind]:
+            known = ", ".join(map(repr, kinds[kind])) or "none"
+            raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {known}")
+    gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
+    for number, pair in enumerate(machine.gear_pairs):
+        if any({pair.driver, pair.driven} == {one.driver, one.driven} for one in machine.gear_pairs[:number]):
+            raise CouplingError(f"{pair_label(pair)} is given twice; expected gears that are not yet a pair")
+        if gear_shafts[pair.driver] == gear_shafts[pair.driven]:
+            raise CouplingError(
+                f"{pair_label(pair)}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
+                "another"
+            )
+
+
+def require_stations(machine: MachineParts) -> None:
+    """Refuse gears, bearings and torques beyond the ends of their shafts."""
+    shafts = {shaft.name: shaft for shaft in machine.shafts}
+    stations = [(f"gear {one.name!r}", one.shaft, one.at) for one in machine.gears]
+    stations += [(f"bearing {one.bearing.name!r}", one.rotor, one.bearing.at) for one in machine.bearings]
+    stations += [("an output", one.shaft, one.at) for one in machine.outputs if one.at is not None]
+    if machine.gear_pairs:
+        first = next(gear.shaft for gear in machine.gears if gear.name == machine.gear_pairs[0].driver)
+        stations.append(("the input torque", first, machine.torque_at))
+    for what, shaft, at in stations:
+        shafts[shaft].rotor.require_on_shaft(what, at)
+
+
+def require_seats(machine: MachineParts, housing: HousingComponent | None) -> None:
+    """Refuse bearings in seats that the housing does not have or that are off their shaft, and pedestals in seats."""
+    seats = () if housing is None else tuple(housing.seats)
+    axes = {shaft.name: shaft.axis for shaft in machine.shafts}
+    for mounted in machine.bearings:
+        if mounted.seat is not None and mounted.bearing.pedestal is not None:
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: expected no pedestal under a bearing in seat {mounted.seat!r}, "
+                "which moves with the housing"
+            )
+        if mounted.seat is not None and mounted.seat not in seats:
+            known = ", ".join(map(repr, seats)) or "none"
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing; expected one of {known}, "
+                "or None for the ground"
+            )
+        if mounted.seat is None or housing is None or mounted.seat not in housing.seat_axes:
+            continue
+        centre, axis = housing.seat_axes[mounted.seat], axes[mounted.rotor]
+        offset = hypot(axis[0] - centre[0], axis[1] - centre[1])
+        if offset > LARGEST_OFFSET:
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: seat {mounted.seat!r} is {1e3 * offset:.6g} mm off the axis of "
+                f"shaft {mounted.rotor!r}; expected a seat on it"
+            )

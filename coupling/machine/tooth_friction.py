@@ -1,0 +1,121 @@
+r"""Tooth friction in the coupled system: the sliding velocity of a pair of teeth, and the torque that friction takes.
+
+With e the unit vector along which the driver pushes, s its sense of turning and t = s z × e that in which its flank
+moves across the line of action, the flanks of a pair at the position x along the path (in base pitches) slide by
+
+    w = t (u_k - u_i)' + s (ξ_k θ_k' + ξ_i θ_i'),        ξ_k = ξ_k0 + x p_b,    ξ_i = ξ_i0 - x p_b,
+
+linear in x: w = (a + x b)ᵀ q' beside the nominal rotation's W_a + x W_b. By virtual work friction does
+-μ F sgn(w) (a + x b) to the coordinates: ± the force on both gears, and the moments ξ_k and ξ_i times it on their
+shafts. The sign is that of the nominal rotation, which turns at the pitch point; what vibration adds to it would turn
+the force some microseconds earlier or later.
+
+The torque that friction takes from a train of gears comes out of what turns it. Speeds are prescribed, so what the
+friction would do to motions that nothing resists, the train's turning as a whole, is given back to them at once, as an
+inertia force of d'Alembert: a and b are taken orthogonal to those motions.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears import GearPairGeometry
+from coupling.gears.contact.sliding_friction import SlidingFriction
+from coupling.machine.connectors import ContactConnector, Sliding
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.loads import MachineCoordinates
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def sliding_flanks(
+    coordinates: MachineCoordinates,
+    places: Sequence[tuple[str, float]],
+    geometry: GearPairGeometry,
+    friction: SlidingFriction,
+    angle: float,
+    sense: int,
+) -> Sliding:
+    """Sliding velocity of the flanks of a gear pair by the coordinates and the nominal rotation.
+
+    Parameters
+    ----------
+    coordinates : MachineCoordinates
+    places : two of (str, float)
+        Rotor of the driver and of the driven gear, and the distance from its left end [m].
+    geometry : GearPairGeometry
+    friction : SlidingFriction
+    angle : float
+        From x to the line of action along which the driver pushes [rad].
+    sense : int
+        +1 where the driver turns counter-clockwise as it pushes so, -1 where clockwise.
+    """
+    across = sense * np.array([-np.sin(angle), np.cos(angle)])
+    gears = (geometry.driver, geometry.driven)
+    rolls = (geometry.driver_roll_angle, geometry.driven_roll_angle)
+    directions = np.zeros((coordinates.size, 2))
+    nominal = np.zeros(2)
+    for (name, at), gear, roll, side in zip(places, gears, rolls, (1.0, -1.0), strict=True):
+        rotor = coordinates.rotor(name)
+        begin, end = sense * gear.base_radius * roll(np.array([0.0, 1.0]))
+        moved = side * (across[0] * rotor.direction(at, 0) + across[1] * rotor.direction(at, 1))
+        turned = rotor.rotation(at)
+        directions += coordinates.rows(name, np.array([moved + begin * turned, (end - begin) * turned])).T
+        nominal += coordinates.speeds[name] * np.array([begin, end - begin])
+    return Sliding(friction, directions, nominal)
+
+
+def friction_of(
+    contact: ContactConnector, turned: FloatArray, rates: FloatArray, compression: FloatArray, force: FloatArray
+) -> FloatArray:
+    """Friction force of a contact and the power it takes, sample by sample; zeros without friction.
+
+    Parameters
+    ----------
+    contact : ContactConnector
+    turned, rates : ndarray, shape (s,)
+        Turned time [s], and speed as a part of the nominal one.
+    compression, force : ndarray, shape (s,)
+        Of the contact [m], [N].
+
+    Returns
+    -------
+    ndarray, shape (s, 2)
+        Force across the line of action, positive where it opposes the sliding of a pair that recedes from the pitch
+        point [N], and the power that it takes from the nominal rotation [W], μ F (W_a A + W_b B) by the speed.
+    """
+    if contact.sliding is None:
+        return np.zeros((len(force), 2))
+    from coupling.gears.contact.tooth_force_kernels import friction_history
+
+    friction, nominal = contact.sliding.friction, contact.sliding.nominal
+    law, by_slices = contact.friction_law
+    shares = friction_history(
+        contact.phase + contact.rate * turned,
+        np.ascontiguousarray(compression),
+        law,
+        by_slices,
+        friction.pitch_point,
+        friction.path_end,
+    )
+    pushed = friction.coefficient * force
+    # A pair slides one way before the pitch point and the other way behind it, so the sense of turning cancels here.
+    power = np.sign(nominal[1]) * pushed * (shares @ nominal) * rates
+    return np.column_stack([pushed * shares[:, 0], power])
+
+
+def with_balanced_friction(system: CoupledSystem) -> CoupledSystem:
+    """The system with friction orthogonal to the rigid-body motions, whose speed is prescribed."""
+    if all(contact.sliding is None for contact in system.contacts):
+        return system
+    free = system.rigid_body_motions[0]
+
+    def held(contact: ContactConnector) -> ContactConnector:
+        if contact.sliding is None:
+            return contact
+        rows = contact.sliding.directions
+        return replace(contact, sliding=replace(contact.sliding, directions=rows - free @ (free.T @ rows)))
+
+    return replace(system, contacts=tuple(held(contact) for contact in system.contacts))

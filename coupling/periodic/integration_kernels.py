@@ -1,0 +1,417 @@
+r"""Exponential collocation from element to element, compiled, with exactly placed switches of contact.
+
+Importing this module imports numba.
+
+The linear machine with its teeth at their mean stiffness k̄ and damping c̄ has eigenvalues λ, and in its amplitudes z
+the whole machine is
+
+    z' = λ z - b g,        g = f(δ, δ', t) - k̄ δ - c̄ δ',        δ = Re Σ d z,
+
+the reference's own response to the loads being amplitudes that no contact changes. Over an element of size h
+the excess forces g are the polynomial through their values at the Gauss places, with which the equation is solved
+exactly:
+
+    z(h) = e^{λh} z(0) - ∫₀ʰ e^{λ(h - t)} b g(t) dt,
+
+so no mode is too stiff for a step; only the excess has to be resolved. The values at the places follow from Newton's
+method on the law.
+
+Where the law changes its branch within an element (teeth meet or part, another pair takes load), the element ends at
+that moment, found to rounding. Up to there and a little beyond, the motion is smooth: so a size of the ladder serves
+whose last place is just before the switch, and the same integral to a part of it, which may be a little more than 1,
+gives the state at the switch.
+
+Dense output of exponential collocation, compiled: the motion between the Gauss points of a trace.
+
+Importing this module imports numba.
+
+Energy balance of exponential collocation, compiled: work, losses and contact figures of a trace.
+
+Importing this module imports numba.
+"""
+
+import cmath
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.periodic.arrays import (
+    BINOMIAL,
+    GAUSS,
+    INSIDE,
+    MONOMIALS,
+    ORDER,
+    PLACES,
+    FreeMotion,
+    Powers,
+    PowersRoom,
+    Reference,
+    Steps,
+    Trace,
+    Work,
+)
+from coupling.periodic.element_kernels import (
+    advance,
+    advance_to,
+    carry_on,
+    estimate,
+    fill_step,
+    held_energy,
+    interpolated,
+    law,
+    moments,
+    solve_element,
+)
+from coupling.periodic.switch_kernels import branch, cross, first_switch, jump_at, vary
+from coupling.time.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
+from coupling.time.dense_kernels import SUMS, project
+from coupling.time.kernel_arrays import Contacts
+from rotors.numerics.compiled import counted, inner, uncounted
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_MOST_CUTS = 40  # of one element; with more, the flanks graze each other and cuts gain nothing
+_TRIES = 10  # sizes for one switch
+_BEYOND = 0.06  # part of a size by which its motion is extended past its end
+NO_BALANCE, NO_ROOM = 1, 2
+
+
+@uncounted()
+def rung(reference: Reference, steps: Steps, length: float, work: Work) -> int:
+    """Slot of the ladder's size nearest to a length, filled in."""
+    first, last = steps.ladder[0], steps.size.size - 1
+    ratio = math.log(steps.size[first] / steps.size[first + 1])
+    slot = int(min(max(first + round(math.log(steps.size[first] / length) / ratio), first), last))
+    if steps.filled[slot] == 0:
+        fill_step(reference, steps, slot, work.integral, work.values)
+    return slot
+
+
+@uncounted(forceinline=True)
+def write_element(
+    reference: Reference,
+    contacts: Contacts,
+    steps: Steps,
+    slot: int,
+    time: float,
+    length: float,
+    z: FloatArray,
+    modes: int,
+    trace: Trace,
+    count: int,
+    work: Work,
+) -> None:
+    """Write an accepted element into the trace."""
+    c, h = reference.stiffness.size, steps.size[slot]
+    n = ORDER * c
+    part = length / h
+    trace.start[count], trace.size[count], trace.part[count], trace.slot[count] = time, length, part, slot
+    for i in range(z.size):
+        trace.state[count, i] = z[i]
+    for i in range(ORDER):
+        for a in range(c):
+            row = i * c + a
+            v = work.rate[i + 1, a]
+            trace.excess[count, i, a] = work.excess[row]
+            trace.force[count, i, a] = work.laws[row, FORCE]
+            trace.compression[count, i, a] = work.delta[i + 1, a]
+            trace.loss[count, i, a] = work.laws[row, DAMPING] * v * v
+            trace.turning[count, i, a] = work.laws[row, PHASE_SLOPE]
+    trace.energy[count, 0] = held_energy(work.laws, n, c)
+    u = part - INSIDE
+    for a in range(c):
+        # Just before the end, which a switch may have moved since the laws were evaluated.
+        x, v = interpolated(work.delta, a, u), interpolated(work.rate, a, u)
+        law(contacts, a, time + u * h, x, v, work.laws, n + c + a)
+        work.looked[2, a], work.looked[3, a] = x, v
+        trace.apart[count, a] = 1.0 if branch(reference, a, work.laws, n + a) == 0 else 0.0
+    trace.energy[count, 1] = held_energy(work.laws, n + c, c)
+    estimate(reference, steps, slot, part, z, modes, work)
+    trace.error[count, 0], trace.error[count, 1] = work.measure[0], work.measure[1]
+
+
+@uncounted()
+def integrate_elements(
+    reference: Reference,
+    contacts: Contacts,
+    steps: Steps,
+    starts: FloatArray,
+    sizes: FloatArray,
+    slots: IntArray,
+    z: FloatArray,
+    columns: FloatArray,
+    modes: int,
+    trace: Trace,
+    held: int,
+    work: Work,
+) -> tuple[int, int, int]:
+    """Integrate the amplitudes z and their disturbances through elements, each of a slot's size or, at -1, of any.
+
+    Disturbances as in :mod:`coupling.periodic.switch_kernels`. The trace holds ``held`` elements before. Returns the
+    number of elements after, the number of cuts, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
+    """
+    c = reference.stiffness.size
+    count, cuts = held, 0
+    for element in range(starts.size):
+        time, left = starts[element], sizes[element]
+        whole, cuts_here = left, 0
+        stop = time + whole * (1.0 - INSIDE)
+        slot = slots[element]
+        while True:
+            if slot < 0:
+                slot = rung(reference, steps, left, work)
+            elif steps.filled[slot] == 0:
+                fill_step(reference, steps, slot, work.integral, work.values)
+            tries = 0
+            while True:
+                solved = solve_element(reference, contacts, steps, slot, time, z, work)
+                h = steps.size[slot]
+                # An element of a size that occurs is all of it; beyond a size's end it reaches only as far as
+                # evaluated.
+                part = 1.0 if slot < steps.ladder[0] else left / h
+                furthest = min(part - INSIDE, 1.0 + _BEYOND)
+                if part >= 1.0 + _BEYOND:
+                    part = 1.0
+                which, at = -1, 2.0
+                if cuts_here < _MOST_CUTS:
+                    at, which = first_switch(reference, contacts, time, h, stop, furthest, work)
+                if at * h > (1.0 - 1e-9) * left or at * h < 1e-11 * whole:
+                    which = -1
+                if which < 0 or at > PLACES[ORDER - 1] or tries == _TRIES:
+                    break
+                # Some places lie beyond the switch: again with a size that ends near it.
+                closer = rung(reference, steps, at * h, work)
+                if closer == slot:
+                    break
+                tries, slot = tries + 1, closer
+            if which >= 0:
+                part = at
+            if which < 0 and not solved:
+                return count, cuts, NO_BALANCE
+            if count >= trace.start.size:
+                return count, cuts, NO_ROOM
+            length = part * h
+            write_element(reference, contacts, steps, slot, time, length, z, modes, trace, count, work)
+            count += 1
+            if columns.shape[0] > 0:
+                vary(reference, steps, slot, part, columns, work)
+            if part != 1.0:
+                carry_on(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral, work.term)
+            for i in range(z.size):
+                z[i] = work.end[i]
+            if left - length <= 1e-12 * whole:
+                break
+            cuts_here += 1
+            if which >= 0:
+                cuts += 1
+                if columns.shape[0] > 0:
+                    inside = 1e-5 * min(length, left - length)
+                    x, v = interpolated(work.delta, which, part), interpolated(work.rate, which, part)
+                    row = ORDER * c + 2 * c
+                    jump = jump_at(reference, contacts, which, time + length, x, v, inside, work.laws, row)
+                    if jump != 0.0:
+                        cross(reference, which, jump, columns)
+            time += length
+            left -= length
+            slot = -1
+    return count, cuts, 0
+
+
+_EVEN = 1e-6  # part of the spacing by which times at even spacing may miss it
+
+
+@counted()
+def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> FloatArray:
+    """Amplitudes at ascending times, shape (t, 2 m).
+
+    At even spacing the amplitudes within an element follow from each other by the exponentials of the spacing, equal
+    for all of them, with the excess expanded about each time.
+    """
+    c, m = reference.stiffness.size, reference.eigenvalue.size
+    out = np.empty((times.size, 2 * m))
+    integral, coefficient = np.empty(ORDER, dtype=np.complex128), np.empty((ORDER, c))
+    series, shifted = np.empty((ORDER, c)), np.empty(ORDER * c)
+    excess = trace.excess.reshape(trace.start.size, ORDER * c)
+    spacing = times[1] - times[0] if times.size > 1 else 0.0
+    decay, source = np.empty((2, m)), np.empty((ORDER * c, 2 * m))
+    for k in range(m):
+        z = reference.eigenvalue[k] * spacing
+        grown = cmath.exp(z)
+        decay[0, k], decay[1, k] = grown.real, grown.imag
+        moments(z, grown, ORDER, integral)
+        for p in range(ORDER):
+            for a in range(c):
+                sent = integral[p] * spacing * reference.source[k, a]
+                source[p * c + a, k], source[p * c + a, m + k] = sent.real, sent.imag
+    element, of = 0, -1
+    for i in range(times.size):
+        while element < trace.start.size - 1 and times[i] >= trace.start[element + 1]:
+            element += 1
+        h = trace.size[element] / trace.part[element]
+        u = (times[i] - trace.start[element]) / h
+        if of != element or abs(times[i] - times[i - 1] - spacing) > _EVEN * spacing:
+            of = element
+            advance_to(reference, h, u, trace.state[element], excess[element], out[i], coefficient, integral)
+            for p in range(ORDER):
+                for a in range(c):
+                    series[p, a] = 0.0
+                    for j in range(ORDER):
+                        series[p, a] += MONOMIALS[j, p] * trace.excess[element, j, a]
+            continue
+        # The excess about the time before, in spacings.
+        u -= spacing / h
+        scale = 1.0
+        for p in range(ORDER):
+            for a in range(c):
+                total = 0.0
+                for j in range(ORDER - 1, p - 1, -1):
+                    total = total * u + BINOMIAL[j, p] * series[j, a]
+                shifted[p * c + a] = scale * total
+            scale *= spacing / h
+        advance(decay, source, out[i - 1], shifted, out[i])
+    return out
+
+
+@counted()
+def forces_at(
+    contacts: Contacts, times: FloatArray, delta: FloatArray, rate: FloatArray, work: Work, out: FloatArray
+) -> None:
+    """Force of the contact law at times (t,), compressions and rates (t, c), into ``out`` (t, c)."""
+    row = work.laws.shape[0] - 1
+    for i in range(times.size):
+        for a in range(contacts.phase.size):
+            law(contacts, a, times[i], delta[i, a], rate[i, a], work.laws, row)
+            out[i, a] = work.laws[row, FORCE]
+
+
+@uncounted()
+def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
+    """Quadrature weights [s] at the places (s,) over an element; Gauss weights where it is all of its size."""
+    part = trace.part[element]
+    h = trace.size[element] / part
+    for j in range(ORDER):
+        if part == 1.0:
+            out[j] = h * GAUSS[j]
+            continue
+        total, power = 0.0, h
+        for k in range(ORDER):
+            power *= part
+            total += MONOMIALS[j, k] * power / (k + 1)
+        out[j] = total
+
+
+@uncounted()
+def amplitudes_of(
+    steps: Steps, trace: Trace, excess: FloatArray, free: FreeMotion, first: int, room: PowersRoom
+) -> int:
+    """Amplitudes at the places of a batch of elements, and quadrature weights; returns the number of elements.
+
+    ``excess`` (e, s c) is the trace's.
+    """
+    size, count = trace.state.shape[1], int(min(room.weights.shape[0], trace.start.size - first))
+    for number in range(count):
+        element = first + number
+        weights_of(trace, element, room.weights[number])
+        slot, h = trace.slot[element], trace.size[element] / trace.part[element]
+        for i in range(ORDER):
+            amplitude = room.amplitude[number * ORDER + i]
+            decay, source = steps.inner_decay[slot, i], steps.inner_source[slot, i]
+            advance(decay, source, trace.state[element], excess[element], amplitude[:size])
+            after = trace.start[element] + PLACES[i] * h - free.time[0]
+            for j in range(free.rate.size):
+                amplitude[size + j] = free.rate[j] + free.acceleration[j] * after
+    return count
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def lost_and_held(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
+    """Power loss by damping at some rates (n,), and twice their kinetic energy."""
+    lost, held = 0.0, 0.0
+    for k in range(rate.size):
+        square = rate[k] * rate[k]
+        lost += loss[k] * square
+        held += square
+    return lost, held
+
+
+@uncounted()
+def add_batch(powers: Powers, room: PowersRoom, count: int, totals: FloatArray) -> None:
+    """Add the powers of a batch with known amplitudes and rates, and keep the largest kinetic energy."""
+    for number in range(count):
+        for i in range(ORDER):
+            amplitude, rate = room.amplitude[number * ORDER + i], room.rate[number * ORDER + i]
+            taken, held = lost_and_held(powers.loss, rate)
+            if powers.skew.shape[0] > 0:
+                project(powers.skew, rate, room.along)
+                for j in range(powers.skew.shape[0]):
+                    taken += 0.5 * amplitude[j] * room.along[j]
+            pushed = 0.0
+            project(powers.pushing, rate, room.along)
+            for j in range(powers.riding.size):
+                pushed += amplitude[powers.riding[j]] * room.along[j]
+            totals[0] += room.weights[number, i] * pushed
+            totals[1] += room.weights[number, i] * taken
+            totals[3] = max(totals[3], 0.5 * held)
+
+
+@counted()
+def add_powers(
+    steps: Steps,
+    trace: Trace,
+    excess: FloatArray,
+    powers: Powers,
+    free: FreeMotion,
+    room: PowersRoom,
+    totals: FloatArray,
+) -> None:
+    """Add the work of the loads and the losses without those of the teeth [J], and keep the largest kinetic energy.
+
+    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.time.integration.Checkpoint`.
+    Rates of a batch of elements are one product, for their rows do not fit the innermost cache beside an element's
+    matrices.
+    """
+    for first in range(0, trace.start.size, room.weights.shape[0]):
+        count = amplitudes_of(steps, trace, excess, free, first, room)
+        np.dot(room.amplitude, powers.rate, room.rate)
+        add_batch(powers, room, count, totals)
+
+
+@uncounted()
+def add_contacts(
+    trace: Trace, contacts: Contacts, stored: float, weights: FloatArray, totals: FloatArray, figures: FloatArray
+) -> float:
+    """Add the losses by the contacts' damping, and the work of the rotating teeth: ∂U/∂p p' - f e' [J].
+
+    ``figures`` (c, 4) are impulse, time apart, largest force and last touch of each contact. ``stored`` is the energy
+    in the teeth before, the result that after: it jumps where pairs enter or leave contact.
+    """
+    lost, turned = 0.0, 0.0
+    for element in range(trace.start.size):
+        weights_of(trace, element, weights)
+        h = trace.size[element] / trace.part[element]
+        turned += trace.energy[element, 0] - stored
+        stored = trace.energy[element, 1]
+        for a in range(contacts.phase.size):
+            touching = False
+            for i in range(ORDER):
+                force = trace.force[element, i, a]
+                power = contacts.rate[a] * trace.turning[element, i, a]
+                for m in range(contacts.errors.shape[1]):
+                    w = contacts.errors[a, m, 1]
+                    angle = w * (trace.start[element] + h * PLACES[i]) + contacts.errors[a, m, 2]
+                    power += force * contacts.errors[a, m, 0] * w * math.sin(angle)
+                turned += weights[i] * power
+                lost += weights[i] * trace.loss[element, i, a]
+                figures[a, 0] += weights[i] * force
+                figures[a, 2] = max(figures[a, 2], force)
+                touching = touching or force > 0.0
+            # Flanks that touch without a force, where the damping would pull, count as apart; switches bound those.
+            if touching:
+                figures[a, 3] = max(figures[a, 3], trace.start[element] + trace.size[element])
+            else:
+                figures[a, 1] += trace.size[element]
+    totals[1] += lost
+    totals[2] += turned
+    return stored

@@ -1,0 +1,397 @@
+"""Amplitude spectrum of evenly sampled signals; lines at given frequencies, averages, peaks.
+
+Amplitudes are peak values throughout: a sine a sin(2πft) has the line a, an rms value of a/√2 and, in decibels, the
+level of that rms value, see :mod:`coupling.signals.spectrum`. The mean, the d.c. part, is no vibration: it stands alone
+at 0 Hz.
+
+Levels in decibels, peak and rms values of sines, by one convention.
+
+A level is 20 lg of an *rms* value over a reference (ISO 80000-8, ISO 1683), so a sine of peak amplitude a has the level
+20 lg(a / (√2 a₀)): one of 1 m/s² peak stands at 117.0 dB re 1 µm/s², not at 120.
+
+Power spectral density by Welch's method, and the spectrogram of a record.
+
+Welch (1967) averages the squares of the spectra of windowed, overlapping stretches: lines of a steady sine keep their
+height, and the average of noise converges to its density.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+
+FloatArray = npt.NDArray[np.float64]
+
+ACCELERATION_REFERENCE = 1e-6
+"""Of vibratory acceleration levels [m/s²], ISO 1683."""
+
+
+def rms_of_peak(amplitude: npt.ArrayLike) -> FloatArray:
+    """Root mean square of sines by their peak amplitudes."""
+    return np.asarray(np.asarray(amplitude, dtype=np.float64) / np.sqrt(2.0))
+
+
+def peak_of_rms(rms: npt.ArrayLike) -> FloatArray:
+    """Peak amplitudes of sines by their root mean square."""
+    return np.asarray(np.asarray(rms, dtype=np.float64) * np.sqrt(2.0))
+
+
+def decibels(amplitude: npt.ArrayLike, reference: float = ACCELERATION_REFERENCE) -> FloatArray:
+    """Levels of sines by their peak amplitudes [dB]; minus infinity for silence.
+
+    Raises
+    ------
+    CouplingError
+        Where the reference is not positive.
+    """
+    _check(reference)
+    with np.errstate(divide="ignore"):
+        return np.asarray(20.0 * np.log10(np.abs(rms_of_peak(amplitude)) / reference))
+
+
+def from_decibels(level: npt.ArrayLike, reference: float = ACCELERATION_REFERENCE) -> FloatArray:
+    """Peak amplitudes of sines by their levels [dB].
+
+    Raises
+    ------
+    CouplingError
+        Where the reference is not positive.
+    """
+    _check(reference)
+    return peak_of_rms(reference * 10.0 ** (np.asarray(level, dtype=np.float64) / 20.0))
+
+
+def _check(reference: float) -> None:
+    if not 0.0 < reference < np.inf:
+        raise CouplingError(f"levels over a reference of {reference}; expected a positive number")
+
+
+ComplexArray = npt.NDArray[np.complex128]
+Window = Literal["uniform", "hann"]
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """A one-sided amplitude spectrum.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (m,)
+        [Hz].
+    amplitude : ndarray, shape (..., m)
+        Peak amplitude of each line, in the signal's unit: a sine a·sin(2πft) of whole periods in the record has
+        the line a. The line at 0 Hz is the mean.
+    phase : ndarray, shape (..., m)
+        Of the cosine, at the start of the record [rad].
+    window : {"uniform", "hann"}
+    averages : int
+        Number of averaged stretches of the record, see :func:`averaged_spectrum`.
+    """
+
+    frequencies: FloatArray
+    amplitude: FloatArray
+    phase: FloatArray
+    window: Window
+    averages: int = 1
+
+    @property
+    def lines(self) -> ComplexArray:
+        """Complex amplitudes a e^{iφ}, shape (..., m): the signal is the sum of Re a e^{i(2πft + φ)}."""
+        return np.asarray(self.amplitude * np.exp(1j * self.phase))
+
+    @property
+    def spacing(self) -> float:
+        """Between lines [Hz]: the inverse of the record's length."""
+        return float(self.frequencies[1]) if self.frequencies.size > 1 else 0.0
+
+    def rms(self, limit: float) -> FloatArray:
+        """Root mean square of the lines above 0 Hz and up to a limit [Hz], shape (...), in the signal's unit.
+
+        Parseval's sum over the lines, for a limit below half the sampling rate; under Hann's window a sine stands in
+        three of them, whose squares add up to 3/2.
+        """
+        inside = (self.frequencies > 0.0) & (self.frequencies <= limit)
+        noise_bandwidth = 1.0 if self.window == "uniform" else 1.5
+        return np.asarray(np.sqrt(0.5 * (self.amplitude[..., inside] ** 2).sum(axis=-1) / noise_bandwidth))
+
+
+def amplitude_spectrum(signal: FloatArray, interval: float, window: Window = "uniform") -> Spectrum:
+    """Amplitude spectrum of a record.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (..., s)
+    interval : float
+        Between samples [s].
+    window : {"uniform", "hann"}
+        Uniform for a record of whole periods, whose lines are then exact; Hann otherwise, scaled so that a sine
+        keeps its height. The mean is taken off before Hann's window and given back at 0 Hz.
+    """
+    lines = _lines(signal, window)
+    return Spectrum(_frequencies(signal.shape[-1], interval), np.abs(lines), np.angle(lines), window)
+
+
+def averaged_spectrum(stretches: Iterable[FloatArray], interval: float, window: Window = "uniform") -> Spectrum:
+    """Amplitude spectrum averaged over the stretches of a long record.
+
+    Amplitudes are root mean squares over the stretches, so that power adds up whatever the phases; the mean is the
+    mean of the means. Phases are those of the mean complex lines: they are meaningful where the motion repeats with the
+    stretch.
+
+    Parameters
+    ----------
+    stretches : iterable of ndarray, shape (..., s)
+        At least one, all of the same shape.
+    interval, window
+        As for :func:`amplitude_spectrum`, of which this is the mean.
+    """
+    count = samples = 0
+    together, power = np.zeros(0, dtype=np.complex128), np.zeros(0)
+    for stretch in stretches:
+        lines = _lines(stretch, window)
+        together, power = (lines, np.abs(lines) ** 2) if not count else (together + lines, power + np.abs(lines) ** 2)
+        count, samples = count + 1, stretch.shape[-1]
+    amplitude, together = np.sqrt(power / count), together / count
+    amplitude[..., 0] = np.abs(together[..., 0])
+    return Spectrum(_frequencies(samples, interval), amplitude, np.angle(together), window, count)
+
+
+def _frequencies(count: int, interval: float) -> FloatArray:
+    return np.asarray(np.fft.rfftfreq(count, interval), dtype=np.float64)
+
+
+def _lines(signal: FloatArray, window: Window) -> npt.NDArray[np.complex128]:
+    """Complex one-sided lines; their magnitude is the peak amplitude, and the line at 0 Hz the mean."""
+    count = signal.shape[-1]
+    mean = signal.mean(axis=-1, keepdims=True)
+    weights = window_weights(count, window)
+    lines = np.fft.rfft((signal - mean) * weights, axis=-1) * (2.0 / weights.sum())
+    if count % 2 == 0:
+        lines[..., -1] *= 0.5  # the line at half the sampling rate stands alone
+    lines[..., 0] = mean[..., 0]
+    return np.asarray(lines)
+
+
+def window_weights(count: int, window: Window) -> FloatArray:
+    """Weights of a periodic window, shape (count,)."""
+    if window == "uniform":
+        return np.ones(count)
+    return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count))
+
+
+def lines_at(signal: FloatArray, interval: float, frequencies: FloatArray, window: Window = "uniform") -> ComplexArray:
+    """Complex amplitudes at any frequencies, not only those of the record's lines, shape (..., f).
+
+    2 Σ w (x - mean) e^{-2πift} / Σ w: the height of a sine at that frequency, under either window, without leakage from
+    its neighbours.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (..., s)
+    interval : float
+        Between samples [s].
+    frequencies : ndarray, shape (f,)
+        [Hz], above 0 and below half the sampling rate.
+    window : {"uniform", "hann"}
+    """
+    weights = window_weights(signal.shape[-1], window)
+    weighted = (signal - signal.mean(axis=-1, keepdims=True)) * (2.0 * weights / weights.sum())
+    times = interval * np.arange(signal.shape[-1])
+    found = [weighted @ np.exp(-2j * np.pi * frequency * times) for frequency in frequencies]
+    return np.stack(found, axis=-1) if found else np.zeros((*signal.shape[:-1], 0), dtype=np.complex128)
+
+
+@dataclass(frozen=True)
+class SignalParts:
+    """Constant (d.c.) and varying (a.c.) part of a signal, each in its unit, shape (...).
+
+    Attributes
+    ----------
+    mean : ndarray
+        The d.c. part.
+    rms : ndarray
+        Of the a.c. part.
+    peak : ndarray
+        Largest departure from the mean.
+    """
+
+    mean: FloatArray
+    rms: FloatArray
+    peak: FloatArray
+
+    @property
+    def fixed_to_varying(self) -> FloatArray:
+        """|d.c.| over the rms of the a.c. part; infinite for a constant signal."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.abs(self.mean) / self.rms)
+
+
+def signal_parts(signal: FloatArray) -> SignalParts:
+    """The d.c. and the a.c. part of a signal of shape (..., s)."""
+    mean = signal.mean(axis=-1)
+    varying = signal - mean[..., None]
+    return SignalParts(mean, np.asarray(np.sqrt((varying**2).mean(axis=-1))), np.abs(varying).max(axis=-1))
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A spectral peak: frequency [Hz] and amplitude in the signal's unit."""
+
+    frequency: float
+    amplitude: float
+
+
+def spectrum_peaks(
+    spectrum: Spectrum, *, count: int = 12, above: float = 0.0, limit: float = np.inf, floor: float = 1e-3
+) -> list[Peak]:
+    """Spectral peaks: the highest lines that are higher than both neighbours, highest first.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        Of one signal.
+    count : int
+        Largest number of peaks.
+    above, limit : float
+        Between these frequencies [Hz].
+    floor : float
+        Only lines above this part of the highest.
+    """
+    a, f = spectrum.amplitude, spectrum.frequencies
+    inner = np.arange(1, len(a) - 1)
+    peaks = inner[(a[inner] >= a[inner - 1]) & (a[inner] > a[inner + 1]) & (f[inner] > above) & (f[inner] <= limit)]
+    peaks = peaks[a[peaks] > floor * a[peaks].max(initial=0.0)]
+    peaks = peaks[np.argsort(-a[peaks], kind="stable")][:count]
+    return [Peak(float(f[i]), float(a[i])) for i in peaks]
+
+
+_NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # of the window, over the spacing of lines
+
+
+@dataclass(frozen=True)
+class PowerDensity:
+    """A one-sided power spectral density, averaged over stretches of a record and without its mean.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (m,)
+        [Hz], without 0.
+    density : ndarray, shape (..., m)
+        Square of the signal's unit by Hz: its integral is the mean square.
+    stretches : int
+        Number of averaged stretches.
+    window : {"uniform", "hann"}
+    """
+
+    frequencies: FloatArray
+    density: FloatArray
+    stretches: int
+    window: Window
+
+    @property
+    def amplitude(self) -> FloatArray:
+        """Peak amplitude of a sine whose line has this height, shape (..., m); meaningless for noise."""
+        bandwidth = _NOISE_BANDWIDTH[self.window] * self.frequencies[0]
+        return np.asarray(np.sqrt(2.0 * self.density * bandwidth))
+
+    def rms(self, limit: float) -> FloatArray:
+        """Root mean square up to a limit [Hz], shape (...)."""
+        inside = self.frequencies <= limit
+        return np.asarray(np.sqrt(self.density[..., inside].sum(axis=-1) * self.frequencies[0]))
+
+
+def power_density(
+    signal: FloatArray, interval: float, length: int, *, overlap: float = 0.5, window: Window = "hann"
+) -> PowerDensity:
+    """Power spectral density by Welch's method.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (..., s)
+    interval : float
+        Between samples [s].
+    length : int
+        Samples of a stretch, at most s.
+    overlap : float
+        Of neighbouring stretches, a part of their length from 0 to below 1; half of it wastes nothing under Hann's
+        window.
+    window : {"uniform", "hann"}
+
+    Raises
+    ------
+    CouplingError
+        For a length or an overlap that the record does not allow.
+    """
+    from scipy.signal import welch
+
+    step = round(length * (1.0 - overlap))
+    stretches = len(_starts(signal.shape[-1], length, step))
+    shape = "boxcar" if window == "uniform" else window
+    frequencies, density = welch(signal, 1.0 / interval, shape, length, length - step, detrend="constant")
+    return PowerDensity(frequencies[1:], density[..., 1:], stretches, window)
+
+
+@dataclass(frozen=True)
+class Spectrogram:
+    """Spectrogram: spectra along a record, t stretches.
+
+    Attributes
+    ----------
+    times : ndarray, shape (t,)
+        Middles of the stretches [s].
+    frequencies : ndarray, shape (m,)
+        [Hz].
+    amplitude : ndarray, shape (t, m)
+        Peak amplitudes in the signal's unit; the mean of the stretch at 0 Hz.
+    window : {"uniform", "hann"}
+    """
+
+    times: FloatArray
+    frequencies: FloatArray
+    amplitude: FloatArray
+    window: Window
+
+
+def spectrogram(
+    signal: FloatArray, interval: float, length: int, step: int, *, start: float = 0.0, window: Window = "hann"
+) -> Spectrogram:
+    """Amplitude spectra of stretches along a record: a waterfall over time, or over the speed.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (s,)
+    interval : float
+        Between samples [s].
+    length, step : int
+        Samples of a stretch, and from the start of one to the next. Frequencies are told apart by 1 / (length
+        interval), and the speed should change little meanwhile.
+    start : float
+        Time of the first sample [s].
+    window : {"uniform", "hann"}
+
+    Raises
+    ------
+    CouplingError
+        For a length or a step that the record does not allow.
+    """
+    starts = _starts(signal.shape[-1], length, step)
+    spectra = [amplitude_spectrum(signal[first : first + length], interval, window) for first in starts]
+    return Spectrogram(
+        times=start + interval * (np.array(starts) + 0.5 * length),
+        frequencies=spectra[0].frequencies,
+        amplitude=np.array([spectrum.amplitude for spectrum in spectra]),
+        window=window,
+    )
+
+
+def _starts(count: int, length: int, step: int) -> list[int]:
+    """First samples of the stretches that fit in."""
+    if not 2 <= length <= count:
+        raise CouplingError(f"stretches of {length} samples from a record of {count}; expected 2 to {count}")
+    if not step >= 1:
+        raise CouplingError(f"stretches {step} samples apart; expected a step of at least 1, an overlap below 1")
+    return list(range(0, count - length + 1, step))

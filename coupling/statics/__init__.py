@@ -1,0 +1,1 @@
+"""Statics: the equilibrium under the mean load, and the mean mesh stiffness about it."""

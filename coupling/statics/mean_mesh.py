@@ -1,0 +1,229 @@
+"""Mean mesh stiffness of each contact under its mean mesh force.
+
+Over a mesh period the number of loaded teeth changes, while the mean force of a contact stays that of the torques. So a
+contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the period,
+and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the torques alone
+give F; where meshes share a torque, their stiffness and deviations divide it.
+
+Linearised tooth contacts: mesh stiffness and damping about the mean load, or at an instant.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.gears import GearError, ToothContact, loaded_transmission_error
+from coupling.gears.loaded.transmission_error import hunting_period_mesh, mesh_period_phases, period_mean
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.statics.static_equilibrium import load_balances, static_equilibrium
+
+FloatArray = npt.NDArray[np.float64]
+
+_POINTS = 200  # phases of a mesh period, beside its events
+_SETTLED = 1e-7  # change of the force in a step of the iteration, relative to the largest force
+_ROUNDING = 1e-9  # part of the contact force by each coordinate below which a force is rounding
+_LOOSE = 1e-12  # part of the largest stiffness below which a stiffness is zero
+_ITERATIONS = 30
+
+
+@dataclass(frozen=True)
+class MeanMesh:
+    """Mean of a contact over a mesh period under its mean force.
+
+    Attributes
+    ----------
+    force : float
+        Mean mesh force F > 0 [N].
+    stiffness : float
+        Mean of the tangent dF/dδ over the period [N/m].
+    deflection : float
+        Mean loaded transmission error δ̄ [m].
+    secant : float
+        dF/dδ̄ [N/m]: the harmonic mean of the tangent.
+    """
+
+    force: float
+    stiffness: float
+    deflection: float
+    secant: float
+
+
+_PARTED = MeanMesh(0.0, 0.0, 0.0, 0.0)
+
+
+def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
+    """Means of a contact in static equilibrium under a force over its mesh period, or its hunting period.
+
+    Parameters
+    ----------
+    contact : ToothContact
+    force : float
+        Along the line of action, above 0 [N].
+
+    Raises
+    ------
+    GearError
+        Where no teeth meet at some phase.
+    """
+    if contact.hunting_period > 1:
+        mesh = hunting_period_mesh(contact, force)
+    else:
+        mesh = loaded_transmission_error(contact, force, mesh_period_phases(contact, _POINTS))
+    softness = period_mean(mesh.phases, 1.0 / mesh.tangent_stiffness)
+    return MeanMesh(force, mesh.mean_mesh_stiffness, mesh.mean_transmission_error, 1.0 / softness)
+
+
+def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
+    """Mean mesh of each contact under the constant load; None without a mean force or where the load cannot balance.
+
+    Newton's method on the contacts' mean curves, from their stiffness without load. A contact that the mean load opens
+    while others carry it has no force and no stiffness.
+    """
+    nothing: list[MeanMesh | None] = [None] * len(system.contacts)
+    driving = [number for number, contact in enumerate(system.contacts) if contact.drives]
+    if not driving or not np.any(system.load) or not load_balances(system):
+        return nothing
+    rigid, stiffest = system.rigid_body_motions
+    held = system.stiffness + stiffest * rigid @ rigid.T
+    directions = system.contact_directions[:, driving]
+    laws = [system.contacts[number].contact for number in driving]
+    stiffness = np.array([law.mean_mesh_stiffness for law in laws])
+    offset = np.array([system.contacts[number].clearance for number in driving])
+    before = np.full(len(driving), np.nan)
+    pressed = np.ones(len(driving), dtype=bool)
+    found: list[MeanMesh | None] = [None] * len(driving)
+    for _ in range(_ITERATIONS):
+        matrix = held + (directions * (stiffness * pressed)) @ directions.T
+        if not np.all(pressed) and np.linalg.svd(matrix, compute_uv=False)[-1] < _LOOSE * stiffest:
+            # The mean load parts flanks and nothing else holds the train.
+            return nothing
+        q = np.linalg.solve(matrix, system.load + directions @ (stiffness * pressed * offset))
+        force = stiffness * (directions.T @ q - offset)
+        rounding = _ROUNDING * stiffness * (np.abs(directions.T) @ np.abs(q))
+        settled = np.abs(force - before) <= _SETTLED * np.abs(force * pressed).max() + rounding
+        parted = force < -rounding
+        if np.all(settled | parted) and np.array_equal(parted, ~pressed):
+            break
+        before, pressed = force, ~parted
+        for number, law in enumerate(laws):
+            if force[number] <= rounding[number]:
+                found[number] = _PARTED if parted[number] else None
+                continue
+            try:
+                mean = mean_mesh(law, float(force[number]))
+            except GearError:
+                found[number] = None
+                continue
+            found[number] = mean
+            stiffness[number] = mean.secant
+            clearance = system.contacts[driving[number]].clearance
+            offset[number] = clearance + mean.deflection - mean.force / mean.secant
+    for number, one in zip(driving, found, strict=True):
+        nothing[number] = one
+    return nothing
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """Mesh stiffness and damping of each contact in linear analyses.
+
+    Attributes
+    ----------
+    stiffness : ndarray, shape (c,)
+        Of each contact of the system, drive flanks and back flanks [N/m]; 0 without contact.
+    damping : ndarray, shape (c,)
+        [N s/m].
+    force : ndarray, shape (c,), or None
+        Mean force about which the contact is linearised [N]; 0 for the stiffness without load.
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    force: FloatArray | None = None
+
+
+def mean_contact(system: CoupledSystem) -> ContactState:
+    """Contacts linearised about the mean load: each loaded flank at its mean mesh stiffness under its mean force.
+
+    The mean mesh stiffness under load is the mean over a mesh period of the tangent dF/dδ at static equilibrium under
+    the contact's mean force: load sharing, reliefs, deviations, corner contact and uneven faces count. A flank
+    without a mean force has its mean stiffness without load, see :func:`unloaded_contact`.
+    """
+    state = unloaded_contact(system)
+    means = mean_meshes(system)
+    stiffness = [k if mean is None else mean.stiffness for k, mean in zip(state.stiffness, means, strict=True)]
+    force = [0.0 if mean is None else mean.force for mean in means]
+    return replace(state, stiffness=np.array(stiffness, dtype=np.float64), force=np.array(force, dtype=np.float64))
+
+
+def unloaded_contact(system: CoupledSystem) -> ContactState:
+    """Drive flanks at their mean stiffness with all pairs on the path of contact touching, the back flanks apart."""
+    return ContactState(system.drive_stiffness, system.drive_damping)
+
+
+def contact_at(system: CoupledSystem, time: float) -> ContactState:
+    """Tangents of the contact law in static equilibrium under the constant load, at the mesh phases of a time.
+
+    Reliefs, deviations and backlash count: a pair that the load does not close has no stiffness.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    time : float
+        [s]; :func:`time_of_phase` gives that of a mesh phase.
+
+    Raises
+    ------
+    CouplingError, TransientError
+        As :func:`coupling.static_equilibrium`.
+    """
+    from coupling.gears.contact.tooth_force_kernels import tooth_force
+
+    q = static_equilibrium(system, time)
+    tangents = []
+    for contact in system.contacts:
+        compression = float(contact.direction @ q) - contact.runout(time) - contact.clearance
+        law = contact.contact.kernel_arguments
+        force, *tangent = tooth_force(contact.phase_after(time), compression, 0.0, *law)[:3]
+        # Of a contact that is held apart the law gives the coefficient of its losses, which act on no force.
+        tangents.append(tangent if force > 0.0 else [0.0, 0.0])
+    stiffness, damping = np.array(tangents).reshape(-1, 2).T
+    return ContactState(stiffness, damping)
+
+
+def time_of_phase(system: CoupledSystem, phase: float, contact: int = 0) -> float:
+    """First time at or after 0 at which a contact stands at a phase of its mesh period [s].
+
+    Raises
+    ------
+    CouplingError
+        Where the system has no such contact, or it does not turn.
+    """
+    if not 0 <= contact < len(system.contacts):
+        raise CouplingError(
+            f"contact number {contact} of {len(system.contacts)}; expected 0 or more, below their count"
+        )
+    chosen = system.contacts[contact]
+    if chosen.rate == 0.0:
+        raise CouplingError(f"{chosen.name} does not turn, so it has no phase but its own; expected a speed")
+    return float(((np.sign(chosen.rate) * (phase - chosen.phase)) % 1.0) / abs(chosen.rate))
+
+
+def linear_matrices(system: CoupledSystem, contact: ContactState) -> tuple[FloatArray, FloatArray]:
+    """K [1/s²] and C [1/s] with the contacts in a state, shape (n, n) both.
+
+    Raises
+    ------
+    CouplingError
+        Where the state has another number of contacts than the system.
+    """
+    count = len(system.contacts)
+    if contact.stiffness.shape != (count,) or contact.damping.shape != (count,):
+        raise CouplingError(
+            f"a contact state of shapes {contact.stiffness.shape} and {contact.damping.shape}; expected ({count},) both"
+        )
+    directions = system.contact_directions
+    stiffness = system.stiffness + (directions * contact.stiffness) @ directions.T
+    return stiffness, system.damping + (directions * contact.damping) @ directions.T

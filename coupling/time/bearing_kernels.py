@@ -1,0 +1,222 @@
+r"""Rolling-bearing law, compiled: forces and tangent stiffness by the ring's deflections and the cage angle.
+
+The law of a ball at the azimuth ψ is that of :mod:`rotors.rolling_bearings.element_contacts`, the law of a roller's
+slice that of :mod:`rotors.rolling_bearings.element_contacts`. Added is the slope of the energy over ψ, by which the
+rotating cage does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the
+ring's,
+
+    ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
+
+A gap of radius g around the shaft pushes with F ((r - g) / depth)^n against the radius r.
+
+Importing this module imports numba.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.time.kernel_arrays import BALLS, ROLLERS, Bearings
+from rotors.numerics.compiled import counted, inner, uncounted
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@inner()
+def _balls(
+    shape: FloatArray, count: int, angle: float, q: FloatArray, force: FloatArray, tangent: FloatArray
+) -> tuple[float, float]:
+    """Add the forces and tangent of a row of balls; returns its energy [J] and the slope of it over the cage angle."""
+    distance, start_r, start_z, before = shape[0], shape[1], shape[2], shape[3]
+    reach, place, stiffness = shape[4], shape[5], shape[6]
+    energy, slope = 0.0, 0.0
+    for ball in range(count):
+        azimuth = angle + 2.0 * math.pi * ball / count
+        c, s = math.cos(azimuth), math.sin(azimuth)
+        tilt, swing = q[4] * c - q[3] * s, -q[4] * s - q[3] * c
+        moved_r, moved_z = q[0] * c + q[1] * s + place * tilt, q[2] - reach * tilt
+        v_r, v_z = start_r + moved_r, start_z + moved_z
+        length = math.sqrt(v_r * v_r + v_z * v_z)
+        # |v|² - A² by its terms: |v| - A itself would lose the digits that A has and the approach has not.
+        excess = before + 2.0 * (moved_r * start_r + moved_z * start_z) + moved_r * moved_r + moved_z * moved_z
+        deep = excess / (length + distance)
+        if deep <= 0.0:
+            continue
+        n_r, n_z = v_r / length, v_z / length
+        root = stiffness * math.sqrt(deep)
+        load, steep = root * deep, 1.5 * root
+        flat = load / length
+        k_rr, k_rz = steep * n_r * n_r + flat * n_z * n_z, (steep - flat) * n_r * n_z
+        k_zz = steep * n_z * n_z + flat * n_r * n_r
+        f_r, f_z = load * n_r, load * n_z
+        across, along = (c, s, 0.0, -place * s, place * c), (0.0, 0.0, 1.0, reach * s, -reach * c)
+        for i in range(5):
+            force[i] += f_r * across[i] + f_z * along[i]
+            by_r, by_z = k_rr * across[i] + k_rz * along[i], k_rz * across[i] + k_zz * along[i]
+            for j in range(5):
+                tangent[i, j] += by_r * across[j] + by_z * along[j]
+        energy += 0.4 * load * deep
+        slope += f_r * (q[1] * c - q[0] * s + place * swing) - f_z * reach * swing
+    return energy, slope
+
+
+@inner()
+def _rollers(
+    shape: FloatArray,
+    slices: FloatArray,
+    count: int,
+    angle: float,
+    q: FloatArray,
+    force: FloatArray,
+    tangent: FloatArray,
+) -> tuple[float, float]:
+    """Add the forces and tangent of a row of rollers in slices (n, 2): position along the axis, gap of the profile."""
+    clearance, stiffness, number = shape[0], shape[1], int(shape[2])
+    energy, slope = 0.0, 0.0
+    for roller in range(count):
+        azimuth = angle + 2.0 * math.pi * roller / count
+        c, s = math.cos(azimuth), math.sin(azimuth)
+        level, tilt = q[0] * c + q[1] * s - clearance, q[4] * c - q[3] * s
+        level_slope, tilt_slope = q[1] * c - q[0] * s, -q[4] * s - q[3] * c
+        load, moment, k, k_place, k_square = 0.0, 0.0, 0.0, 0.0, 0.0
+        for one in range(number):
+            place = slices[one, 0]
+            deep = level + place * tilt - slices[one, 1]
+            if deep <= 0.0:
+                continue
+            root = stiffness * deep ** (1.0 / 9.0)
+            push, steep = root * deep, (10.0 / 9.0) * root
+            load += push
+            moment += push * place
+            k += steep
+            k_place += steep * place
+            k_square += steep * place * place
+            energy += (9.0 / 19.0) * push * deep
+        if k == 0.0:
+            continue
+        slope += load * level_slope + moment * tilt_slope
+        # A roller feels its approach in the middle and its tilt: rows (c, s) of x, y and (-s, c) of the rotations.
+        force[0] += load * c
+        force[1] += load * s
+        force[3] -= moment * s
+        force[4] += moment * c
+        for i in range(2):
+            middle_i, tilt_i = (c if i == 0 else s), (-s if i == 0 else c)
+            for j in range(2):
+                middle_j, tilt_j = (c if j == 0 else s), (-s if j == 0 else c)
+                tangent[i, j] += k * middle_i * middle_j
+                tangent[i, 3 + j] += k_place * middle_i * tilt_j
+                tangent[3 + i, j] += k_place * tilt_i * middle_j
+                tangent[3 + i, 3 + j] += k_square * tilt_i * tilt_j
+    return energy, slope
+
+
+@inner()
+def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArray) -> float:
+    """Add the force and tangent of a closed gap; returns its energy [J]."""
+    unit, depth, exponent, gap = shape[0], shape[1], shape[2], shape[3]
+    radius = math.sqrt(q[0] * q[0] + q[1] * q[1])
+    deep = radius - gap
+    if deep <= 0.0:
+        if gap == 0.0 and exponent == 1.0:
+            tangent[0, 0] += unit / depth
+            tangent[1, 1] += unit / depth
+        return 0.0
+    push = unit * (deep / depth) ** exponent
+    steep, flat = exponent * push / deep, push / radius
+    n_x, n_y = q[0] / radius, q[1] / radius
+    force[0] += push * n_x
+    force[1] += push * n_y
+    tangent[0, 0] += steep * n_x * n_x + flat * n_y * n_y
+    tangent[0, 1] += (steep - flat) * n_x * n_y
+    tangent[1, 0] += (steep - flat) * n_x * n_y
+    tangent[1, 1] += steep * n_y * n_y + flat * n_x * n_x
+    return float(push * deep / (exponent + 1.0))
+
+
+@uncounted()
+def bearing_force(
+    bearings: Bearings, number: int, turned: float, q: FloatArray, force: FloatArray, tangent: FloatArray
+) -> tuple[float, float]:
+    """Force (5,) of the shaft on a bearing displaced by q (5,), and its tangent (5, 5); both are overwritten.
+
+    Returns
+    -------
+    energy : float
+        [J].
+    slope : float
+        Its derivative by the turned time [J/s]: the power of the rotating cage at nominal speed.
+    """
+    for i in range(5):
+        force[i] = 0.0
+        for j in range(5):
+            tangent[i, j] = 0.0
+    energy, slope = 0.0, 0.0
+    for row in range(bearings.first_row[number], bearings.first_row[number + 1]):
+        kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
+        angle = bearings.cage[row, 0] + bearings.cage[row, 1] * turned
+        if kind == BALLS:
+            added, turning = _balls(shape, count, angle, q, force, tangent)
+        elif kind == ROLLERS:
+            added, turning = _rollers(shape, bearings.slices[row], count, angle, q, force, tangent)
+        else:
+            added, turning = _gap(shape, q, force, tangent), 0.0
+        energy += added
+        slope += turning * bearings.cage[row, 1]
+    preload = bearings.preload[number]
+    force[2] -= preload
+    return energy - preload * q[2], slope
+
+
+@uncounted()
+def evaluate_bearings(
+    bearings: Bearings,
+    offset: int,
+    turned: float,
+    delta: FloatArray,
+    force: FloatArray,
+    tangents: FloatArray,
+    held: FloatArray,
+) -> None:
+    """Nonlinear part f - K δ of every bearing's force at the deflections ``delta[offset:]``, and its tangent.
+
+    Fills in the forces, the leading d by d of the tangents (b, 5, 5), and ``held`` (8, 5): in row 0 energy [J] and its
+    slope [J/s]; the other rows are scratch for one bearing.
+    """
+    held[0, 0], held[0, 1] = 0.0, 0.0
+    q, push, tangent = held[1], held[2], held[3:]
+    for number in range(bearings.preload.size):
+        first, end = bearings.first[number], bearings.first[number + 1]
+        for i in range(5):
+            q[i] = bearings.fixed[number, i]
+        for k in range(first, end):
+            q[bearings.axis[k]] = delta[offset + k]
+        energy, slope = bearing_force(bearings, number, turned, q, push, tangent)
+        for k in range(first, end):
+            linear = 0.0
+            for j in range(first, end):
+                stiffness = bearings.linear[number, k - first, j - first]
+                linear += stiffness * delta[offset + j]
+                tangents[number, k - first, j - first] = tangent[bearings.axis[k], bearings.axis[j]] - stiffness
+            force[offset + k] = push[bearings.axis[k]] - linear
+            energy -= 0.5 * delta[offset + k] * linear
+        held[0, 0] += energy
+        held[0, 1] += slope
+
+
+@counted()
+def bearing_history(bearings: Bearings, number: int, turned: FloatArray, deflection: FloatArray) -> FloatArray:
+    """Force of the shaft on one bearing over time, shape (s, d), from its deflections (s, d)."""
+    first, end = bearings.first[number], bearings.first[number + 1]
+    q, push, tangent = np.zeros(5), np.zeros(5), np.zeros((5, 5))
+    history = np.empty((turned.size, end - first))
+    for i in range(5):
+        q[i] = bearings.fixed[number, i]
+    for sample in range(turned.size):
+        for k in range(first, end):
+            q[bearings.axis[k]] = deflection[sample, k - first]
+        bearing_force(bearings, number, turned[sample], q, push, tangent)
+        for k in range(first, end):
+            history[sample, k - first] = push[bearings.axis[k]]
+    return history

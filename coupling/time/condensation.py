@@ -1,0 +1,145 @@
+"""Static condensation (Guyan) of residual coordinates that are too stiff for a time integration.
+
+The stiffness of a residual coordinate of the housing matters, its frequency does not. Where this frequency lies within
+those of the other coordinates it is integrated like them, and its inertia improves the response below. Where it lies
+above, no step should be refined for it: it is in equilibrium at all times,
+
+    K_rr q_r + K_rk q_k = 0,        q = T q_k,        T = [I; -K_rr⁻¹ K_rk],
+
+which takes K, C, the contacts' directions and the loads to Tᵀ K T and so on (Guyan's condensation of the stiffness;
+MacNeal's residual flexibility without its mass), and keeps the static compliance exact. The error by dampers that act
+on q_r is w C/K of its bearing at a circular frequency w, and the square of that in the retained coordinates.
+
+Low-rank matrices: the common subspace in which several square matrices act.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.machine.components import Component
+from coupling.machine.connectors import ContactConnector, LinearConnector
+from coupling.machine.coupled_system import CoupledSystem
+
+FloatArray = npt.NDArray[np.float64]
+
+_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
+
+
+def common_span(matrices: list[FloatArray]) -> tuple[FloatArray, list[FloatArray]]:
+    """Orthonormal directions U in which all the matrices act, M = U (Uᵀ M U) Uᵀ, and their cores Uᵀ M U.
+
+    Returns
+    -------
+    directions : ndarray, shape (n, r)
+    cores : list of ndarray, shape (r, r)
+    """
+    scaled = [matrix / scale for matrix in matrices if (scale := float(np.abs(matrix).max(initial=0.0))) > 0.0]
+    n = len(matrices[0])
+    if not scaled:
+        return np.zeros((n, 0)), [np.zeros((0, 0)) for _ in matrices]
+    # Coordinates without any entry have no part in the decomposition.
+    touched = np.any([np.any(matrix, axis=0) | np.any(matrix, axis=1) for matrix in scaled], axis=0)
+    among = np.ix_(touched, touched)
+    left, sizes, _ = np.linalg.svd(np.hstack([part for m in scaled for part in (m[among], m[among].T)]))
+    count = int(np.count_nonzero(sizes > _ROUNDING * sizes[0]))
+    directions = np.zeros((n, count))
+    directions[touched] = left[:, :count]
+    return directions, [directions.T @ matrix @ directions for matrix in matrices]
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A condensed system, and the recovery of all coordinates.
+
+    Attributes
+    ----------
+    system : CoupledSystem
+        Of the m retained coordinates, in their order, with one connector in place of all linear ones.
+    kept : ndarray of int, shape (m,)
+        Their numbers among the n coordinates.
+    recovery : ndarray, shape (n, m)
+        T: all coordinates from the retained ones.
+    """
+
+    system: CoupledSystem
+    kept: npt.NDArray[np.int64]
+    recovery: FloatArray
+
+
+def condensed(system: CoupledSystem) -> Condensed:
+    """Condense the residual coordinates that are stiffer than all others; a system without any is returned as it is.
+
+    So is a system whose connectors change with the speed: the condensation would have to change with them.
+    """
+    stiff = _stiff(system)
+    if not stiff.any() or len(system.connector_rates) > 1:
+        return Condensed(system, np.arange(system.size), np.eye(system.size))
+    kept = ~stiff
+    held, left = np.flatnonzero(stiff), np.flatnonzero(kept)
+    stiffness, damping = system.stiffness, system.damping
+    follow = -np.linalg.solve(stiffness[np.ix_(held, held)], stiffness[np.ix_(held, left)])
+    recovery = np.zeros((system.size, len(left)))
+    recovery[left], recovery[held] = np.eye(len(left)), follow
+    # Retained coordinates gain connectors between them that act in few directions.
+    crossing = damping[np.ix_(left, held)] @ follow
+    tied = [part[np.ix_(left, left)] for part in system.connector_matrices()]
+    tied[0] = tied[0] + stiffness[np.ix_(left, held)] @ follow
+    tied[1] = (
+        tied[1] + crossing + follow.T @ damping[np.ix_(held, left)] + follow.T @ damping[np.ix_(held, held)] @ follow
+    )
+    directions, (connector_stiffness, connector_damping) = common_span(tied)
+    less = CoupledSystem(
+        components=tuple(_part(component, among) for component, among in _members(system, kept)),
+        speeds=system.speeds,
+        linear=(LinearConnector("ties", directions, connector_stiffness, connector_damping),),
+        contacts=tuple(_reduced(contact, recovery) for contact in system.contacts),
+        load=system.load @ recovery,
+        harmonic_loads=tuple(replace(one, amplitude=one.amplitude @ recovery) for one in system.harmonic_loads),
+        timed_loads=tuple(replace(one, direction=one.direction @ recovery) for one in system.timed_loads),
+        acceleration_load=system.acceleration_load @ recovery,
+        nonlinear=tuple(replace(one, directions=recovery.T @ one.directions) for one in system.nonlinear),
+    )
+    return Condensed(less, left, recovery)
+
+
+def _members(system: CoupledSystem, kept: npt.NDArray[np.bool_]) -> Iterator[tuple[Component, npt.NDArray[np.int64]]]:
+    """Each component, with the numbers of its retained coordinates."""
+    start = 0
+    for component in system.components:
+        yield component, np.flatnonzero(kept[start : start + component.size])
+        start += component.size
+
+
+def _reduced(contact: ContactConnector, recovery: FloatArray) -> ContactConnector:
+    sliding = contact.sliding
+    if sliding is not None:
+        sliding = replace(sliding, directions=recovery.T @ sliding.directions)
+    return replace(contact, direction=contact.direction @ recovery, sliding=sliding)
+
+
+def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
+    """A component reduced to some of its coordinates."""
+    square = np.ix_(among, among)
+    return Component(
+        component.name,
+        tuple(component.kinds[i] for i in among),
+        component.stiffness[square],
+        component.damping[square],
+        component.gyroscopic[square],
+    )
+
+
+def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
+    """Mask of residual coordinates beyond the highest frequency of the others on which no load or law acts."""
+    loaded = system.load != 0.0
+    loaded |= system.acceleration_load != 0.0
+    for load in [*(one.amplitude for one in system.harmonic_loads), *(one.direction for one in system.timed_loads)]:
+        loaded = loaded | (load != 0.0)
+    sliding = [contact.sliding.directions for contact in system.contacts if contact.sliding is not None]
+    for directions in (system.contact_directions, *sliding, *(one.directions for one in system.nonlinear)):
+        loaded = loaded | np.any(directions != 0.0, axis=1)
+    beyond = np.diag(system.stiffness) > system.highest_frequency**2
+    return np.asarray(~system.resolved & beyond & ~loaded)

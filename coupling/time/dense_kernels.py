@@ -1,0 +1,86 @@
+"""Small dense linear systems, compiled: Gaussian elimination with row exchanges.
+
+Importing this module imports numba.
+
+Products with a few rows of a matrix, compiled: most of the arithmetic of a time step.
+
+Importing this module imports numba. The functions are inlined, as passing their arrays would cost as much again.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.numerics.compiled import inner
+
+FloatArray = npt.NDArray[np.float64]
+
+# Sums may be taken in any order, so that they vectorise; the compiled order is always the same.
+SUMS = {"reassoc", "contract", "nsz"}
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
+    """Rows x, for a few rows (k, n)."""
+    for j in range(rows.shape[0]):
+        value = 0.0
+        for i in range(rows.shape[1]):
+            value += rows[j, i] * x[i]
+        out[j] = value
+
+
+@inner(fastmath={"contract"}, forceinline=True)
+def add_rows(rows: FloatArray, factors: FloatArray, sign: float, out: FloatArray) -> None:
+    """Add as many rows as there are factors, each times its factor and the sign.
+
+    Four at a time, so that what is added to is fetched and stored four times less; each by a name of its own, for
+    through two indices the compiler does not see that it may take several numbers at once.
+    """
+    count = factors.size
+    fours = count - count % 4
+    for j in range(0, fours, 4):
+        a, b, c, d = sign * factors[j], sign * factors[j + 1], sign * factors[j + 2], sign * factors[j + 3]
+        by_a, by_b, by_c, by_d = rows[j], rows[j + 1], rows[j + 2], rows[j + 3]
+        for i in range(out.size):
+            out[i] += (by_a[i] * a + by_b[i] * b) + (by_c[i] * c + by_d[i] * d)
+    for j in range(fours, count):
+        a, by_a = sign * factors[j], rows[j]
+        for i in range(out.size):
+            out[i] += by_a[i] * a
+
+
+@inner()
+def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
+    """Gaussian elimination with row exchanges; the columns of ``right`` (n, k) become the solutions."""
+    solve_part_in_place(matrix, right, right.shape[0], right.shape[1])
+
+
+@inner()
+def solve_part_in_place(matrix: FloatArray, right: FloatArray, n: int, columns: int) -> None:
+    """The same for the first n rows and columns of a matrix and the first columns of ``right``."""
+    for column in range(n):
+        pivot = column
+        for row in range(column + 1, n):
+            if abs(matrix[row, column]) > abs(matrix[pivot, column]):
+                pivot = row
+        if pivot != column:
+            for j in range(n):
+                matrix[column, j], matrix[pivot, j] = matrix[pivot, j], matrix[column, j]
+            for j in range(columns):
+                right[column, j], right[pivot, j] = right[pivot, j], right[column, j]
+        for row in range(column + 1, n):
+            factor = matrix[row, column] / matrix[column, column]
+            if factor == 0.0:
+                continue
+            for j in range(column, n):
+                matrix[row, j] -= factor * matrix[column, j]
+            for j in range(columns):
+                right[row, j] -= factor * right[column, j]
+    for row in range(n - 1, -1, -1):
+        for other in range(row + 1, n):
+            factor = matrix[row, other]
+            if factor == 0.0:
+                continue
+            for j in range(columns):
+                right[row, j] -= factor * right[other, j]
+        for j in range(columns):
+            right[row, j] /= matrix[row, row]

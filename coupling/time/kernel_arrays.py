@@ -1,0 +1,237 @@
+"""Plain arrays of the coupled system for the time-stepping kernels, by name.
+
+n coordinates, c contacts, r connector directions, h harmonic loads; :mod:`coupling.time.step_matrices` fills them from
+a coupled system. Nonlinear laws act along k directions: those of the contacts, then those of b nonlinear bearings, e
+in all, then two for each contact with friction.
+
+Rolling-bearing and gap laws as plain arrays for the compiled kernels.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.machine.connectors import BearingLaw, GapLaw, NonlinearConnector, RollingLaw
+from rotors.rolling_bearings import BallRow
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+BY_TIME, BY_TURNING, BY_UNBALANCE = 0, 1, 2
+BALLS, ROLLERS, GAP = 0, 1, 2
+
+
+class Dynamics(NamedTuple):
+    """The linear system: diagonal but for the gyroscopic blocks and the few directions of its connectors."""
+
+    stiffness: FloatArray  # (n,) diagonal of the components' K
+    damping: FloatArray  # (n,) and of their C
+    block_start: IntArray  # (g,) first coordinate of each gyroscopic block
+    block_size: IntArray  # (g,)
+    gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded
+    connectors: FloatArray  # (r, n) Uᵀ, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
+    connector_rates: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
+    connector_stiffness: FloatArray  # (t, r, r) K_t
+    connector_damping: FloatArray  # (t, r, r) C_t
+    has_skew: bool  # whether K_t is not symmetric
+    constant: FloatArray  # (n,) F
+    acceleration_load: FloatArray  # (n,) load of an angular acceleration s'' of one
+    frequency: FloatArray  # (h,) w [rad/s]
+    follows: IntArray  # (h,) whether the load follows time, rotation or speed: BY_TIME ...
+    cosine: FloatArray  # (h, n) Re F_w
+    sine: FloatArray  # (h, n) Im F_w
+    timed_times: FloatArray  # (k, l) [s], padded
+    timed_values: FloatArray  # (k, l)
+    timed_sizes: IntArray  # (k,)
+    timed_rows: FloatArray  # (k, n)
+    resolved: FloatArray  # (n,) 1 for coordinates that the error measure looks at, else 0
+    beta: float
+    gamma: float
+
+
+class StepMatrices(NamedTuple):
+    """Matrices of Newmark's step for each of m step sizes."""
+
+    size: FloatArray  # (m,) h [s]
+    base: FloatArray  # (m, n) inverse of the diagonal of S
+    blocks: FloatArray  # (m, g, b, b) inverses of its gyroscopic blocks, transposed
+    connector_stiffness: FloatArray  # (m, r, r) K_t
+    connector_damping: FloatArray  # (m, r, r) C_t
+    connectors: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without connectors
+    between: FloatArray  # (m, r, r) Uᵀ B U
+    link: FloatArray  # (m, r, r) (I + E Uᵀ B U)⁻¹ E, E = γ h C_t + β h² K_t
+    contact: FloatArray  # (m, k, n) Wᵀ = (S⁻¹ D)ᵀ
+    contact_connectors: FloatArray  # (m, k, r) (Uᵀ W)ᵀ
+    flexibility: FloatArray  # (m, k, k) Dᵀ W
+
+
+class Contacts(NamedTuple):
+    """The tooth contacts, padded to common lengths."""
+
+    direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included
+    law: FloatArray  # numbers of all laws, one after another: `coupling.gears.contact.lookup_tables`
+    law_at: IntArray  # (c,) offset of the law of each contact
+    shares_at: IntArray  # (c,) the same of its friction law; -1 where its lines of contact slide as one
+    phase: FloatArray  # (c,)
+    rate: FloatArray  # (c,)
+    errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
+    clearance: FloatArray  # (c,)
+    friction_row: IntArray  # (c,) first of the two directions along which friction acts; -1: none
+    friction: FloatArray  # (c, 3) coefficient with the sense of sliding; pitch point and end of the path
+    sliding: FloatArray  # (c, 2) W_a and W_b: sliding by the nominal rotation
+
+
+class Bearings(NamedTuple):
+    """Nonlinear bearings, their rows of rolling elements one after another (w)."""
+
+    axis: IntArray  # (e,) axis of each direction: x, y, z and the rotations about x and y
+    first: IntArray  # (b + 1,) first direction of each
+    linear: FloatArray  # (b, 5, 5) stiffness that the connectors hold already, its leading part
+    fixed: FloatArray  # (b, 5) displacement along axes that are no directions
+    preload: FloatArray  # (b,) of a spring along z [N]
+    first_row: IntArray  # (b + 1,)
+    kind: IntArray  # (w,) BALLS, ROLLERS or GAP
+    elements: IntArray  # (w,) number of rolling elements
+    shape: FloatArray  # (w, 7) geometry and stiffness, by the kind
+    cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the turned time
+    slices: FloatArray  # (w, slices, 2) of rollers: place and gap
+
+
+class Segments(NamedTuple):
+    """Stretches of time between events, each cut into equal steps."""
+
+    start: FloatArray  # (s,)
+    end: FloatArray  # (s,)
+    steps: IntArray  # (s,)
+    kind: IntArray  # (s,) slot of the step matrices
+    turned: FloatArray  # (s, 3) s, s' and s'' at the start
+
+
+class Scratch(NamedTuple):
+    """Scratch arrays, w the gyroscopic blocks' width and e + c the number of deflections; zeros at the start."""
+
+    a: FloatArray  # (n,) accelerations at the step's start ...
+    before: FloatArray  # (n,) ... and at that of the step before
+    free: FloatArray  # (n,) at its end, at last with the forces of the laws
+    q0: FloatArray  # (n,) q*
+    v0: FloatArray  # (n,) v*
+    load: FloatArray  # (n,)
+    pushed: FloatArray  # (n,) loads less the resistance to q* and v*
+    x: FloatArray  # (n,) of a sample
+    y: FloatArray  # (n,)
+    tq: FloatArray  # (r,) projections Uᵀ of q, v, a, q* and v* ...
+    tv: FloatArray  # (r,)
+    ta: FloatArray  # (r,)
+    tq0: FloatArray  # (r,)
+    tv0: FloatArray  # (r,)
+    seen: FloatArray  # (r,) ... and of the accelerations at the step's end
+    connector_force: FloatArray  # (r,)
+    response: FloatArray  # (r,)
+    linked: FloatArray  # (r,)
+    dq: FloatArray  # (k,) projections Dᵀ of q, v, a, q* and v*
+    dv: FloatArray  # (k,)
+    da: FloatArray  # (k,)
+    dq0: FloatArray  # (k,)
+    dv0: FloatArray  # (k,)
+    push: FloatArray  # (k,) forces of the laws
+    delta: FloatArray  # (e + c,) deflections and their rates, and without the laws' forces
+    rate: FloatArray  # (e + c,)
+    delta_free: FloatArray  # (e + c,)
+    rate_free: FloatArray  # (e + c,)
+    slip: FloatArray  # (e + c,) rates of the runout errors
+    force_before: FloatArray  # (e + c,)
+    laws: FloatArray  # (c, 6)
+    spare: FloatArray  # (c, 6)
+    drag: FloatArray  # (c, 4) slopes of friction
+    jacobian: FloatArray  # (e + c, e + c)
+    residual: FloatArray  # (e + c, 1)
+    tangents: FloatArray  # (b, 5, 5) of bearings
+    held: FloatArray  # (8, 5): `coupling.time.bearing_kernels.evaluate_bearings`
+    powers: FloatArray  # (5,): `coupling.time.newmark.evaluate_powers`
+    powers_before: FloatArray  # (5,)
+    block: FloatArray  # (w,)
+
+
+class Outputs(NamedTuple):
+    """Rows that are written at each sample."""
+
+    displacement: FloatArray  # (k0, n)
+    velocity: FloatArray  # (k1, n)
+    acceleration: FloatArray  # (k2, n)
+
+
+class Samples(NamedTuple):
+    """Arrays of the samples: sample i is of the time first + i * interval, in row i - offset."""
+
+    first: float
+    interval: float
+    offset: int
+    displacement: FloatArray  # (samples, k0)
+    velocity: FloatArray  # (samples, k1)
+    acceleration: FloatArray  # (samples, k2)
+    compression: FloatArray  # (samples, c)
+    force: FloatArray  # (samples, c)
+
+
+_SHAPE = 7
+Row = tuple[int, int, tuple[float, ...], tuple[float, float], FloatArray]
+
+
+def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
+    """Arrays of the laws of some bearings, see :class:`coupling.time.kernel_arrays.Bearings`."""
+    b = len(connectors)
+    linear, fixed, preload = np.zeros((b, 5, 5)), np.zeros((b, 5)), np.zeros(b)
+    rows: list[Row] = []
+    first, first_row = [0], [0]
+    for number, connector in enumerate(connectors):
+        d = len(connector.axes)
+        linear[number, :d, :d] = connector.stiffness
+        fixed[number] = connector.law.reference
+        if isinstance(connector.law, RollingLaw):
+            preload[number] = connector.law.state.bearing.axial_preload
+        rows += _rows(connector.law, connector.speed)
+        first.append(first[-1] + d)
+        first_row.append(len(rows))
+    shape, slices = (
+        np.zeros((len(rows), _SHAPE)),
+        np.zeros((len(rows), max((len(row[4]) for row in rows), default=0), 2)),
+    )
+    for at, row in enumerate(rows):
+        shape[at, : len(row[2])] = row[2]
+        slices[at, : len(row[4])] = row[4]
+    return Bearings(
+        axis=np.array([axis for connector in connectors for axis in connector.axes], dtype=np.int64),
+        first=np.array(first, dtype=np.int64),
+        linear=linear,
+        fixed=fixed,
+        preload=preload,
+        first_row=np.array(first_row, dtype=np.int64),
+        kind=np.array([row[0] for row in rows], dtype=np.int64),
+        elements=np.array([row[1] for row in rows], dtype=np.int64),
+        shape=shape,
+        cage=np.array([row[3] for row in rows], dtype=np.float64).reshape(-1, 2),
+        slices=slices,
+    )
+
+
+def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
+    """Kind, count, numbers, cage and slices of every row of a law."""
+    none = np.zeros((0, 2))
+    if isinstance(law, GapLaw):
+        yield GAP, 0, (law.force, law.depth, law.exponent, law.gap), (0.0, 0.0), none
+        return
+    for row in law.state.bearing.rows:
+        cage = law.cage_angle, row.cage_speed(speed)
+        if isinstance(row, BallRow):
+            yield BALLS, row.count, _ball_shape(row), cage, none
+        else:
+            place = row.position + row.slice_places
+            shape = 0.5 * row.clearance, row.stiffness / row.slices, float(row.slices)
+            yield ROLLERS, row.count, shape, cage, np.column_stack([place, 2.0 * row.slice_drops])
+
+
+def _ball_shape(row: BallRow) -> tuple[float, ...]:
+    """A, v₀, |v₀|² − A², the inner centres' radius and place, and K; see `rotors.rolling_bearings.element_contacts`."""
+    return row.groove_distance, *row.groove_offset, row.groove_excess, *row.inner_groove_centre, row.stiffness

@@ -1,0 +1,552 @@
+r"""Newmark-β time step in modal coordinates with tooth contacts, compiled.
+
+Importing this module imports numba.
+
+One step of size h from (q, v, a), with the mass the identity and the contacts' directions D:
+
+    q* = q + h v + (1/2 - β) h² a,            v* = v + (1 - γ) h a,
+    S a₁ = F(t₁) - K q* - (C + s' G) v* - s'' G q* - D f,
+    q₁ = q* + β h² a₁,                        v₁ = v* + γ h a₁,
+
+S as in :mod:`coupling.time.step_kernels`, where K and C are diagonal but for the connectors' directions U. With W =
+S⁻¹ D and H = Dᵀ W only the few forces f of teeth and nonlinear bearings remain unknown: their deflections
+
+    δ = δ* - β h² H f(δ, δ'),    δ' = δ'* - γ h H f(δ, δ'),
+
+δ* and δ'* being those without them, are found by Newton's method on a system as small as their number. Friction acts
+along directions of its own, columns of D whose deflections no law needs. The projections Uᵀq and Dᵀq follow the same
+recurrence as q. s is the turned time of :class:`coupling.SpeedProfile`, α = s'' the angular acceleration. With β =
+1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear system.
+
+Loads at a time, compiled; s is the turned time, s' the speed and α = s'' the angular acceleration.
+
+Importing this module imports numba.
+
+Energy balance of a time step, compiled: powers of loads, losses and rotation, and stored energy.
+
+Importing this module imports numba.
+
+Samples within a step of Newmark's method, compiled: interpolation of the output rows.
+
+Importing this module imports numba.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.time.contact_kernels import (
+    DAMPING,
+    ENERGY,
+    FORCE,
+    PHASE_SLOPE,
+    evaluate_contact,
+    evaluate_forces,
+    flank_deviation,
+    solve_contact_forces,
+)
+from coupling.time.dense_kernels import SUMS, add_rows, project
+from coupling.time.kernel_arrays import (
+    BY_TIME,
+    BY_UNBALANCE,
+    Bearings,
+    Contacts,
+    Dynamics,
+    Outputs,
+    Samples,
+    Scratch,
+    Segments,
+    StepMatrices,
+)
+from coupling.time.step_kernels import add_gyroscopic, apply_base
+from rotors.numerics.compiled import inner, uncounted
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@inner(forceinline=True)
+def load_at(dynamics: Dynamics, time: float, turned: float, speed: float, alpha: float, out: FloatArray) -> None:
+    """All loads at a time."""
+    n = out.size
+    for i in range(n):
+        out[i] = dynamics.constant[i] + alpha * dynamics.acceleration_load[i]
+    for w in range(dynamics.frequency.size):
+        frequency, follows = dynamics.frequency[w], dynamics.follows[w]
+        angle = frequency * (time if follows == BY_TIME else turned)
+        cosine, sine = math.cos(angle), math.sin(angle)
+        if follows == BY_UNBALANCE:
+            # (s'² - i s''/w) e^{iws}: inertia force of an eccentric mass, by differentiating twice.
+            square, side = speed * speed, alpha / frequency
+            cosine, sine = square * cosine + side * sine, square * sine - side * cosine
+        for i in range(n):
+            out[i] += cosine * dynamics.cosine[w, i] - sine * dynamics.sine[w, i]
+    for m in range(dynamics.timed_sizes.size):
+        last = dynamics.timed_sizes[m] - 1
+        low, high = 0, last
+        while high - low > 1:
+            middle = (low + high) // 2
+            if dynamics.timed_times[m, middle] <= time:
+                low = middle
+            else:
+                high = middle
+        begin, end = dynamics.timed_times[m, low], dynamics.timed_times[m, high]
+        part = min(max((time - begin) / (end - begin), 0.0), 1.0) if end > begin else 0.0
+        value = dynamics.timed_values[m, low] + part * (dynamics.timed_values[m, high] - dynamics.timed_values[m, low])
+        for i in range(n):
+            out[i] += value * dynamics.timed_rows[m, i]
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def stored_in(dynamics: Dynamics, stiffness: FloatArray, scratch: Scratch) -> float:
+    """Energy in the teeth, in the nonlinear part of bearings, and in connectors that change with the speed [J].
+
+    ``stiffness`` (r, r) is K_t.
+    """
+    energy, tq = scratch.held[0, 0], scratch.tq
+    if dynamics.connector_rates.size > 1:
+        for i in range(tq.size):
+            for j in range(tq.size):
+                energy += 0.5 * tq[i] * stiffness[i, j] * tq[j]
+    for k in range(scratch.laws.shape[0]):
+        energy += scratch.laws[k, ENERGY]
+    return float(energy)
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def evaluate_powers(
+    dynamics: Dynamics,
+    contacts: Contacts,
+    stiffness: FloatArray,
+    damping: FloatArray,
+    speed: float,
+    v: FloatArray,
+    scratch: Scratch,
+) -> None:
+    """Powers of the loads, of the losses, of the rotation, and of friction from the nominal rotation [W].
+
+    The last entry is twice the kinetic energy [J]. With the teeth's energy U(p, δ), δ = dᵀq - e: the rotating teeth
+    give ∂U/∂p p' - f e', and the damping takes v C v + c δ'². Together with the loads they change the energy of motion,
+    springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and C_t.
+    """
+    tq, tv, laws = scratch.tq, scratch.tv, scratch.laws
+    given, lost, square = 0.0, 0.0, 0.0
+    for i in range(v.size):
+        given += scratch.load[i] * v[i]
+        lost += dynamics.damping[i] * v[i] * v[i]
+        square += v[i] * v[i]
+    for i in range(tv.size):
+        for j in range(tv.size):
+            lost += tv[i] * damping[i, j] * tv[j]
+    if dynamics.has_skew:
+        for i in range(tv.size):
+            for j in range(tv.size):
+                lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
+    turning = scratch.held[0, 1] * speed
+    for k in range(laws.shape[0]):
+        turning += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * scratch.slip[k]
+        lost += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
+    powers = scratch.powers
+    powers[0], powers[1], powers[2], powers[3], powers[4] = given, lost, turning, 0.0, square
+    if scratch.push.size > scratch.delta.size:
+        _add_friction(contacts, speed, scratch)
+
+
+@inner()
+def _add_friction(contacts: Contacts, speed: float, scratch: Scratch) -> None:
+    """Add the powers of friction: from the nominal rotation, and to the coordinates [W].
+
+    The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. The former,
+    Σ μ F_j |w_j| and never negative, comes from the drive of the machine. The latter is small, and excites the
+    coordinates as often as it brakes them.
+    """
+    push, dv, powers = scratch.push, scratch.dv, scratch.powers
+    for k in range(contacts.friction_row.size):
+        row = contacts.friction_row[k]
+        if row >= 0:
+            powers[2] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
+            powers[3] += (push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]) * speed
+
+
+@inner()
+def write_samples(
+    contacts: Contacts,
+    outputs: Outputs,
+    samples: Samples,
+    number: int,
+    t: float,
+    h: float,
+    turned0: float,
+    speed0: float,
+    alpha: float,
+    q: FloatArray,
+    v: FloatArray,
+    displaced: float,
+    moved: float,
+    scratch: Scratch,
+) -> int:
+    """Write the samples that fall into the step from t to t + h.
+
+    Displacement and velocity by cubic Hermite interpolation, acceleration linear: errors below the step's own.
+    """
+    q0, v0, a, a1, x, y = scratch.q0, scratch.v0, scratch.a, scratch.free, scratch.x, scratch.y
+    teeth, laws, work = contacts.direction[: contacts.phase.size], scratch.spare, scratch.delta_free
+    n = q.size
+    while number - samples.offset < samples.force.shape[0]:
+        time = samples.first + number * samples.interval
+        if time > t + h:
+            break
+        row = number - samples.offset
+        s = max((time - t) / h, 0.0)
+        old, slope_old = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2 * h
+        new, slope_new = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0) * h
+        for i in range(n):
+            q1, v1 = q0[i] + displaced * a1[i], v0[i] + moved * a1[i]
+            x[i] = old * q[i] + slope_old * v[i] + new * q1 + slope_new * v1
+            y[i] = old * v[i] + slope_old * a[i] + new * v1 + slope_new * a1[i]
+        project(outputs.displacement, x, samples.displacement[row])
+        project(outputs.velocity, y, samples.velocity[row])
+        if contacts.phase.size > 0:
+            after = s * h
+            speed = speed0 + alpha * after
+            turned = turned0 + after * (speed0 + 0.5 * alpha * after)
+            project(teeth, x, samples.compression[row])
+            project(teeth, y, work)
+            for k in range(contacts.phase.size):
+                gone, slip = flank_deviation(contacts.clearance, contacts.errors, k, turned, speed)
+                samples.compression[row, k] -= gone
+                evaluate_contact(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws, k)
+                samples.force[row, k] = laws[k, FORCE]
+        for i in range(n):
+            x[i] = (1.0 - s) * a[i] + s * a1[i]
+        project(outputs.acceleration, x, samples.acceleration[row])
+        number += 1
+    return number
+
+
+# Contacts are evaluated by this part of a segment inside its ends, so that a pair that enters or leaves exactly
+# there counts on one side only.
+INSIDE = 1e-7
+
+# Columns of the contacts' totals.
+IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
+
+
+@uncounted()
+def newmark_steps(
+    q: FloatArray,
+    v: FloatArray,
+    dynamics: Dynamics,
+    contacts: Contacts,
+    bearings: Bearings,
+    matrices: StepMatrices,
+    segments: Segments,
+    outputs: Outputs,
+    samples: Samples,
+    next_sample: int,
+    stored: float,
+    totals: FloatArray,
+    contact_totals: FloatArray,
+    scratch: Scratch,
+) -> tuple[int, float, float, float, int]:
+    """Newmark's method through some segments; q and v are replaced by those at the end.
+
+    Parameters
+    ----------
+    q, v : ndarray, shape (n,)
+        State, in and out.
+    next_sample : int
+        Number of the first sample not yet written.
+    stored : float
+        Energy just before the first segment in the teeth, in the nonlinear part of bearings, and in the connectors
+        where they change with the speed [J].
+    totals : ndarray, shape (5,)
+        Work of the loads, energy lost to damping, work of the rotation on contacts, bearings and connectors (added to),
+        the largest kinetic energy, and the energy that friction takes from the nominal rotation (added to) [J].
+    contact_totals : ndarray, shape (c, 4)
+        For each contact ∫ force dt [N s], time apart [s] (both added to), the largest force [N], and when the flanks
+        last touched [s].
+
+    Returns
+    -------
+    next_sample : int
+    stored : float
+        The same at the end [J].
+    curvature : float
+        Σ |a₁ - 2 a + a₋₁|² over the steps that have two before them, of the coordinates to be resolved.
+    acceleration : float
+        Σ |a₁|² over the same steps and coordinates.
+    unsettled : int
+        Steps whose contact forces did not converge in Newton's iteration.
+    """
+    curvature, acceleration, unsettled = 0.0, 0.0, 0
+    for segment in range(segments.start.size):
+        t0, t1, count = segments.start[segment], segments.end[segment], segments.steps[segment]
+        turned0, speed0, alpha = segments.turned[segment, 0], segments.turned[segment, 1], segments.turned[segment, 2]
+        slot, h, inside = segments.kind[segment], (t1 - t0) / count, INSIDE * (t1 - t0)
+        speed = speed0 + alpha * inside
+        turned = turned0 + inside * (speed0 + 0.5 * alpha * inside)
+        load_at(dynamics, t0, turned0, speed0, alpha, scratch.load)
+        fresh = _start_segment(
+            q, v, dynamics, contacts, bearings, matrices, slot, turned, speed, speed0 + 0.5 * alpha * (t1 - t0), alpha,
+            scratch,
+        )  # fmt: skip
+        totals[2] += fresh - stored
+        stored = fresh
+        for step in range(count):
+            t, after = t0 + step * h, (step + 1) * h
+            speed = speed0 + alpha * after
+            turned = turned0 + after * (speed0 + 0.5 * alpha * after)
+            load_at(dynamics, t0 + after, turned, speed, alpha, scratch.load)
+            _predict(q, v, dynamics, h, scratch)
+            _free_accelerations(dynamics, matrices, slot, h, alpha, scratch)
+            if step == count - 1:
+                # The last look at the teeth is just inside the segment.
+                speed = speed0 + alpha * (after - inside)
+                turned = turned0 + (after - inside) * (speed0 + 0.5 * alpha * (after - inside))
+            if not _contact_response(dynamics, contacts, bearings, matrices, slot, h, turned, speed, scratch):
+                unsettled += 1
+            if samples.first + next_sample * samples.interval <= t + h:
+                before = step * h
+                next_sample = write_samples(
+                    contacts, outputs, samples, next_sample, t, h, turned0 + before * (speed0 + 0.5 * alpha * before),
+                    speed0 + alpha * before, alpha, q, v, dynamics.beta * h * h, dynamics.gamma * h, scratch,
+                )  # fmt: skip
+            if step > 0:
+                curved, size = _curvature(dynamics.resolved, scratch.before, scratch.a, scratch.free)
+                curvature += curved
+                acceleration += size
+            _correct(q, v, dynamics, h, scratch)
+            if alpha != 0.0:
+                _add_drive_load(q, dynamics, alpha, scratch)
+            stored = _accumulate(v, dynamics, contacts, matrices, slot, t, h, speed, totals, contact_totals, scratch)
+    return next_sample, stored, curvature, acceleration, unsettled
+
+
+@inner(forceinline=True)
+def _start_segment(
+    q: FloatArray,
+    v: FloatArray,
+    dynamics: Dynamics,
+    contacts: Contacts,
+    bearings: Bearings,
+    matrices: StepMatrices,
+    slot: int,
+    turned: float,
+    speed: float,
+    middle_speed: float,
+    alpha: float,
+    scratch: Scratch,
+) -> float:
+    """Accelerations and powers just inside a segment with given loads; returns the energy in teeth and connectors.
+
+    The touching pairs change at the event: forces, powers and energy start anew from the new set of pairs.
+    """
+    a, dq, dv, delta, rate = scratch.a, scratch.dq, scratch.dv, scratch.delta, scratch.rate
+    c, push = contacts.phase.size, scratch.push
+    project(dynamics.connectors, q, scratch.tq)
+    project(dynamics.connectors, v, scratch.tv)
+    project(contacts.direction, q, dq)
+    project(contacts.direction, v, dv)
+    for k in range(c):
+        gone, scratch.slip[k] = flank_deviation(contacts.clearance, contacts.errors, k, turned, speed)
+        delta[k], rate[k] = dq[k] - gone, dv[k] - scratch.slip[k]
+    for k in range(c, delta.size):
+        delta[k] = dq[k]
+    evaluate_forces(contacts, bearings, turned, scratch)
+    for i in range(a.size):
+        a[i] = scratch.load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
+    blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
+    add_gyroscopic(blocks, first, size, -middle_speed, v, a, work)
+    if alpha != 0.0:
+        add_gyroscopic(blocks, first, size, -alpha, q, a, work)
+        _add_drive_load(q, dynamics, alpha, scratch)
+    _connector_forces(matrices, slot, scratch.tq, scratch.tv, scratch)
+    add_rows(dynamics.connectors, scratch.connector_force, -1.0, a)
+    add_rows(contacts.direction, push, -1.0, a)
+    project(dynamics.connectors, a, scratch.ta)
+    project(contacts.direction, a, scratch.da)
+    evaluate_powers(
+        dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
+    )
+    for k in range(scratch.powers.size):
+        scratch.powers_before[k] = scratch.powers[k]
+    for k in range(c):
+        scratch.force_before[k] = scratch.laws[k, FORCE]
+    return stored_in(dynamics, matrices.connector_stiffness[slot], scratch)
+
+
+@inner()
+def _add_drive_load(q: FloatArray, dynamics: Dynamics, alpha: float, scratch: Scratch) -> None:
+    """Load of the drive on a tilted shaft that it accelerates: it does work, and counts among the loads."""
+    first, size = dynamics.block_start, dynamics.block_size
+    add_gyroscopic(dynamics.gyroscopic, first, size, -alpha, q, scratch.load, scratch.block)
+
+
+@inner(forceinline=True)
+def _connector_forces(matrices: StepMatrices, slot: int, tq: FloatArray, tv: FloatArray, scratch: Scratch) -> None:
+    """Forces of the connectors at displacements and rates along them: K_t Uᵀq + C_t Uᵀv."""
+    project(matrices.connector_stiffness[slot], tq, scratch.connector_force)
+    project(matrices.connector_damping[slot], tv, scratch.response)
+    for j in range(tq.size):
+        scratch.connector_force[j] += scratch.response[j]
+
+
+@inner(forceinline=True)
+def _predict(q: FloatArray, v: FloatArray, dynamics: Dynamics, h: float, scratch: Scratch) -> None:
+    """Predictor q* and v*, and its projections on the directions of connectors and laws."""
+    old, new = (0.5 - dynamics.beta) * h * h, (1.0 - dynamics.gamma) * h
+    q0, v0, a = scratch.q0, scratch.v0, scratch.a
+    for i in range(q.size):
+        q0[i] = q[i] + h * v[i] + old * a[i]
+        v0[i] = v[i] + new * a[i]
+    for j in range(scratch.tq.size):
+        scratch.tq0[j] = scratch.tq[j] + h * scratch.tv[j] + old * scratch.ta[j]
+        scratch.tv0[j] = scratch.tv[j] + new * scratch.ta[j]
+    for k in range(scratch.dq.size):
+        scratch.dq0[k] = scratch.dq[k] + h * scratch.dv[k] + old * scratch.da[k]
+        scratch.dv0[k] = scratch.dv[k] + new * scratch.da[k]
+
+
+@inner(forceinline=True)
+def _free_accelerations(
+    dynamics: Dynamics, matrices: StepMatrices, slot: int, h: float, alpha: float, scratch: Scratch
+) -> None:
+    """Accelerations without the forces of the laws, into ``free``, and their projections on the connectors."""
+    displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
+    per_moved, ratio = 1.0 / moved, displaced / moved
+    q0, v0, pushed, free = scratch.q0, scratch.v0, scratch.pushed, scratch.free
+    for i in range(q0.size):
+        pushed[i] = scratch.load[i] - dynamics.stiffness[i] * q0[i] - dynamics.damping[i] * v0[i]
+    blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
+    if alpha != 0.0:
+        add_gyroscopic(blocks, first, size, -alpha, q0, pushed, work)
+        add_gyroscopic(blocks, first, size, ratio * alpha, v0, pushed, work)
+    # With D the diagonal of S₀ = D + (γ h s' + β h² s'') G, S₀ (a + v*/γh) = r + D v*/γh + β/γ h s'' G v* has
+    # no term s' G v*: most of the gyroscopic part comes without a product of its own.
+    for g in range(first.size):
+        among = slice(first[g], first[g] + size[g])
+        part, rates, stiffness, damping = pushed[among], v0[among], dynamics.stiffness[among], dynamics.damping[among]
+        for i in range(part.size):
+            part[i] += rates[i] * (per_moved + damping[i] + ratio * stiffness[i])
+    apply_base(matrices.base[slot], matrices.blocks[slot], first, size, pushed, free, work)
+    for g in range(first.size):
+        among = slice(first[g], first[g] + size[g])
+        part, rates = free[among], v0[among]
+        for i in range(part.size):
+            part[i] -= rates[i] * per_moved
+
+    # a = B (r - U y) - B U link (Uᵀ B (r - U y)), y the connectors' forces.
+    seen, connector_force, response = scratch.seen, scratch.connector_force, scratch.response
+    between = matrices.between[slot]
+    project(dynamics.connectors, free, seen)
+    _connector_forces(matrices, slot, scratch.tq0, scratch.tv0, scratch)
+    project(between, connector_force, response)
+    for j in range(seen.size):
+        response[j] = seen[j] - response[j]
+    project(matrices.link[slot], response, scratch.linked)
+    for j in range(seen.size):
+        connector_force[j] += scratch.linked[j]
+    add_rows(matrices.connectors[slot], connector_force, -1.0, free)
+    project(between, connector_force, response)
+    for j in range(seen.size):
+        seen[j] -= response[j]
+
+
+@inner(forceinline=True)
+def _contact_response(
+    dynamics: Dynamics,
+    contacts: Contacts,
+    bearings: Bearings,
+    matrices: StepMatrices,
+    slot: int,
+    h: float,
+    turned: float,
+    speed: float,
+    scratch: Scratch,
+) -> bool:
+    """Forces of the laws by Newton's iteration, and the accelerations with them; returns whether it converged."""
+    displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
+    free, da, push, delta, rate = scratch.free, scratch.da, scratch.push, scratch.delta_free, scratch.rate_free
+    if delta.size == 0:
+        return True
+    c, flexibility = contacts.phase.size, matrices.flexibility[slot]
+    project(contacts.direction, free, da)
+    for k in range(c):
+        gone, scratch.slip[k] = flank_deviation(contacts.clearance, contacts.errors, k, turned, speed)
+        delta[k] = scratch.dq0[k] + displaced * da[k] - gone
+        rate[k] = scratch.dv0[k] + moved * da[k] - scratch.slip[k]
+    for k in range(c, delta.size):
+        delta[k] = scratch.dq0[k] + displaced * da[k]
+    converged = solve_contact_forces(contacts, bearings, turned, flexibility, displaced, moved, scratch)
+    add_rows(matrices.contact[slot], push, -1.0, free)
+    add_rows(matrices.contact_connectors[slot], push, -1.0, scratch.seen)
+    for j in range(da.size):
+        for k in range(push.size):
+            da[j] -= flexibility[j, k] * push[k]
+    return converged
+
+
+@inner(fastmath=SUMS, forceinline=True)
+def _curvature(resolved: FloatArray, before: FloatArray, a: FloatArray, a1: FloatArray) -> tuple[float, float]:
+    """|a₁ - 2 a + a₋₁|² and |a₁|² of the coordinates to be resolved."""
+    curvature, acceleration = 0.0, 0.0
+    for i in range(a.size):
+        second = a1[i] - 2.0 * a[i] + before[i]
+        curvature += resolved[i] * second * second
+        acceleration += resolved[i] * a1[i] * a1[i]
+    return curvature, acceleration
+
+
+@inner(forceinline=True)
+def _correct(q: FloatArray, v: FloatArray, dynamics: Dynamics, h: float, scratch: Scratch) -> None:
+    """Corrector: the state at the step's end, and its projections on the directions of connectors and laws."""
+    displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
+    a, before, free, q0, v0 = scratch.a, scratch.before, scratch.free, scratch.q0, scratch.v0
+    for i in range(q.size):
+        before[i], a[i] = a[i], free[i]
+        q[i], v[i] = q0[i] + displaced * free[i], v0[i] + moved * free[i]
+    for j in range(scratch.ta.size):
+        value = scratch.seen[j]
+        scratch.ta[j] = value
+        scratch.tq[j], scratch.tv[j] = scratch.tq0[j] + displaced * value, scratch.tv0[j] + moved * value
+    for k in range(scratch.da.size):
+        value = scratch.da[k]
+        scratch.dq[k], scratch.dv[k] = scratch.dq0[k] + displaced * value, scratch.dv0[k] + moved * value
+
+
+@inner(forceinline=True)
+def _accumulate(
+    v: FloatArray,
+    dynamics: Dynamics,
+    contacts: Contacts,
+    matrices: StepMatrices,
+    slot: int,
+    t: float,
+    h: float,
+    speed: float,
+    totals: FloatArray,
+    contact_totals: FloatArray,
+    scratch: Scratch,
+) -> float:
+    """Add a step's work, losses and contact figures; returns the energy in teeth and connectors at its end."""
+    powers, powers_before = scratch.powers, scratch.powers_before
+    evaluate_powers(
+        dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
+    )
+    for k in range(3):
+        totals[k] += 0.5 * h * (powers_before[k] + powers[k])
+    totals[4] += 0.5 * h * (powers_before[3] + powers[3])
+    totals[3] = max(totals[3], 0.5 * powers[4])
+    for k in range(powers.size):
+        powers_before[k] = powers[k]
+    for k in range(contacts.phase.size):
+        force = scratch.laws[k, FORCE]
+        contact_totals[k, IMPULSE] += 0.5 * h * (scratch.force_before[k] + force)
+        if force == 0.0:
+            contact_totals[k, APART] += h
+        else:
+            contact_totals[k, LAST_TOUCH] = t + h
+        contact_totals[k, PEAK] = max(contact_totals[k, PEAK], force)
+        scratch.force_before[k] = force
+    return stored_in(dynamics, matrices.connector_stiffness[slot], scratch)

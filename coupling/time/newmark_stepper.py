@@ -1,0 +1,89 @@
+"""Newmark's method as a stepper: chunks of steps by the compiled kernel, and their local error.
+
+The local error of Newmark's method is that of its period: one oscillation of circular frequency w advances by
+(w h)²/12 too little for each radian. Its mean over the moving coordinates is measured by the second difference of the
+acceleration,
+
+    error = |a₁ - 2 a₀ + a₋₁| / (12 |a|).
+
+Residual coordinates of the housing have no part in this measure: they stand for static compliance, and their own
+frequencies are not meant to be followed. The stiffest of them are condensed, see :mod:`coupling.time.condensation`.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.time.integration import Attempt, Checkpoint, timed_amplitude
+from coupling.time.kernel_arrays import Samples, Segments
+from coupling.time.settings import TransientOutputs, TransientSettings
+from coupling.time.speed_profile import SpeedProfile
+from coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_room
+
+FloatArray = npt.NDArray[np.float64]
+
+_SEGMENTS_PER_CHUNK = 48  # stretches between two looks at the error
+
+
+class NewmarkStepper:
+    """Newmark's method; see :class:`coupling.time.integration.Stepper` and :mod:`coupling.time.newmark`."""
+
+    steps_in_one = 1
+    order = 2.0
+    too_fine = "steps below {step:.1e} s; raise the tolerance or keep fewer high modes"
+
+    def __init__(
+        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: SpeedProfile
+    ) -> None:
+        self.system, self._turning = system, turning
+        self.arrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
+        self.coarsen_below = settings.tolerance / 3.0
+        self._cache = StepCache(self.arrays, turning)
+        self._pushing = np.linalg.norm(system.load) + np.linalg.norm(timed_amplitude(system))
+        self._quiet = 0.0
+
+    def begin_block(self, state: Checkpoint, bounds: FloatArray, samples: Samples, *, compiles: bool) -> None:
+        """Prepare for a block."""
+        if compiles:
+            self._run(state, cut(self._cache, self._turning, bounds[:1], 1.0), samples)
+        # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
+        self._quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self._pushing)) ** 2
+
+    def chunk(self, bounds: FloatArray, step: float) -> int:
+        """Number of stretches between ``bounds`` to attempt at once."""
+        return min(_SEGMENTS_PER_CHUNK, len(bounds) - 1)
+
+    def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
+        """Step through the stretches between ``bounds``, at least two steps each."""
+        segments = cut(self._cache, self._turning, bounds, step)
+        self._after, curvature, acceleration = self._run(state, segments, samples)
+        steps, error = int(segments.steps.sum()), np.inf
+        if np.isfinite(curvature):
+            error = float(np.sqrt(curvature / (acceleration + self._quiet * steps + 1e-300))) / 12.0
+        smallest = float(((segments.end - segments.start) / segments.steps).min())
+        return Attempt(self._after.q, self._after.v, error, steps, smallest)
+
+    def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
+        """The state after the last attempt: the kernel has counted work and contacts and written the samples."""
+        return self._after
+
+    def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
+        """Last touches up to the start of the chunk that diverged."""
+        return state.contact_totals[:, 3], begin
+
+    def _run(self, state: Checkpoint, segments: Segments, samples: Samples) -> tuple[Checkpoint, float, float]:
+        """The kernel on copies of what it changes."""
+        from coupling.time.newmark import newmark_steps
+
+        q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
+        arrays = self.arrays
+        head = (
+            q, v, arrays.dynamics, arrays.contacts, arrays.bearings, self._cache.matrices, segments, arrays.outputs,
+        )  # fmt: skip
+        sample, stored, curvature, acceleration, unsettled = newmark_steps(
+            *head, samples, state.sample, state.stored, totals, contacts, scratch_room(arrays)
+        )
+        moved = replace(state, q=q, v=v, totals=totals, contact_totals=contacts, sample=sample, stored=stored)
+        return replace(moved, unsettled=state.unsettled + unsettled), curvature, acceleration

@@ -1,0 +1,102 @@
+"""Settings of a time integration, and its output rows."""
+
+from dataclasses import dataclass, fields
+from typing import Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+
+FloatArray = npt.NDArray[np.float64]
+Method = Literal["newmark", "exact", "auto"]
+
+
+@dataclass(frozen=True)
+class TransientSettings:
+    """Settings of a time integration.
+
+    Attributes
+    ----------
+    duration : float
+        [s], from static equilibrium at t = 0.
+    record_from : float
+        Samples and contact figures start here [s].
+    sample_interval : float
+        [s]; outputs are written at this even spacing whatever the steps.
+    largest_step : float
+        [s].
+    tolerance : float
+        Largest local error of a step, relative; see :mod:`coupling.time.integration`.
+    beta, gamma : float
+        Newmark's parameters; only with 1/4 and 1/2 the method neither gains nor loses energy.
+    method : "newmark", "exact" or "auto"
+        Newmark's method; exponential collocation of :mod:`coupling.time.exponential_collocation`, for constant speeds
+        and loads without tables over time; or the exact method where it applies, else Newmark's.
+    """
+
+    duration: float
+    record_from: float
+    sample_interval: float
+    largest_step: float
+    tolerance: float = 1e-4
+    beta: float = 0.25
+    gamma: float = 0.5
+    method: Method = "newmark"
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.record_from < self.duration < np.inf:
+            raise CouplingError(f"recording from {self.record_from} s of {self.duration} s; expected a part of it")
+        for what in ("sample_interval", "largest_step", "tolerance", "beta"):
+            value = getattr(self, what)
+            if not 0.0 < value < np.inf:
+                raise CouplingError(f"{what} of {value}; expected a positive number")
+        if self.method not in get_args(Method):
+            raise CouplingError(f"a method {self.method!r}; expected one of {', '.join(get_args(Method))}")
+
+    @property
+    def samples(self) -> int:
+        """Number of samples from ``record_from`` up to, not including, the end."""
+        return int(np.ceil((self.duration - self.record_from) / self.sample_interval - 1e-6))
+
+
+@dataclass(frozen=True, eq=False)
+class MotionRecord:
+    """Record of a transient or a periodic response at even spacing; s samples, c contacts.
+
+    Attributes
+    ----------
+    times : ndarray, shape (s,)
+        [s].
+    displacement, velocity, acceleration : ndarray, shapes (s, k)
+        The output rows, see :class:`TransientOutputs`.
+    compression : ndarray, shape (s, c)
+        δ of each contact [m].
+    force : ndarray, shape (s, c)
+        Of each contact [N].
+    """
+
+    times: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    compression: FloatArray
+    force: FloatArray
+
+
+RECORDED = tuple(field.name for field in fields(MotionRecord))
+
+
+@dataclass(frozen=True)
+class TransientOutputs:
+    """Output rows of a time integration: each a linear combination of the n coordinates.
+
+    Attributes
+    ----------
+    displacement, velocity, acceleration : ndarray, shapes (k, n)
+        Rows over the coordinates, their rates, and their accelerations.
+    """
+
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray

@@ -1,0 +1,177 @@
+"""Speed profile of a run-up: speed over time, and rotation angle as time at the nominal speeds.
+
+Mesh phases, runout, unbalance and gyroscopic terms are written for steady nominal speeds. A machine that runs up or
+down turns through the same angles at other times. Its *turned time* s(t) is the time in which the machine at nominal
+speeds would turn through the same angle, so that all functions of the angle are functions of s, and
+
+    s'  is the speed and  s''  the angular acceleration, as parts of the nominal speed.
+
+At steady nominal speed s = t. The speed is piecewise linear here, s piecewise quadratic: angles, and the times at
+which the teeth come into contact and leave it, are exact.
+
+Free speed of a machine: run-up of the rigid train under motor and load torque.
+
+The nominal rotation, about which the coordinates move, is that of the rigid train,
+
+    J dω/dt = T_motor(ω) - T_load(ω),
+
+J = Σ J_r (ω_r/ω)² at the first driver's rotor. Where a shaft is a little faster or slower than its nominal rotation,
+the torques change by their slope over speed: :class:`coupling.machine.loads.TorqueSlope`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError, TransientError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SpeedProfile:
+    """Speed over time, relative to the nominal one; linear between k times, and constant before and after them.
+
+    Attributes
+    ----------
+    times : ndarray, shape (k,)
+        [s], ascending.
+    rates : ndarray, shape (k,)
+        s', not negative: reversed rotation would load the other flanks.
+    """
+
+    times: FloatArray
+    rates: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.times.ndim != 1 or self.times.shape != self.rates.shape or not self.times.size:
+            raise CouplingError(
+                f"speeds of shape {self.rates.shape} at times of shape {self.times.shape}; expected as many"
+            )
+        if not (np.all(np.isfinite(self.times)) and np.all(np.isfinite(self.rates))):
+            raise CouplingError("a speed over time that is not finite")
+        if np.any(np.diff(self.times) <= 0.0):
+            raise CouplingError("the times of a speed over time do not ascend")
+        if np.any(self.rates < 0.0):
+            raise CouplingError("a speed over time changes its sign; expected one sense of rotation")
+
+    @staticmethod
+    def steady() -> "SpeedProfile":
+        """Constant nominal speeds."""
+        return SpeedProfile(np.zeros(1), np.ones(1))
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether the speeds are the nominal ones at all times."""
+        return bool(np.all(self.rates == 1.0))
+
+    @cached_property
+    def _pieces(self) -> FloatArray:
+        """Rows t, s, s' and s'' at the start of each piece; the first begins in the infinite past."""
+        gaps = np.diff(self.times)
+        slopes = np.concatenate([[0.0], np.diff(self.rates) / gaps, [0.0]])
+        turned = np.concatenate([[0.0], np.cumsum(0.5 * (self.rates[1:] + self.rates[:-1]) * gaps)])
+        begins = np.concatenate([self.times[:1], self.times])
+        pieces = np.column_stack(
+            [begins, np.concatenate([turned[:1], turned]), np.concatenate([self.rates[:1], self.rates]), slopes]
+        )
+        # s = 0 at t = 0.
+        pieces[:, 1] -= self._through(pieces, np.zeros(1))[0][0]
+        return np.asarray(pieces)
+
+    def _through(self, pieces: FloatArray, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        rows = pieces[np.searchsorted(self.times, times, side="right")]
+        after = times - rows[:, 0]
+        return rows[:, 1] + after * (rows[:, 2] + 0.5 * rows[:, 3] * after), rows[:, 2] + rows[:, 3] * after, rows[:, 3]
+
+    def at(self, times: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """s [s], s' and s'' [1/s] just after some times [s], shapes (m,)."""
+        return self._through(self._pieces, np.atleast_1d(np.asarray(times, dtype=np.float64)))
+
+    def times_of(self, turned: FloatArray) -> FloatArray:
+        """Times at which the turned time has given values [s], NaN where it never has, shape (m,)."""
+        pieces = self._pieces
+        rows = pieces[1:][np.maximum(np.searchsorted(pieces[1:, 1], turned, side="right") - 1, 0)]
+        rows = np.where((turned < pieces[1, 1])[:, None], pieces[0], rows)
+        far = turned - rows[:, 1]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            # The root of a quadratic in the form that loses no digits where the speed hardly changes.
+            root = np.sqrt(rows[:, 2] ** 2 + 2.0 * rows[:, 3] * far)
+            after = np.where(far == 0.0, 0.0, 2.0 * far / (rows[:, 2] + root))
+        return np.asarray(np.where(np.isfinite(after), rows[:, 0] + after, np.nan))
+
+
+_PIECES = 1024
+_RPM = 60.0 / (2.0 * np.pi)
+
+
+def free_speed(
+    motor: Callable[[float], float],
+    load: Callable[[float], float],
+    inertia: float,
+    *,
+    start: float,
+    duration: float,
+    nominal: float,
+) -> SpeedProfile:
+    """Speed of the rigid train over time, piecewise linear with pieces of equal duration.
+
+    Parameters
+    ----------
+    motor, load : callable
+        Torque [N m] by speed [rad/s], at the first driver's rotor.
+    inertia : float
+        Of the train, at the same rotor [kg m²].
+    start : float
+        Speed at t = 0 [rad/s], not negative.
+    duration : float
+        [s].
+    nominal : float
+        Nominal speed, to which the result is relative [rad/s], positive.
+
+    Raises
+    ------
+    TransientError
+        Where the machine cannot start, or stalls.
+    """
+    from scipy.integrate import solve_ivp
+
+    def surplus(speed: float) -> float:
+        return motor(max(speed, 0.0)) - load(max(speed, 0.0))
+
+    def stopped(_: float, state: FloatArray) -> float:
+        return float(state[0])
+
+    stopped.terminal = True  # type: ignore[attr-defined]
+    stopped.direction = -1.0  # type: ignore[attr-defined]
+    if start == 0.0 and surplus(0.0) <= 0.0:
+        raise TransientError(
+            f"the machine cannot start: at rest its motor gives {motor(0.0):.6g} N m against a load of "
+            f"{load(0.0):.6g} N m; lower the load at rest, or start from a speed at which the motor is the stronger"
+        )
+    times = duration * np.arange(_PIECES + 1) / _PIECES
+    # Torque lines have corners: steps no longer than a piece keep their places.
+    found = solve_ivp(
+        lambda _, state: [surplus(float(state[0])) / inertia],
+        (0.0, duration),
+        [start],
+        t_eval=times,
+        events=stopped,
+        rtol=1e-10,
+        atol=1e-12 * nominal,
+        max_step=duration / _PIECES,
+    )
+    if found.status == 1:
+        assert found.t_events is not None
+        when = float(found.t_events[0][0])
+        raise TransientError(
+            f"the machine stalls at t = {when:.6g} s: it started at {start * _RPM:.6g} rpm and stands still, its "
+            f"motor giving {motor(0.0):.6g} N m against a load of {load(0.0):.6g} N m; lower the load, or end the "
+            "run before"
+        )
+    if not found.success:
+        raise TransientError(f"the free speed cannot be followed beyond t = {found.t[-1]:.6g} s: {found.message}")
+    return SpeedProfile(times, np.maximum(found.y[0], 0.0) / nominal)

@@ -1,0 +1,325 @@
+"""Newmark step matrices: the coupled system as arrays for the kernels, and the matrices of each step size.
+
+Stored energy at the start of a time integration, in plain Python as it is evaluated once.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.machine.connectors import SpeedTable
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.time.condensation import common_span
+from coupling.time.kernel_arrays import (
+    BY_TIME,
+    BY_TURNING,
+    BY_UNBALANCE,
+    Bearings,
+    Contacts,
+    Dynamics,
+    Outputs,
+    Samples,
+    Scratch,
+    Segments,
+    StepMatrices,
+    bearing_arrays,
+)
+from coupling.time.settings import TransientOutputs
+from coupling.time.speed_profile import SpeedProfile
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_WIDTH = 16  # rows of a vectorised loop
+_FOLLOWS = {"time": BY_TIME, "turning": BY_TURNING, "unbalance": BY_UNBALANCE}
+
+
+class KernelArrays(NamedTuple):
+    """Arrays that stay the same through a time integration."""
+
+    dynamics: Dynamics
+    contacts: Contacts
+    bearings: Bearings
+    outputs: Outputs
+
+
+def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float, gamma: float) -> KernelArrays:
+    """Arrays of the system and of its output rows."""
+    rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
+    bearings = bearing_arrays(system.nonlinear)
+    return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
+
+
+def empty_samples(arrays: KernelArrays, first: float, interval: float, offset: int, count: int) -> Samples:
+    """Zero arrays for some samples."""
+    rows, contacts = arrays.outputs, arrays.contacts.phase.size
+    return Samples(
+        first=first,
+        interval=interval,
+        offset=offset,
+        displacement=np.zeros((count, len(rows.displacement))),
+        velocity=np.zeros((count, len(rows.velocity))),
+        acceleration=np.zeros((count, len(rows.acceleration))),
+        compression=np.zeros((count, contacts)),
+        force=np.zeros((count, contacts)),
+    )
+
+
+def scratch_room(arrays: KernelArrays) -> Scratch:
+    """Scratch arrays of the kernel."""
+    r, n = arrays.dynamics.connectors.shape
+    c, k = arrays.contacts.phase.size, len(arrays.contacts.direction)
+    u, b = c + arrays.bearings.axis.size, arrays.bearings.preload.size
+    shapes: dict[str, tuple[int, ...]] = {
+        "laws": (c, 6),
+        "spare": (c, 6),
+        "drag": (c, 4),
+        "jacobian": (u, u),
+        "residual": (u, 1),
+        "tangents": (b, 5, 5),
+        "held": (8, 5),
+        "powers": (5,),
+        "powers_before": (5,),
+        "block": (arrays.dynamics.gyroscopic.shape[2],),
+    }
+    shapes |= dict.fromkeys(("a", "before", "free", "q0", "v0", "load", "pushed", "x", "y"), (n,))
+    shapes |= dict.fromkeys(("tq", "tv", "ta", "tq0", "tv0", "seen", "connector_force", "response", "linked"), (r,))
+    shapes |= dict.fromkeys(("dq", "dv", "da", "dq0", "dv0", "push"), (k,))
+    shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "force_before"), (u,))
+    return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
+
+
+class StepCache:
+    """Cache of the matrices of each step size, see :mod:`coupling.time.step_kernels`.
+
+    At steady speed few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine
+    digits are one. Where the speed varies no size occurs twice, and each stretch has its own. Mesh periods without a
+    common multiple give ever new sizes: beyond a limit the cache is cleared, which changes no result, as a size is
+    rebuilt just as it was.
+    """
+
+    _ROOM = 8
+    _MOST_BYTES = 32 << 20
+
+    def __init__(self, arrays: KernelArrays, turning: SpeedProfile) -> None:
+        self._arrays, self._steady, self._rate = arrays, turning.is_steady, float(turning.rates[0])
+        self._kinds: dict[float, int] = {}
+        self.matrices = _room_for_steps(arrays, self._ROOM)
+
+    def make_room(self, count: int) -> None:
+        """Clear the cache where ``count`` new sizes might find no room; slots are valid until then."""
+        most = self._MOST_BYTES // sum(array[:1].nbytes for array in self.matrices)
+        if len(self._kinds) + count > max(most, 2 * count):
+            self._kinds.clear()
+
+    def kinds(self, sizes: FloatArray, speeds: FloatArray, accelerations: FloatArray) -> IntArray:
+        """Slots of some step sizes [s], at speeds s' and angular accelerations s'' that count where they vary."""
+        if not self._steady:
+            self._build(range(len(sizes)), sizes, speeds, accelerations)
+            return np.arange(len(sizes), dtype=np.int64)
+        keys = [float(f"{size:.9e}") for size in sizes]
+        fresh = [key for key in dict.fromkeys(keys) if key not in self._kinds]
+        slots = range(len(self._kinds), len(self._kinds) + len(fresh))
+        self._build(slots, np.array(fresh), np.ones(len(fresh)), np.zeros(len(fresh)))
+        self._kinds.update(zip(fresh, slots, strict=True))
+        return np.array([self._kinds[key] for key in keys], dtype=np.int64)
+
+    def _build(self, slots: range, sizes: FloatArray, speeds: FloatArray, accelerations: FloatArray) -> None:
+        from coupling.time.step_kernels import build_steps
+
+        room = len(self.matrices.size)
+        if slots.stop > room:
+            larger = _room_for_steps(self._arrays, max(slots.stop, 2 * room))
+            for old, new in zip(self.matrices, larger, strict=True):
+                new[:room] = old
+            self.matrices = larger
+        into = np.arange(slots.start, slots.stop, dtype=np.int64)
+        build_steps(self._arrays.dynamics, self._arrays.contacts, sizes, speeds, accelerations, into, self.matrices)
+
+
+def cut(cache: StepCache, turning: SpeedProfile, bounds: FloatArray, step: float) -> Segments:
+    """Stretches between bounds, each cut into at least two equal steps no longer than ``step`` [s]."""
+    start, end = bounds[:-1], bounds[1:]
+    counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)
+    cache.make_room(len(counts))
+    turned = np.column_stack(turning.at(start)).reshape(-1, 3)
+    middle = turned[:, 1] + 0.5 * turned[:, 2] * (end - start)
+    kinds = cache.kinds((end - start) / counts, middle, np.ascontiguousarray(turned[:, 2]))
+    return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, turned)
+
+
+def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
+    r, n = arrays.dynamics.connectors.shape
+    k = len(arrays.contacts.direction)
+    g, b = arrays.dynamics.gyroscopic.shape[:2]
+    return StepMatrices(
+        size=np.zeros(m),
+        base=np.zeros((m, n)),
+        blocks=np.zeros((m, g, b, b)),
+        connector_stiffness=np.zeros((m, r, r)),
+        connector_damping=np.zeros((m, r, r)),
+        connectors=np.zeros((m, r, n)),
+        between=np.zeros((m, r, r)),
+        link=np.zeros((m, r, r)),
+        contact=np.zeros((m, k, n)),
+        contact_connectors=np.zeros((m, k, r)),
+        flexibility=np.zeros((m, k, k)),
+    )
+
+
+def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
+    n = system.size
+    starts, sizes, gyroscopic = _gyroscopic_blocks(system)
+    # Components are mostly diagonal; their other terms join those of the connectors.
+    whole = system.own_stiffness, system.own_damping
+    diagonals = [matrix.diagonal().copy() for matrix in whole]
+    beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
+    rates = system.connector_rates
+    matrices = [
+        own + tie for rate in rates for own, tie in zip(beside, system.connector_matrices(float(rate)), strict=True)
+    ]
+    directions, cores = common_span(matrices)
+    connector_stiffness, connector_damping = np.array(cores[0::2]), np.array(cores[1::2])
+    skew = np.abs(connector_stiffness - connector_stiffness.transpose(0, 2, 1)).max(initial=0.0)
+    amplitudes = np.array([load.amplitude for load in system.harmonic_loads], dtype=np.complex128).reshape(-1, n)
+    longest = max((len(load.times) for load in system.timed_loads), default=0)
+    times, values = np.zeros((len(system.timed_loads), longest)), np.zeros((len(system.timed_loads), longest))
+    for row, load in enumerate(system.timed_loads):
+        times[row, : len(load.times)], values[row, : len(load.times)] = load.times, load.values
+    return Dynamics(
+        stiffness=diagonals[0],
+        damping=diagonals[1],
+        block_start=starts,
+        block_size=sizes,
+        gyroscopic=gyroscopic,
+        connectors=np.ascontiguousarray(directions.T),
+        connector_rates=rates,
+        connector_stiffness=connector_stiffness,
+        connector_damping=connector_damping,
+        has_skew=bool(skew > 1e-12 * np.abs(connector_stiffness).max(initial=0.0)),
+        constant=system.load,
+        acceleration_load=system.acceleration_load,
+        frequency=np.array([load.frequency for load in system.harmonic_loads], dtype=np.float64),
+        follows=np.array([_FOLLOWS[load.follows] for load in system.harmonic_loads], dtype=np.int64),
+        cosine=np.ascontiguousarray(amplitudes.real),
+        sine=np.ascontiguousarray(amplitudes.imag),
+        timed_times=times,
+        timed_values=values,
+        timed_sizes=np.array([len(load.times) for load in system.timed_loads], dtype=np.int64),
+        timed_rows=np.array([load.direction for load in system.timed_loads], dtype=np.float64).reshape(-1, n),
+        resolved=system.resolved.astype(np.float64),
+        beta=beta,
+        gamma=gamma,
+    )
+
+
+def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, FloatArray]:
+    """First coordinate, size and transposed matrix of each component's gyroscopic terms at nominal speed."""
+    found = []
+    start = 0
+    for component, speed in zip(system.components, system.speeds, strict=True):
+        touched = np.flatnonzero(np.any(component.gyroscopic != 0.0, axis=0))
+        if speed != 0.0 and touched.size:
+            among = slice(touched[0], touched[-1] + 1)
+            found.append((start + int(touched[0]), speed * component.gyroscopic[among, among].T))
+        start += component.size
+    largest = -(-max((len(matrix) for _, matrix in found), default=0) // _WIDTH) * _WIDTH
+    blocks = np.zeros((len(found), largest, largest))
+    for block, (_, matrix) in zip(blocks, found, strict=True):
+        block[: len(matrix), : len(matrix)] = matrix
+    return (
+        np.array([first for first, _ in found], dtype=np.int64),
+        np.array([len(matrix) for _, matrix in found], dtype=np.int64),
+        blocks,
+    )
+
+
+def contact_arrays(system: CoupledSystem) -> Contacts:
+    """Arrays of the tooth contacts."""
+    c = len(system.contacts)
+    harmonics = max((len(contact.errors) for contact in system.contacts), default=0)
+    errors = np.zeros((c, harmonics, 3))
+    for k, contact in enumerate(system.contacts):
+        errors[k, : len(contact.errors)] = contact.errors
+    rows = [system.contact_directions.T, *(connector.directions.T for connector in system.nonlinear)]
+    numbers = [contact.contact.kernel_arguments[0] for contact in system.contacts]
+    law_at = np.cumsum([0, *map(len, numbers)])[:-1]
+    friction_row, shares_at = np.full(c, -1, dtype=np.int64), np.full(c, -1, dtype=np.int64)
+    friction, sliding = np.zeros((c, 3)), np.zeros((c, 2))
+    for k, contact in enumerate(system.contacts):
+        if contact.sliding is not None:
+            law, sliding[k] = contact.sliding.friction, contact.sliding.nominal
+            sense = float(np.sign(sliding[k, 1]))
+            friction[k] = sense * law.coefficient, law.pitch_point, law.path_end
+            friction_row[k] = sum(map(len, rows))
+            rows.append(contact.sliding.directions.T)
+            if law.shares.size:
+                shares_at[k] = sum(map(len, numbers))
+                numbers.append(law.shares)
+    return Contacts(
+        direction=np.ascontiguousarray(np.concatenate(rows)),
+        law=np.concatenate([np.zeros(0), *numbers]),
+        law_at=law_at.astype(np.int64),
+        shares_at=shares_at,
+        phase=np.array([contact.phase for contact in system.contacts], dtype=np.float64),
+        rate=np.array([contact.rate for contact in system.contacts], dtype=np.float64),
+        errors=errors,
+        clearance=np.array([contact.clearance for contact in system.contacts], dtype=np.float64),
+        friction_row=friction_row,
+        friction=friction,
+        sliding=sliding,
+    )
+
+
+def stored_energy(
+    dynamics: Dynamics, contacts: Contacts, bearings: Bearings, q: FloatArray, v: FloatArray, turned: float, rate: float
+) -> float:
+    """Energy in teeth, nonlinear bearings and connectors that change with the speed [J], as in the kernel.
+
+    Parameters
+    ----------
+    q, v : ndarray, shape (n,)
+    turned : float
+        Turned time s [s].
+    rate : float
+        s'.
+    """
+    energy = _of_connectors(dynamics, q, rate) if dynamics.connector_rates.size > 1 else 0.0
+    c = contacts.phase.size
+    delta, moved = contacts.direction @ q, contacts.direction[:c] @ v
+    amplitude, w, phase = np.moveaxis(contacts.errors, 2, 0)
+    angle = w * turned + phase
+    delta[:c] -= contacts.clearance + (amplitude * np.cos(angle)).sum(axis=1)
+    moved += (amplitude * w * rate * np.sin(angle)).sum(axis=1)
+    if c > 0:
+        energy += _of_teeth(contacts, delta, moved, turned)
+    if bearings.axis.size > 0:
+        energy += _of_bearings(bearings, c, delta, turned)
+    return float(energy)
+
+
+def _of_connectors(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
+    """½ qᵀ U K_t Uᵀ q, K_t linear between the speeds at which it is given."""
+    law = SpeedTable(dynamics.connector_rates, dynamics.connector_stiffness, dynamics.connector_damping)
+    tied = dynamics.connectors @ q
+    return float(0.5 * tied @ law.at(rate)[0] @ tied)
+
+
+def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, turned: float) -> float:
+    from coupling.gears.contact.tooth_force_kernels import tooth_force
+
+    energy = 0.0
+    for k, at in enumerate(contacts.law_at):
+        phase = contacts.phase[k] + contacts.rate[k] * turned
+        energy += tooth_force(phase, delta[k], moved[k], contacts.law, at)[3]
+    return energy
+
+
+def _of_bearings(bearings: Bearings, first: int, delta: FloatArray, turned: float) -> float:
+    """Energy of the nonlinear part of the bearings' forces."""
+    from coupling.time.bearing_kernels import evaluate_bearings
+
+    tangents, held = np.zeros((bearings.preload.size, 5, 5)), np.zeros((8, 5))
+    evaluate_bearings(bearings, first, turned, delta, np.zeros_like(delta), tangents, held)
+    return float(held[0, 0])

@@ -1,0 +1,508 @@
+"""Checks of operation: a train in which every shaft turns, balanced torques, a transient that can be run.
+
+Checks of stations on rotors, and of rotor axes against bearing seats.
+
+Checks of bearings: tables over speed that fit and reach far enough, pedestals on the ground.
+
+Checks of gears and gear pairs: teeth that can be cut, gears that can mesh on their axes, loops that can turn.
+
+The geometry is that of :mod:`coupling.gears`; its errors are put in the words of the case file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from math import pi
+from typing import TYPE_CHECKING
+
+from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness
+from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
+from gearwhine.case.gears import Gear, GearPair, shaft_of
+from gearwhine.case.housing import Seat
+from gearwhine.case.model import Case, Draft
+from gearwhine.case.operation import Operation, listed
+from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, TorsionProbe, TorsionSpring
+from gearwhine.case.speeds_and_torques import pair_torques
+
+if TYPE_CHECKING:
+    from coupling.gears import Gear as BuiltGear
+
+NEAREST_POINTS = 1e-6
+"""Distance between two points of a bow below which they are one, as a part of the rotor's length."""
+
+
+def millimetres(length: float) -> str:
+    """Write a length [m] in mm, for a message."""
+    return f"{length * 1e3:.6g} mm"
+
+
+def check_shafts(draft: Draft) -> Iterator[Finding]:
+    """Yield stations beyond the ends of their rotor, bow points in one place, and bearings away from their seats."""
+    for index, rotor in draft.rotors:
+        stations = {
+            "discs": [disc.at for disc in rotor.discs],
+            "unbalance": [unbalance.at for unbalance in rotor.unbalance],
+            "bow": [bow.at for bow in rotor.bow],
+        }
+        for kind, places in stations.items():
+            for place, at in enumerate(places):
+                yield from check_station(rotor, at, ("rotor", index, kind, place, "at"))
+        yield from _check_bow(index, rotor)
+    for keys, entries in _analysed(draft):
+        for place, entry in enumerate(entries):
+            watched = draft.rotor(entry.rotor)
+            if watched is not None:
+                yield from check_station(watched, entry.at, ("rotor_analysis", *keys, place, "at"))
+    for index, bearing in draft.bearings:
+        supported = draft.rotor(bearing.rotor)
+        if supported is None:
+            continue
+        yield from check_station(supported, bearing.at, ("bearing", index, "at"))
+        seat = next((seat for _, seat in draft.seats if seat.name == bearing.seat), None)
+        if seat is not None:
+            yield from _check_seat(draft, index, bearing, supported, seat)
+    for index, gear in draft.gears:
+        carrier = draft.rotor(gear.rotor)
+        if carrier is not None and gear.at is not None:
+            yield from check_station(carrier, gear.at, ("gear", index, "at"))
+
+
+def _analysed(
+    draft: Draft,
+) -> Iterator[tuple[tuple[str, str], Sequence[Probe | HarmonicTorque | TorsionSpring | TorsionProbe]]]:
+    """Yield what an analysis of rotors puts on their stations, with its keys."""
+    if draft.analysis is None:
+        return
+    yield ("unbalance_response", "probes"), draft.analysis.unbalance_response.probes
+    torsion = draft.analysis.torsional_response
+    if torsion is not None:
+        yield ("torsional_response", "torques"), torsion.torques
+        yield ("torsional_response", "springs"), torsion.springs
+        yield ("torsional_response", "probes"), torsion.probes
+
+
+def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Finding]:
+    """Yield a finding where a station lies beyond the right end of its rotor."""
+    if at > rotor.length * (1.0 + 1e-9):
+        yield Finding(location, f'a station on rotor "{rotor.name}", which is {millimetres(rotor.length)} long')
+
+
+def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
+    """Yield a bow of one point, which bends nothing, and points of a bow where another one stands already."""
+    if len(rotor.bow) == 1:
+        expected = (
+            "two points or more: the centre line through one is straight and bends no shaft; add the points that stay "
+            "on the axis, such as the bearings', with an amplitude of 0"
+        )
+        yield Finding(("rotor", index, "bow"), expected, UNSAID)
+    for place, point in enumerate(rotor.bow):
+        if any(abs(point.at - other.at) <= NEAREST_POINTS * rotor.length for other in rotor.bow[:place]):
+            yield Finding(
+                ("rotor", index, "bow", place, "at"), "a station of its own; another point of the bow is here"
+            )
+
+
+def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
+    """Yield findings where a rotor's axis or a bearing's place along it misses the seat."""
+    from coupling.machine.gear_train import LARGEST_OFFSET
+
+    offset = math.hypot(rotor.axis[0] - seat.center[0], rotor.axis[1] - seat.center[1])
+    if offset > LARGEST_OFFSET:
+        expected = (
+            f'a seat on the axis of rotor "{rotor.name}"; the seat\'s centre is {millimetres(offset)} off it '
+            f"(axis at {millimetres(rotor.axis[0])}, {millimetres(rotor.axis[1])}; "
+            f"centre at {millimetres(seat.center[0])}, {millimetres(seat.center[1])})"
+        )
+        yield Finding(("bearing", index, "seat"), expected)
+    wall = 0.0
+    if draft.box is not None:
+        wall = draft.box.walls.front if seat.center[2] > 0.0 else draft.box.walls.back
+    reach = seat.diameter / 2.0 + wall + (seat.boss.length if seat.boss is not None else 0.0)
+    gap = rotor.start + bearing.at - seat.center[2]
+    if abs(gap) > reach and bearing.at <= rotor.length:  # beyond the rotor is a finding of its own
+        expected = (
+            f'a station within {millimetres(reach)} of seat "{seat.name}" along z (this one is at '
+            f"z = {millimetres(rotor.start + bearing.at)}, the seat at {millimetres(seat.center[2])})"
+        )
+        yield Finding(("bearing", index, "at"), expected)
+
+
+_ROUNDING = 1e-9  # what a printed speed may miss of the one it stands for
+_RPM = 30.0 / pi
+
+
+def check_bearings(draft: Draft) -> Iterator[Finding]:
+    """Yield tables that do not fit their speeds or end too early, and pedestals in the housing."""
+    ratios = _ratios(draft)
+    for index, bearing in draft.bearings:
+        yield from _check_tables(index, bearing)
+        if bearing.pedestal is not None and not bearing.grounded:
+            expected = f'no pedestal under a bearing in seat "{bearing.seat}", which moves with the housing'
+            yield Finding(("bearing", index, "pedestal"), expected)
+        if draft.transient is not None and bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
+            yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
+        if bearing.speeds is not None and bearing.rotor in ratios:
+            yield from _check_reach(draft, index, bearing, bearing.speeds, abs(float(ratios[bearing.rotor])))
+
+
+def _check_tables(index: int, bearing: Bearing) -> Iterator[Finding]:
+    """Yield lists of another length than the speeds, and speeds or lists without the other."""
+    tabled = False
+    for kind in ("stiffness", "damping"):
+        table = getattr(bearing, kind)
+        if not isinstance(table, RadialStiffness | RadialDamping):
+            continue
+        for key in ("xx", "yy", "xy", "yx"):
+            given = getattr(table, key)
+            if not isinstance(given, tuple):
+                continue
+            tabled = True
+            count = 0 if bearing.speeds is None else len(bearing.speeds)
+            if bearing.speeds is None:
+                expected = "one value, or with this list the key 'speeds' of the bearing"
+                yield Finding(("bearing", index, kind, key), expected)
+            elif len(given) != count:
+                expected = f"one value for each of the {count} speeds (there are {len(given)})"
+                yield Finding(("bearing", index, kind, key), expected)
+    if bearing.speeds is not None and not tabled:
+        yield Finding(("bearing", index, "speeds"), "a list for each of these speeds in 'stiffness' or 'damping'")
+
+
+def _check_reach(
+    draft: Draft, index: int, bearing: Bearing, table: tuple[float, ...], ratio: float
+) -> Iterator[Finding]:
+    """Yield a table that does not hold every speed that the case names."""
+    needed = [ratio * abs(speed) for speed in _named_speeds(draft)]
+    if needed and (min(needed) < table[0] * (1.0 - _ROUNDING) or max(needed) > table[-1] * (1.0 + _ROUNDING)):
+        expected = (
+            f'a table that holds the speeds of rotor "{bearing.rotor}" in this case, {min(needed) * _RPM:.6g} to '
+            f"{max(needed) * _RPM:.6g} rpm (it goes from {table[0] * _RPM:.6g} to {table[-1] * _RPM:.6g} rpm)"
+        )
+        yield Finding(("bearing", index, "speeds"), expected)
+
+
+def _named_speeds(draft: Draft) -> list[float]:
+    """Return the speeds of the first driver's rotor that a case names."""
+    speeds = [] if draft.operation is None else [draft.operation.speed]
+    if draft.transient is not None and draft.transient.run is not None:
+        speeds += draft.transient.run.line[1]
+    speeds += draft.sweep.speeds if draft.sweep is not None else ()
+    if draft.analysis is not None:
+        for given in (draft.analysis.speed, draft.analysis.unbalance_response.speed):
+            speeds += () if given is None else listed(given)
+    return speeds
+
+
+def _ratios(draft: Draft) -> dict[str, Fraction]:
+    """Return each rotor's speed over the first driver's; empty where the train is not readable."""
+    if draft.broken & {"rotor", "gear", "gear_pair"}:
+        return {}
+    if not draft.gear_pairs:
+        return {name: Fraction(1) for name in draft.names("rotor")}
+    return dict(draft.train.ratios) if draft.train is not None else {}
+
+
+def check_gears(draft: Draft) -> Iterator[Finding]:
+    """Yield gears that cannot be cut, pairs that cannot mesh, and loops that lock."""
+    if not draft.gears:
+        return
+    # The package brings numpy and scipy: only a case with gears waits for them.
+    from coupling.gears import GearError
+
+    built: dict[str, BuiltGear] = {}
+    for index, gear in draft.gears:
+        try:
+            built.setdefault(gear.name, gear.build())
+        except GearError as error:
+            yield Finding(("gear", index), f"a gear that can be made; {error}", UNSAID)
+    seen: dict[frozenset[str], int] = {}
+    for index, pair in draft.gear_pairs:
+        first = seen.setdefault(frozenset((pair.driver, pair.driven)), index)
+        if first != index:
+            yield Finding(("gear_pair", index), f"gears that are not yet a pair (gear_pair[{first}] is)", UNSAID)
+        driver, driven = draft.gear(pair.driver), draft.gear(pair.driven)
+        if driver is None or driven is None:
+            continue
+        for gear in (driver, driven):
+            yield from _check_model(draft, index, pair, gear)
+        unequal = list(_unequal_teeth(index, driver, driven))
+        yield from unequal
+        if not unequal and driver.name in built and driven.name in built:
+            yield from _check_pair(draft, index, pair, (driver, driven), (built[driver.name], built[driven.name]))
+    for wrong in draft.train.contradictions if draft.train is not None else ():
+        expected = (
+            f'pairs in a loop that can turn; "{wrong.shaft}" would turn at {float(wrong.ratio):.6g} of the first '
+            f"driver's speed by the other pairs, and at {float(wrong.other):.6g} by this one"
+        )
+        yield Finding(("gear_pair", draft.readable_pairs[wrong.pair][0]), expected, UNSAID)
+
+
+def _check_pair(
+    draft: Draft, index: int, pair: GearPair, given: tuple[Gear, Gear], gears: tuple[BuiltGear, BuiltGear]
+) -> Iterator[Finding]:
+    """Yield why two gears do not mesh, at any distance or at that of their axes, or are not opposite each other."""
+    from coupling.gears import GearError, GearPairGeometry
+
+    try:
+        GearPairGeometry(*gears)
+    except GearError as error:
+        # Not for their distance, which is the one without backlash.
+        yield Finding(("gear_pair", index), f"gears that can mesh; {error}", UNSAID)
+        return
+    distance = pair.centre_distance
+    if given[0].rotor is not None and shaft_of(given[0]) == shaft_of(given[1]):
+        yield Finding(("gear_pair", index, "driven"), f'a gear on another rotor than "{shaft_of(given[0])}"')
+        return
+    rotors = draft.rotor(given[0].rotor), draft.rotor(given[1].rotor)
+    if rotors[0] is not None and rotors[1] is not None:
+        from coupling.machine.gear_train import LARGEST_OFFSET
+
+        apart = math.hypot(rotors[0].axis[0] - rotors[1].axis[0], rotors[0].axis[1] - rotors[1].axis[1])
+        if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
+            expected = f"the distance of the rotors' axes, {millimetres(apart)}"
+            yield Finding(("gear_pair", index, "centre_distance"), expected)
+        distance = apart
+        shift = rotors[0].start + (given[0].at or 0.0) - rotors[1].start - (given[1].at or 0.0)
+        reach = 0.5 * min(gear.face_width for gear in gears)
+        if abs(shift) > reach + LARGEST_OFFSET:
+            expected = (
+                f"gears in one plane, within half a face width, {millimetres(reach)}; they are "
+                f"{millimetres(abs(shift))} apart along z"
+            )
+            yield Finding(("gear_pair", index, "driven"), expected)
+    if distance is not None:
+        yield from _check_distance(index, gears, distance)
+
+
+def _check_distance(index: int, gears: tuple[BuiltGear, BuiltGear], distance: float) -> Iterator[Finding]:
+    """Yield a centre distance at which teeth jam, or lose each other, that mesh at another."""
+    from coupling.gears import GearPairGeometry
+    from coupling.gears.errors import InterferenceError, NoContactError
+
+    reference = gears[0].pitch_radius + gears[1].pitch_radius
+    shown = f"(pitch radii of {millimetres(reference)} in all; the axes are {millimetres(distance)} apart)"
+    try:
+        GearPairGeometry(*gears, distance)
+    except InterferenceError:
+        yield Finding(("gear_pair", index), f"axes further apart: the gears jam {shown}", UNSAID)
+    except NoContactError:
+        yield Finding(("gear_pair", index), f"axes closer together: the gears lose contact {shown}", UNSAID)
+
+
+def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
+    """Yield a size in which the teeth of two gears do not fit each other."""
+    from coupling.gears.geometry.pair import mismatched_sizes
+
+    modules, pressures, helices = (
+        (driver.tooth_module, driven.tooth_module),
+        (math.degrees(driver.pressure_angle), math.degrees(driven.pressure_angle)),
+        (math.degrees(driver.helix_angle), math.degrees(driven.helix_angle)),
+    )
+    sizes = ((gear.tooth_module, gear.pressure_angle, gear.helix_angle) for gear in (driver, driven))
+    unequal = mismatched_sizes(*sizes)
+    if "helix_angle" in unequal:
+        size, shown = "equal helix angle and opposite hands", [f"{angle:+g} deg" for angle in helices]
+    elif "pressure_angle" in unequal:
+        size, shown = "one pressure angle", [f"{angle:g} deg" for angle in pressures]
+    elif "module" in unequal:
+        size, shown = "one module", [millimetres(module) for module in modules]
+    else:
+        return
+    expected = f'gears of {size}; "{driver.name}" has {shown[0]}, "{driven.name}" {shown[1]}'
+    yield Finding(("gear_pair", index, "driven"), expected)
+
+
+def _check_model(draft: Draft, index: int, pair: GearPair, gear: Gear) -> Iterator[Finding]:
+    """Yield what the pair's stiffness model needs of a gear and does not find."""
+    model = pair.stiffness.model
+    if model in ("constant", "square", "table"):
+        return
+    location = ("gear_pair", index, "stiffness", "model")
+    if gear.face_width is None:
+        expected = f'a model that needs no tooth shape: gear "{gear.name}" has no face_width'
+        yield Finding(location, expected, model)
+    materials = draft.document.get("material")
+    if gear.material is None and gear.rotor is None and len(materials if isinstance(materials, dict) else ()) != 1:
+        expected = f"a material for gear \"{gear.name}\", as model '{model}' needs one"
+        yield Finding(location, expected, NOTHING)
+
+
+LARGEST_RATIO = 1e12
+"""Speed over the first driver's beyond which a train is a mistake, long before numbers overflow."""
+
+_NO_TORQUE = 1e-9
+"""Part of the input torque below which a gear pair carries none but for rounding."""
+
+
+def check_running(draft: Draft) -> Iterator[Finding]:
+    """Yield what keeps a case from running as it says."""
+    document, operation = draft.document, draft.operation
+    if all(document.get(key, []) == [] for key in ("housing", "rotor", "gear", "gear_pair")):
+        yield Finding((), "at least one of [housing], [[rotor]] and [[gear_pair]]", UNSAID)
+    if "transient" in document and "operation" not in document:
+        yield Finding(("operation",), "a speed to run the [transient] at", NOTHING)
+    if "rotor_analysis" in document and not document.get("rotor"):
+        yield Finding(("rotor",), "at least one [[rotor]] for the [rotor_analysis]", NOTHING)
+    if operation is None:
+        return
+    turning = any(key in document for key in ("rotor", "gear"))
+    if not turning:
+        yield Finding(("operation",), "a [[rotor]] or [[gear]] to turn", NOTHING)
+    if "transient" in document and operation.speed == 0.0:
+        yield Finding(("operation", "speed"), "a speed other than zero for the [transient]")
+    yield from _check_run(draft, operation)
+    yield from _check_method(draft, operation)
+    if draft.broken & {"rotor", "gear", "gear_pair"} or not turning:
+        return  # half a train does not say which shafts it turns
+    yield from _check_stations(draft, operation)
+    yield from _check_train(draft, operation)
+
+
+def _check_run(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield a run on a base that tilts, or free without a motor or an output, and torque lines that none follows."""
+    run = None if draft.transient is None else draft.transient.run
+    if run is not None and operation.base is not None and operation.base.tilts:
+        expected = "no turning about x or y during a [transient.run]: gyroscopic moments of a base are for one speed"
+        yield Finding(("operation", "base"), expected, UNSAID)
+    if run is not None and run.free:
+        if operation.motor is None:
+            yield Finding(("operation", "motor"), "a torque over speed, which drives the free [transient.run]", NOTHING)
+        if not draft.gear_pairs and not operation.output:
+            yield Finding(("operation", "output"), "an output, on the rotor that the free run drives", NOTHING)
+    elif draft.transient is not None:
+        for key in ("motor", "load"):
+            if getattr(operation, key) is not None:
+                yield Finding(("operation", key), "a [transient.run] without 'to', whose speed is free to follow it")
+
+
+def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield what the exact march, where it is asked for, knows nothing of."""
+    given = draft.transient
+    if given is None or given.method != "exact":
+        return
+    unknown = [f"friction between the teeth (gear_pair[{i}])" for i, pair in draft.gear_pairs if pair.friction > 0.0]
+    unknown += [f"a bearing's own law (bearing[{i}])" for i, bearing in draft.bearings if bearing.follows_own_law]
+    unknown += ["a speed that varies (transient.run)"] * (given.run is not None)
+    torques = [operation.over_time, *(output.over_time for output in operation.output)]
+    unknown += ["a torque given over time"] * any(torque is not None for torque in torques)
+    if unknown:
+        yield Finding(("transient", "method"), f"'newmark' or 'auto'; the exact march knows nothing of {unknown[0]}")
+
+
+def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield torques that are put on a rotor beyond its end."""
+    for place, output in enumerate(operation.output):
+        rotor = draft.rotor(output.rotor)
+        if rotor is not None and output.at is not None:
+            yield from check_station(rotor, output.at, ("operation", "output", place, "at"))
+
+
+def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield shafts that nothing turns, and outputs that do not balance the input."""
+    shafts = draft.names("rotor") or draft.names("gear")
+    train = draft.train
+    if any(shaft_of(gear) not in shafts for _, gear in draft.gears) or any(
+        draft.gear(name) is None for _, pair in draft.gear_pairs for name in (pair.driver, pair.driven)
+    ):
+        return  # names that lead nowhere are findings of their own
+    ratios = dict.fromkeys(shafts, Fraction(1))
+    if draft.gear_pairs:
+        ratios = {} if train is None else dict(train.ratios)
+    first = next(iter(ratios), None)
+    for index, shaft in enumerate(shafts):
+        if shaft not in ratios:
+            kind = "rotor" if draft.rotors else "gear"
+            expected = f'a gear pair that turns it: no pair leads here from "{first}", the first driver'
+            yield Finding((kind, index, "name"), expected)
+    if any(not 1.0 / LARGEST_RATIO <= abs(ratio) <= LARGEST_RATIO for ratio in ratios.values()):
+        expected = f"pairs that gear no shaft up or down more than {LARGEST_RATIO:g} times in all"
+        yield Finding(("gear_pair",), expected, UNSAID)
+        return
+    if train is not None and train.contradictions:
+        return
+    rotor = draft.rotor(first) if draft.gear_pairs else None
+    if rotor is not None and operation.at is not None:
+        yield from check_station(rotor, operation.at, ("operation", "at"))
+    if draft.gear_pairs:
+        for place, output in enumerate(operation.output):
+            if output.rotor == first:
+                expected = f'a rotor other than "{first}", where the torque comes in'
+                yield Finding(("operation", "output", place, "rotor"), expected)
+    if any(output.rotor not in ratios for output in operation.output):
+        return
+    if not draft.gear_pairs and len(shafts) > 1:
+        yield from _check_each_shaft(draft, operation)
+        return
+    imbalances = list(_check_balance(operation, ratios))
+    yield from imbalances
+    if draft.gear_pairs and not imbalances and all(shaft in ratios for shaft in shafts):
+        yield from _check_flow(draft, operation)
+
+
+def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iterator[Finding]:
+    """Yield outputs that, through the gears, take another power than comes in."""
+    if not operation.output:
+        return
+    taken = sum(output.torque * abs(float(ratios[output.rotor])) for output in operation.output)
+    if not _balance(operation.torque, taken):
+        expected = (
+            f"outputs that balance the input torque of {operation.torque:g} N*m; through the tooth ratios they "
+            f"amount to {taken:g} N*m"
+        )
+        yield Finding(("operation", "output"), expected, [f"{output.torque:g} N*m" for output in operation.output])
+
+
+def _balance(entering: float, leaving: float) -> bool:
+    """Whether two torques are the same within the tolerance of the library."""
+    from coupling.machine.gear_train import LARGEST_IMBALANCE
+
+    return abs(leaving - entering) <= LARGEST_IMBALANCE * max(abs(entering), abs(leaving))
+
+
+def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield shafts, none geared to another, whose own torques do not balance; the first output's takes the input."""
+    kind = "rotor" if draft.rotors else "gear"
+    first: dict[str, int] = {}
+    for place, output in enumerate(operation.output):
+        first.setdefault(output.rotor, place)
+    for shaft, place in first.items():
+        entering = operation.torque if place == 0 else 0.0
+        taken = sum(output.torque for output in operation.output if output.rotor == shaft)
+        if not _balance(entering, taken):
+            expected = (
+                f'torques that balance on {kind} "{shaft}", as no gear pair leads to or from it; it takes in '
+                f"{entering:g} N*m and gives out {taken:g} N*m"
+            )
+            yield Finding(("operation", "output", place), expected, UNSAID)
+
+
+def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
+    """Yield gear pairs whose driven gear drives the driver."""
+    names = draft.names("gear")
+    if operation.torque == 0.0 or len(set(names)) < len(names):
+        return
+    turning = Case.model_construct(
+        rotor=tuple(rotor for _, rotor in draft.rotors),
+        gear=tuple(gear for _, gear in draft.gears),
+        gear_pair=tuple(pair for _, pair in draft.gear_pairs),
+        operation=operation,
+    )
+    sense = 1.0 if operation.torque > 0.0 else -1.0
+    for (index, pair), torque in zip(draft.gear_pairs, pair_torques(turning), strict=True):
+        if sense * torque < -_NO_TORQUE * abs(operation.torque):
+            expected = "power to flow from driver to driven; swap the two names"
+            yield Finding(("gear_pair", index), expected, UNSAID)
+        elif torque < -_NO_TORQUE * abs(operation.torque) and not _has_backlash(turning, pair):
+            expected = (
+                "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet "
+                "without one"
+            )
+            yield Finding(("gear_pair", index, "backlash"), expected, NOTHING)
+
+
+def _has_backlash(case: Case, pair: GearPair) -> bool:
+    """Whether a backlash is given, or the teeth are thinned for one."""
+    thinned = any(case.gear_named(name).tooth_thinning > 0.0 for name in (pair.driver, pair.driven))
+    return pair.backlash is not None or thinned

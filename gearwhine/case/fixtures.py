@@ -1,0 +1,300 @@
+"""Fixtures of the housing besides its supports: `[[housing.mount]]`, `[[housing.joint]]`, `[[housing.mass]]`.
+
+Each table builds its object of `housing`. Attributes are named as the keys of the case file and are in SI.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Discriminator, Tag, model_validator
+
+from gearwhine.case import units
+from gearwhine.case.fields import (
+    DampingFromZero,
+    Direction,
+    Inertia,
+    Name,
+    Patch,
+    Point,
+    PositiveLength,
+    Quantity,
+    StiffnessFromZero,
+    Table,
+    UnitVector,
+    Vector,
+    unit_vector,
+    wrong,
+)
+from housing import Bushing as HousingBushing
+from housing import Joint as HousingJoint
+from housing import LumpedMass as HousingLumpedMass
+from housing import Mount as HousingMount
+
+TiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, at_least=0.0)]
+TiltDamping = Annotated[float, Quantity(units.TILT_DAMPING, at_least=0.0)]
+PositiveMass = Annotated[float, Quantity(units.MASS, above=0.0)]
+InertiaProduct = Annotated[float, Quantity(units.INERTIA)]
+Six = tuple[float, float, float, float, float, float]
+Tensor = tuple[Point, Point, Point]
+
+_LEAST_SINE = 1e-6  # of the angle between two axes
+_ROUNDING = 1e-9  # what typed moments of inertia of a thin body may miss of a real one's
+
+
+class SixSprings(Table):
+    """Stiffness along x, y, z [N/m] and about them [N m/rad]."""
+
+    x: StiffnessFromZero = 0.0
+    y: StiffnessFromZero = 0.0
+    z: StiffnessFromZero = 0.0
+    rx: TiltStiffness = 0.0
+    ry: TiltStiffness = 0.0
+    rz: TiltStiffness = 0.0
+
+
+class SixDashpots(Table):
+    """Damping along x, y, z [N s/m] and about them [N m s/rad]."""
+
+    x: DampingFromZero = 0.0
+    y: DampingFromZero = 0.0
+    z: DampingFromZero = 0.0
+    rx: TiltDamping = 0.0
+    ry: TiltDamping = 0.0
+    rz: TiltDamping = 0.0
+
+
+class AxialSprings(Table):
+    """Stiffness along an axis and across it [N/m], about lines across it and about itself [N m/rad]."""
+
+    axial: StiffnessFromZero = 0.0
+    shear: StiffnessFromZero = 0.0
+    tilting: TiltStiffness = 0.0
+    torsional: TiltStiffness = 0.0
+
+
+class AxialDashpots(Table):
+    """Damping along an axis and across it [N s/m], about lines across it and about itself [N m s/rad]."""
+
+    axial: DampingFromZero = 0.0
+    shear: DampingFromZero = 0.0
+    tilting: TiltDamping = 0.0
+    torsional: TiltDamping = 0.0
+
+
+def _form(value: Any) -> str:
+    keys = value if isinstance(value, dict) else type(value).model_fields if isinstance(value, Table) else ()
+    return "~axial" if any(key in AxialSprings.model_fields for key in keys) else "~six"
+
+
+def amounts(table: SixSprings | SixDashpots | AxialSprings | AxialDashpots) -> tuple[float, ...]:
+    """Return a table's numbers in the order of its keys."""
+    return tuple(getattr(table, key) for key in type(table).model_fields)
+
+
+class Bushing(Table):
+    """Springs and dashpots in all six motions, along axes of their own or knowing one axis only.
+
+    `axis` goes with `axial`, `shear`, `tilting`, `torsional`; `axes`, the directions of the own x and y, with the six.
+    `center` is where the axes meet [m].
+    """
+
+    stiffness: (
+        Annotated[
+            Annotated[SixSprings, Tag("~six")] | Annotated[AxialSprings, Tag("~axial")],
+            Discriminator(_form),
+        ]
+        | None
+    ) = None
+    damping: (
+        Annotated[
+            Annotated[SixDashpots, Tag("~six")] | Annotated[AxialDashpots, Tag("~axial")],
+            Discriminator(_form),
+        ]
+        | None
+    ) = None
+    axis: Direction | None = None
+    axes: tuple[Vector, Vector] | None = None
+    center: Point | None = None
+
+    @model_validator(mode="after")
+    def _holds(self) -> Bushing:
+        given = [table for table in (self.stiffness, self.damping) if table is not None]
+        if not any(value for table in given for value in amounts(table)):
+            raise wrong("a stiffness or a damping above 0 in at least one motion")
+        if len({_form(table) for table in given}) > 1:
+            raise wrong("the keys of 'stiffness': axial, shear, tilting, torsional, or x, y, z, rx, ry, rz", "damping")
+        if self.knows_one_axis:
+            if self.axis is None:
+                raise wrong("the direction of 'axial': 'x', 'y', 'z' or a vector", "axis")
+            if self.axes is not None:
+                raise wrong("'axis' alone where stiffness is axial, shear, tilting, torsional", "axes")
+        elif self.axis is not None:
+            raise wrong("'axes', two directions, where stiffness is along x, y, z and about them", "axis")
+        if self.axes is not None and math.hypot(*_cross(*map(unit_vector, self.axes))) < _LEAST_SINE:
+            raise wrong("two directions at an angle to each other, the own x and y", "axes")
+        return self
+
+    @property
+    def knows_one_axis(self) -> bool:
+        """Whether springs and dashpots are given along and across one axis."""
+        return any(_form(table) == "~axial" for table in (self.stiffness, self.damping) if table is not None)
+
+    @property
+    def own_axes(self) -> tuple[UnitVector, UnitVector] | None:
+        """Directions of the own z and x; None where they are the global ones or there is one axis only."""
+        if self.axes is None:
+            return None
+        x, y = map(unit_vector, self.axes)
+        return unit_vector(_cross(x, y)), x
+
+    def build_bushing(self) -> HousingBushing:
+        """The springs and dashpots along their axes."""
+        from housing import Bushing as BuiltBushing
+        from housing.model.bushings import GLOBAL_AXES, Axial, axes_along
+
+        tables = self.stiffness, self.damping
+        if self.axis is not None:
+            along = [Axial() if table is None else Axial(*amounts(table)) for table in tables]
+            return BuiltBushing.along(unit_vector(self.axis), *along)
+        stiffness, damping = (_six(table) for table in tables)
+        own = self.own_axes
+        return BuiltBushing(stiffness, damping, GLOBAL_AXES if own is None else axes_along(*own))
+
+
+def _six(table: SixSprings | SixDashpots | AxialSprings | AxialDashpots | None) -> Six:
+    """Amounts along x, y, z and about them."""
+    x, y, z, rx, ry, rz = (0.0,) * 6 if table is None else amounts(table)
+    return x, y, z, rx, ry, rz
+
+
+def _cross(a: UnitVector, b: UnitVector) -> UnitVector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+class Mount(Patch, Bushing):
+    """`[[housing.mount]]`: the rigid motion of a patch on six springs and dashpots to the ground."""
+
+    name: Name
+
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
+        return self.stiffness is not None and any(amounts(self.stiffness))
+
+    def build(self) -> HousingMount:
+        """The mount."""
+        from housing import Mount as BuiltMount
+
+        return BuiltMount(self.name, self.build_patch(), self.build_bushing(), self.center)
+
+
+class Joint(Bushing):
+    """`[[housing.joint]]`: six springs and dashpots between the rigid motions of two patches, such as a bolt.
+
+    The patches are two named `surfaces`, or the circles of a `diameter` [m] on the two faces that look at each other at
+    the `center`, at right angles to the `axis`.
+    """
+
+    name: Name
+    surfaces: tuple[Name, Name] | None = None
+    diameter: PositiveLength | None = None
+
+    @model_validator(mode="after")
+    def _two_patches(self) -> Joint:
+        if (self.surfaces is None) == (self.diameter is None):
+            raise wrong("exactly one of 'surfaces', two names, and 'diameter', of the circles around 'center'")
+        if self.surfaces is not None and self.surfaces[0] == self.surfaces[1]:
+            raise wrong("two different surfaces", "surfaces")
+        if self.diameter is not None and (self.center is None or self.axis is None):
+            raise wrong("'center' and 'axis' with it: where the two faces meet, and across them", "diameter")
+        return self
+
+    def build(self) -> HousingJoint:
+        """The joint of two surfaces, or of circles on the faces that look along its axis and against it."""
+        from housing import Joint as BuiltJoint
+        from housing import Patch as BuiltPatch
+
+        if self.surfaces is not None:
+            first, second = (BuiltPatch(surface) for surface in self.surfaces)
+        else:
+            assert self.center is not None
+            assert self.axis is not None
+            assert self.diameter is not None
+            x, y, z = unit_vector(self.axis)
+            first = BuiltPatch(circle=(self.center, (x, y, z), self.diameter))
+            second = BuiltPatch(circle=(self.center, (-x, -y, -z), self.diameter))
+        return BuiltJoint(self.name, first, second, self.build_bushing(), self.center)
+
+
+class InertiaTensor(Table):
+    """Entries of an inertia tensor about the body's own centre of gravity, along the global axes [kg m²].
+
+    Products are as they stand in the tensor, such as xy = -∫ x y dm.
+    """
+
+    xx: Inertia = 0.0
+    yy: Inertia = 0.0
+    zz: Inertia = 0.0
+    xy: InertiaProduct = 0.0
+    xz: InertiaProduct = 0.0
+    yz: InertiaProduct = 0.0
+
+    @property
+    def rows(self) -> Tensor:
+        """The tensor."""
+        return (self.xx, self.xy, self.xz), (self.xy, self.yy, self.yz), (self.xz, self.yz, self.zz)
+
+    @model_validator(mode="after")
+    def _of_a_body(self) -> InertiaTensor:
+        # ∫ r rᵀ dm = ½ tr(I) - I has no negative principal minor, else there is no such body.
+        # In parts of the largest entry, so that no product overflows.
+        entries = (self.xx, self.yy, self.zz, self.xy, self.xz, self.yz)
+        largest = max(abs(entry) for entry in entries) or 1.0
+        xx, yy, zz, xy, xz, yz = (entry / largest for entry in entries)
+        scale = xx + yy + zz
+        a, b, c = (0.5 * scale - moment for moment in (xx, yy, zz))
+        d, e, f = -xy, -xz, -yz
+        pairs = (a * b - d * d, a * c - e * e, b * c - f * f)
+        determinant = a * (b * c - f * f) - d * (d * c - e * f) + e * (d * f - b * e)
+        least = (min(a, b, c) / scale, min(pairs) / scale**2, determinant / scale**3) if scale else (0.0,)
+        if min(least) < -_ROUNDING or (not scale and (d or e or f)):
+            raise wrong("an inertia that a body can have: no principal moment above the sum of the two others")
+        return self
+
+
+class LumpedMass(Patch):
+    """`[[housing.mass]]`: a point mass at a position, or a rigid body on a patch [kg, m].
+
+    `offset` leads from the middle of the patch to the body's centre of gravity.
+    """
+
+    places: ClassVar[tuple[str, ...]] = ("position", "box", "surface", "plane")
+
+    name: Name
+    mass: PositiveMass
+    position: Point | None = None
+    inertia: InertiaTensor | None = None
+    offset: Point | None = None
+
+    @model_validator(mode="after")
+    def _turns_with_a_patch(self) -> LumpedMass:
+        for key in ("inertia", "offset"):
+            if self.position is not None and getattr(self, key) is not None:
+                raise wrong("a 'surface', 'box' or 'plane' with it: a single point does not turn a body", key)
+        return self
+
+    def build(self) -> HousingLumpedMass:
+        """The mass."""
+        from housing import LumpedMass as BuiltMass
+        from housing.model.lumped_mass import NO_INERTIA
+
+        return BuiltMass(
+            name=self.name,
+            mass=self.mass,
+            patch=None if self.position is not None else self.build_patch(),
+            position=self.position,
+            inertia=self.inertia.rows if self.inertia else NO_INERTIA,
+            offset=self.offset or (0.0, 0.0, 0.0),
+        )

@@ -1,0 +1,371 @@
+"""Operation, transient and sweep of a case.
+
+Attributes are named as the keys and are in SI; speeds in rad/s.
+
+Torques over time and speed, torque ripple, and the speed profile of a run. All in SI, speeds in rad/s.
+
+Base motion of a case, `[operation.base]`: accelerations of the ground. All in SI, frequencies in Hz.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+
+from coupling import BaseMotion
+from coupling.machine.loads import TorqueHistory as CoupledTorqueHistory
+from coupling.machine.loads import TorqueRipple as CoupledTorqueRipple
+from gearwhine.case import units
+from gearwhine.case.fields import (
+    MOST_ENTRIES,
+    Angle,
+    LengthFromZero,
+    Name,
+    Point,
+    PositiveFrequency,
+    Quantity,
+    Speed,
+    SpeedFromZero,
+    Table,
+    Whole,
+    wrong,
+)
+
+Time = Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e6)]
+PositiveTime = Annotated[float, Quantity(units.TIME, above=0.0, at_most=1e6)]
+SignedTorque = Annotated[float, Quantity(units.TORQUE)]
+Order = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e4)]
+
+
+class TorqueLine(Table):
+    """A torque over the speed of the first driver's rotor [N m over rad/s]: linear between, constant beyond."""
+
+    speed: tuple[SpeedFromZero, ...] = Field(min_length=2, max_length=MOST_ENTRIES)
+    torque: tuple[SignedTorque, ...] = Field(max_length=MOST_ENTRIES)
+
+    @model_validator(mode="after")
+    def _a_line(self) -> TorqueLine:
+        _check_table("speed", self.speed, "torque", self.torque)
+        return self
+
+
+class TorqueHistory(Table):
+    """Torque added over time [N m over s]: linear between the times, constant beyond."""
+
+    time: tuple[Time, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
+    torque: tuple[SignedTorque, ...] = Field(max_length=MOST_ENTRIES)
+
+    @model_validator(mode="after")
+    def _a_line(self) -> TorqueHistory:
+        _check_table("time", self.time, "torque", self.torque)
+        return self
+
+    def build(self, rotor: str, at: float, factor: float) -> CoupledTorqueHistory:
+        """The history, times a factor, on a rotor at a station [m]."""
+        from numpy import array
+
+        from coupling.machine.loads import TorqueHistory as BuiltHistory
+
+        return BuiltHistory(rotor, at, array(self.time), factor * array(self.torque))
+
+
+class TorqueRipple(Table):
+    """Harmonic ripple of a torque: amplitude [N m], phase [rad], and an order of its shaft or a frequency [Hz]."""
+
+    amplitude: SignedTorque
+    phase: Angle = 0.0
+    order: Order | None = None
+    frequency: PositiveFrequency | None = None
+
+    @model_validator(mode="after")
+    def _one_pace(self) -> TorqueRipple:
+        if (self.order is None) == (self.frequency is None):
+            raise wrong("either an 'order' of the shaft's rotation or a 'frequency'", "order")
+        return self
+
+    def build(self, rotor: str, at: float, sense: float) -> CoupledTorqueRipple:
+        """The ripple on a rotor at a station [m], in the sense of the torque that it is about."""
+        from coupling.machine.loads import TorqueRipple as BuiltRipple
+
+        frequency = None if self.frequency is None else 2.0 * math.pi * self.frequency
+        amplitude = math.copysign(self.amplitude, sense * self.amplitude)
+        return BuiltRipple(rotor, at, amplitude, self.phase, self.order, frequency)
+
+
+class Run(Table):
+    """`[transient.run]`: how the speed of the first driver's rotor varies, in the sense of `[operation] speed`.
+
+    From `start` (key `from`) to `to` in `time` [s]; or by `speeds` at `times`; or free from `start` on for `time`, the
+    motor against the load.
+    """
+
+    model_config = ConfigDict(serialize_by_alias=True)
+
+    start: SpeedFromZero | None = Field(default=None, alias="from")
+    to: SpeedFromZero | None = None
+    time: PositiveTime | None = None
+    times: tuple[Time, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    speeds: tuple[SpeedFromZero, ...] = Field(default=(), max_length=MOST_ENTRIES)
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Run:
+        if not (self.times or self.speeds):
+            for key, value, what in (("from", self.start, "a speed to start from"), ("time", self.time, "a time")):
+                if value is None:
+                    raise wrong(f"{what}, or a table of 'times' and 'speeds'", key)
+            if self.to == 0.0 == self.start:
+                raise wrong("a speed other than zero at one end", "to")
+            return self
+        for key, value in (("from", self.start), ("to", self.to), ("time", self.time)):
+            if value is not None:
+                raise wrong("no such key beside 'times' and 'speeds'", key)
+        _check_table("times", self.times, "speeds", self.speeds)
+        if len(self.times) < 2 or self.times[0] != 0.0:
+            raise wrong("two times or more, the first of them 0 s", "times")
+        if not any(self.speeds):
+            raise wrong("a speed other than zero", "speeds")
+        return self
+
+    @property
+    def free(self) -> bool:
+        """Whether the speed follows from the motor and the load."""
+        return not self.times and self.to is None
+
+    @property
+    def duration(self) -> float:
+        """[s]."""
+        return self.times[-1] if self.time is None else self.time
+
+    @property
+    def line(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Times [s] and speeds [rad/s] between which the speed is linear; of a free run its start alone."""
+        if self.times:
+            return self.times, self.speeds
+        assert self.start is not None
+        if self.to is None:
+            return (0.0,), (self.start,)
+        return (0.0, self.duration), (self.start, self.to)
+
+
+def _check_table(key: str, places: tuple[float, ...], other: str, values: tuple[float, ...]) -> None:
+    """Raise for a table that does not ascend, or whose lists differ in length."""
+    if len(values) != len(places):
+        raise wrong(f"one value for each entry of '{key}', {len(places)} (there are {len(values)})", other)
+    if any(after <= before for before, after in pairwise(places)):
+        raise wrong("entries that ascend", key)
+
+
+COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
+
+Acceleration = Annotated[float, Quantity(units.ACCELERATION, at_least=-1e4, at_most=1e4)]
+AngularAcceleration = Annotated[float, Quantity(units.ANGULAR_ACCELERATION, at_least=-1e4, at_most=1e4)]
+Accelerations = Annotated[tuple[Acceleration, ...], Field(max_length=MOST_ENTRIES)]
+AngularAccelerations = Annotated[tuple[AngularAcceleration, ...], Field(max_length=MOST_ENTRIES)]
+
+
+class BaseHarmonic(Table):
+    """Accelerations along and about x, y, z [m/s², rad/s²] that swing at a frequency [Hz], ahead by a phase [rad]."""
+
+    frequency: PositiveFrequency
+    x: Acceleration = 0.0
+    y: Acceleration = 0.0
+    z: Acceleration = 0.0
+    rx: AngularAcceleration = 0.0
+    ry: AngularAcceleration = 0.0
+    rz: AngularAcceleration = 0.0
+    phase: Angle = 0.0
+
+    @property
+    def amplitudes(self) -> tuple[float, ...]:
+        """x, y, z, rx, ry, rz."""
+        return tuple(getattr(self, name) for name in COMPONENTS)
+
+
+class BaseHistory(Table):
+    """Accelerations over time [s], a list for each component that moves: linear between, constant beyond."""
+
+    time: tuple[Time, ...] = Field(min_length=1, max_length=MOST_ENTRIES)
+    x: Accelerations = ()
+    y: Accelerations = ()
+    z: Accelerations = ()
+    rx: AngularAccelerations = ()
+    ry: AngularAccelerations = ()
+    rz: AngularAccelerations = ()
+
+    @model_validator(mode="after")
+    def _of_one_length(self) -> BaseHistory:
+        if any(after <= before for before, after in pairwise(self.time)):
+            raise wrong("times that ascend", "time")
+        for name in COMPONENTS:
+            count = len(getattr(self, name))
+            if count not in (0, len(self.time)):
+                raise wrong(f"one value for each of the {len(self.time)} times (there are {count})", name)
+        return self
+
+    @property
+    def rows(self) -> tuple[tuple[float, ...], ...]:
+        """Lists of x, y, z, rx, ry, rz, zeros where there is none."""
+        return tuple(getattr(self, name) or (0.0,) * len(self.time) for name in COMPONENTS)
+
+
+class Base(Table):
+    """`[operation.base]`: how the ground moves at a point of it [m] and about axes through this point."""
+
+    point: Point = (0.0, 0.0, 0.0)
+    harmonic: tuple[BaseHarmonic, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    over_time: BaseHistory | None = None
+
+    @property
+    def tilts(self) -> bool:
+        """Whether it turns about x or y."""
+        rows = [one.amplitudes for one in self.harmonic]
+        turning = any(row[3] or row[4] for row in rows)
+        return turning or (self.over_time is not None and any(map(any, self.over_time.rows[3:5])))
+
+    def build(self) -> BaseMotion:
+        """The motion of the ground."""
+        import numpy as np
+
+        from coupling import BaseMotion
+        from coupling.machine.loads import BaseHarmonic as BuiltHarmonic
+        from coupling.machine.loads import BaseHistory as BuiltHistory
+
+        parts: list[BuiltHarmonic | BuiltHistory] = [
+            BuiltHarmonic(2.0 * math.pi * one.frequency, np.array(one.amplitudes) * np.exp(1j * one.phase))
+            for one in self.harmonic
+        ]
+        if self.over_time is not None:
+            parts.append(BuiltHistory(np.array(self.over_time.time), np.array(self.over_time.rows).T))
+        return BaseMotion(tuple(parts), self.point)
+
+
+class Output(Table):
+    """`[[operation.output]]`: a torque taken off a rotor [N m], at a station [m]; None: its right end.
+
+    `over_time` is added to it, `ripple` swings about it.
+    """
+
+    rotor: Name
+    torque: SignedTorque
+    at: LengthFromZero | None = None
+    over_time: TorqueHistory | None = None
+    ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
+
+
+class Operation(Table):
+    """`[operation]`: speed [rad/s] and torque [N m] of the first driver's rotor.
+
+    Positive speeds are counter-clockwise seen from +z. The torque drives in the direction of turning, or brakes where
+    it is negative, at station `at` [m] (None: the left end). Without outputs, the rotors that drive no other share the
+    power equally.
+    `over_time` is added to the torque, and the outputs take it in their proportions unless one has its own; `ripple`
+    swings about it. `motor` and `load` are torque over speed of a run whose speed is free: what drives, and what
+    the outputs together take, both at the first driver's rotor (without `load`: `torque`, whatever the speed).
+    `base` moves the ground; `gravity` is an acceleration along x, y, z [m/s²], None for none.
+    """
+
+    speed: Speed
+    torque: SignedTorque = 0.0
+    at: LengthFromZero | None = None
+    over_time: TorqueHistory | None = None
+    ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    motor: TorqueLine | None = None
+    load: TorqueLine | None = None
+    base: Base | None = None
+    gravity: tuple[Acceleration, Acceleration, Acceleration] | None = None
+    output: tuple[Output, ...] = Field(default=(), max_length=1000)
+
+
+_SHORTEST_RECORD = 0.01  # revolutions
+
+
+def _half_the_run(data: dict[str, Any]) -> float:
+    return float(data.get("revolutions") or 0.0) / 2.0
+
+
+class Transient(Table):
+    """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps.
+
+    `start`: from static equilibrium under the load, or from turning unloaded, so that the load comes on at once.
+    `modal_coordinates`: how many of each part's modes to record in time. `method`: Newmark's steps, the exact march
+    between tooth events, or `auto`, the exact one where it applies.
+
+    With a `run` the speed varies over its time, in place of a number of revolutions; then none is discarded by default.
+    """
+
+    revolutions: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1e6)] | None = None
+    run: Run | None = None
+    discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)
+    points_per_revolution: Annotated[int, Whole(200, 1_000_000)] = 200
+    tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 5e-4
+    start: Literal["equilibrium", "unloaded"] = "equilibrium"
+    method: Literal["newmark", "exact", "auto"] = "newmark"
+    modal_coordinates: Annotated[int, Whole(0, 1000)] = 0
+
+    @model_validator(mode="after")
+    def _something_left(self) -> Transient:
+        if self.run is not None and self.revolutions is not None:
+            raise wrong("no number of revolutions beside a 'run', which has its own time", "revolutions")
+        if self.revolutions is None:
+            if self.run is None:
+                raise wrong("a plain number above 0 of revolutions, or a 'run'", "revolutions")
+            return self
+        if self.discard >= self.revolutions:
+            raise wrong(f"fewer revolutions than the {self.revolutions:g} of the run", "discard")
+        if self.revolutions - self.discard < _SHORTEST_RECORD:
+            told = f"{_SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
+            raise wrong(told, "revolutions")
+        return self
+
+
+class SpeedRange(Table):
+    """Speeds from `start` (key `from`) to `to` by `step` [rad/s], both ends included."""
+
+    model_config = ConfigDict(serialize_by_alias=True)
+
+    start: SpeedFromZero = Field(alias="from")
+    to: SpeedFromZero
+    step: Speed
+
+    @model_validator(mode="after")
+    def _leads_there(self) -> SpeedRange:
+        span = self.to - self.start
+        if self.step == 0.0 or span * self.step < 0.0:
+            raise wrong("a step that leads from 'from' to 'to'", "step")
+        if span / self.step > MOST_ENTRIES:
+            raise wrong(f"a step that makes at most {MOST_ENTRIES} speeds", "step")
+        return self
+
+
+def _range_or_list(value: Any) -> str:
+    return "~table" if isinstance(value, (dict, Table)) else "~list"
+
+
+Speeds = Annotated[
+    Annotated[SpeedRange, Tag("~table")]
+    | Annotated[tuple[SpeedFromZero, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)],
+    Discriminator(_range_or_list),
+]
+"""Speeds as a range or as a list [rad/s]."""
+
+
+def listed(speeds: SpeedRange | tuple[float, ...]) -> tuple[float, ...]:
+    """Return every speed of a range or list [rad/s], in order."""
+    if not isinstance(speeds, SpeedRange):
+        return speeds
+    count = math.floor((speeds.to - speeds.start) / speeds.step + 1e-9) + 1
+    return tuple(speeds.start + index * speeds.step for index in range(count))
+
+
+class Sweep(Table):
+    """`[sweep]`: the speeds to go through, as a range or a list."""
+
+    speed: Speeds
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """Every speed of the sweep [rad/s], in order."""
+        return listed(self.speed)

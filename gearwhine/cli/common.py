@@ -1,0 +1,146 @@
+"""Running a command on a case: read the case, work under a progress display, show or print the document.
+
+Common command-line options: the case's name, output folder, JSON, settings, quiet, fresh.
+"""
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter, Token
+
+if TYPE_CHECKING:
+    from gearwhine.analyses.result import Result
+    from gearwhine.case import Case
+    from gearwhine.progress import Progress
+
+
+def _folder(type_: object, tokens: Sequence[Token]) -> Path:
+    """The named folder; an empty name is refused, though as a path it is the current folder."""
+    (token,) = tokens
+    if not token.value.strip():
+        raise ValueError("--output is empty; expected the name of a folder, such as results")
+    return Path(token.value)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Common:
+    """Options of every command on a case."""
+
+    output: Annotated[
+        Path | None, Parameter(name=["--output", "-o"], converter=_folder, help="Folder for the results.")
+    ] = None
+    json: Annotated[bool, Parameter(name="--json", negative=(), help="Print one JSON document and nothing else.")] = (
+        False
+    )
+    settings: Annotated[
+        list[str],
+        Parameter(
+            name=["--set"],
+            negative=(),
+            consume_multiple=False,
+            help="Change the case: key.path=value, such as --set housing.box.mesh_size='20 mm'. May be repeated.",
+        ),
+    ] = field(default_factory=list)
+    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative=(), help="Show no progress.")] = False
+
+
+NONE_GIVEN = Common()
+Fresh = Annotated[
+    bool,
+    Parameter(name="--fresh", negative=(), help="Solve the housing's modes again, even if OUT holds them."),
+]
+FreshRun = Annotated[
+    bool,
+    Parameter(
+        name="--fresh",
+        negative=(),
+        help="Start again, even if OUT holds the housing's modes or an interrupted transient.",
+    ),
+]
+CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]
+
+_LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take, results' own names beside the latter
+_LONGEST_SHOWN = 60
+_RESULTS = (".csv", ".glb", ".html", ".json", ".nc", ".png", ".toml", ".unv", ".vtu")
+
+
+def on_case(
+    name: str,
+    common: Common,
+    work: Callable[["Case", "Progress"], dict[str, Any]],
+    show: Callable[[dict[str, Any]], None],
+) -> dict[str, Any]:
+    """Read the case, do the work under a progress display, hand the result over and return it."""
+    from gearwhine.case import load_case
+    from gearwhine.output.warnings import add_warnings
+    from gearwhine.progress import shown
+
+    loaded = load_case(name, common.settings)
+    if common.output is not None:
+        _check_folder(common.output)
+    for warning in loaded.warnings:
+        sys.stderr.write(f"warning: {warning}\n")
+    with shown(quiet=common.quiet) as progress:
+        document = work(loaded.case, progress)
+    add_warnings(document)
+    for warning in document["warnings"]:
+        sys.stderr.write(f"warning: {warning['message']}\n")
+    hand_over(document, common, show)
+    return document
+
+
+def written(result: "Result[Any]", folder: Path | None, progress: "Progress") -> dict[str, Any]:
+    """Write a result where a folder is given, and return its document."""
+    if folder is not None:
+        result.write(folder, progress=progress)
+    return result.document
+
+
+def results_folder(case: str, common: Common) -> Path:
+    """The folder for a command that always writes, once it is known to take files."""
+    folder = common.output if common.output is not None else Path(f"{Path(case).stem}-results")
+    _check_folder(folder)
+    return folder
+
+
+def hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[str, Any]], None]) -> None:
+    """Print a document: as JSON where that is asked for, else as ``show`` does for a person."""
+    from gearwhine.output import finite, json_text
+
+    if common.json:
+        sys.stdout.write(json_text(finite(document)) + "\n")
+    else:
+        show(document)
+
+
+def _check_folder(folder: Path) -> None:
+    """Refuse a place where no results can go before the work begins, and make nothing yet."""
+    from gearwhine.case import CaseError, Problem
+    from gearwhine.output import COMMANDS
+
+    if any(len(os.fsencode(part)) > _LONGEST_NAME for part in folder.parts) or len(os.fsencode(folder)) > _LONGEST_PATH:
+        shown = f"{str(folder)[:_LONGEST_SHOWN]}…"
+        raise CaseError([Problem("--output", shown, f"a folder whose name has at most {_LONGEST_NAME} bytes")])
+    place = folder
+    while not place.exists() and place != place.parent:
+        if place.is_symlink():
+            raise CaseError([Problem("--output", str(folder), f"a folder; {place} is a link that leads nowhere")])
+        place = place.parent
+    if not place.is_dir() or not os.access(place, os.W_OK):
+        what = "is a file" if place.is_file() else "cannot be written to"
+        raise CaseError([Problem("--output", str(folder), f"a folder for the results; {place} {what}")])
+    if folder.is_dir():
+        taken = [one.name for one in sorted(folder.iterdir()) if one.suffix in _RESULTS and one.is_dir()]
+        if taken:
+            expected = f"a folder for the results; in this one {taken[0]!r}, where a file would go, is a folder"
+            raise CaseError([Problem("--output", str(folder), expected)])
+        for name in COMMANDS:
+            place = folder / name
+            if place.is_symlink() or (place.exists() and not place.is_dir()):
+                expected = f"a folder for the results; in this one {name!r}, where that command's go, is no folder"
+                raise CaseError([Problem("--output", str(folder), expected)])

@@ -1,0 +1,1 @@
+"""Figures of gear pairs: teeth, flanks, contact, mesh stiffness, transmission error."""

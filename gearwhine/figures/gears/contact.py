@@ -1,0 +1,211 @@
+"""Contact pattern: load and pressure over the flank while a pair of teeth passes through its mesh.
+
+Load sharing, contact pressure and sliding velocity along the path of contact.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from coupling.gears import GearPairGeometry, LoadedMesh, ToothContact, path_of_contact
+from coupling.gears.geometry.path_of_contact import specific_sliding
+from coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    GREY,
+    HEAD,
+    INK,
+    LABEL,
+    MEGA,
+    MILLI,
+    MM_PER_INCH,
+    PANEL_WIDTH,
+    SERIES,
+    TICK,
+    legend,
+    panel,
+    sheet,
+)
+
+FloatArray = npt.NDArray[np.float64]
+
+_SHARE, _PRESSURE, _SLIDING, _BETWEEN, _LETTERS = 40.0, 40.0, 36.0, 4.0, 5.0  # [mm of paper]
+_NAMES = "ABCDE"
+_STEEPEST = 4.0  # specific sliding beyond this is cut off: it has no bound towards a base circle
+
+
+def draw_contact_path(
+    title: str, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh, pressure: FloatArray | None = None
+) -> Figure:
+    """Draw share of the load, Hertzian pressure and specific sliding over the driver's roll angle.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    pair, contact, mesh
+        Under a load, over one mesh period.
+    pressure
+        (n, m): of the pairs of `mesh`, Pa, NaN where it has no meaning; None leaves its panel out.
+    """
+    present = contact.pairs(mesh.phases).present
+    order = np.argsort(mesh.positions[present], kind="stable")
+    positions = mesh.positions[present][order]
+    rolls = np.degrees(pair.driver_roll_angle(positions))
+    below = FOOT + _SLIDING + _BETWEEN
+    middle = _PRESSURE + _BETWEEN if pressure is not None else 0.0
+    note = (
+        "A, E: the driver's active profile starts and ends; B: the pair before leaves; C: pitch point; D: the next one"
+    )
+    if contact.contact_range[0] < 0.0:
+        note += "; beyond A and E " + ("the face's other parts" if contact.faces is not None else "corners touch")
+    figure = sheet(HEAD + _LETTERS + _SHARE + _BETWEEN + middle + _SLIDING + FOOT, title, note)
+    share = panel(figure, below + middle, _SHARE)
+    share.plot(rolls, 100.0 * mesh.load_shares[present][order], color=BLUE, lw=1.4, label="_share")
+    share.set(ylabel="share of the load [%]", ylim=(0.0, 104.0))
+    panels = [share]
+    if pressure is not None:
+        axes = panel(figure, below, _PRESSURE)
+        axes.plot(rolls, MEGA * pressure[present][order], color=BLUE, lw=1.4, label="_pressure")
+        axes.set(ylabel="contact pressure [MPa]")
+        axes.set_ylim(0.0, 1.1 * MEGA * float(np.nanmax(pressure[np.isfinite(pressure)], initial=0.0)) or 1.0)
+        panels.append(axes)
+    axes = panel(figure, FOOT, _SLIDING)
+    on_path = np.linspace(0.0, pair.contact_ratio, 201)
+    handles = []
+    for name, color, sliding in zip(
+        ("driver", "driven gear"), (BLUE, SERIES[1]), specific_sliding(pair, on_path), strict=True
+    ):
+        shown = np.where(sliding < -_STEEPEST, np.nan, sliding)
+        handles += axes.plot(np.degrees(pair.driver_roll_angle(on_path)), shown, color=color, lw=1.3, label=name)
+    axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
+    axes.set(xlabel="roll angle of the driver [°]", ylabel="specific sliding")
+    legend(figure, handles)
+    panels.append(axes)
+    for axes in panels:
+        axes.set_xlim(float(rolls[0]), float(rolls[-1]))
+        axes.tick_params(labelbottom=axes is panels[-1])
+    mark_points(panels, np.degrees(path_of_contact(pair).driver_roll_angle))
+    return figure
+
+
+def mark_points(panels: list[Axes], places: FloatArray) -> None:
+    """Lines at the named points of the path in all panels, and their letters above the first."""
+    for letter, place in zip(_NAMES, places.tolist(), strict=True):
+        for axes in panels:
+            axes.axvline(place, color=GREY, lw=0.7, ls=(0, (2, 2)), zorder=1, label="_point")
+        panels[0].annotate(
+            letter,
+            (place, 1.0),
+            (0, 3),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            size=LABEL,
+            color=INK,
+            ha="center",
+        )
+
+
+_MAP, _MAP_GAP, _MAP_LETTERS = 52.0, 6.0, 5.0  # height of a map, and rooms between them and above [mm of paper]
+_SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # the colours' bar, the room before it and for its numbers [mm of paper]
+_PLACES = 240  # along the path of contact
+_N_PER_MM = 1e-3
+
+
+def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> Figure:
+    """Draw load per width and contact pressure over the driver's roll angle and the face.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    pair, contact, mesh
+        Under a load, over one mesh period, of a contact with faces.
+
+    Raises
+    ------
+    ValueError
+        For a contact whose faces are loaded evenly.
+    """
+    faces = contact.faces
+    if faces is None or mesh.line_loads is None:
+        raise ValueError(f"{pair.label}: the load is the same all over the face, which is no map")
+    places = np.linspace(*_reach(contact), _PLACES)
+    present = contact.pairs(mesh.phases).present
+    pressure = mesh_pressure(pair, contact, mesh)
+    loads, pressures = (
+        over_flank(values, mesh.positions, present, faces.shift, places) for values in (mesh.line_loads, pressure)
+    )
+    most = np.unravel_index(int(loads.argmax()), loads.shape)
+    even = mesh.force / (faces.face_width * pair.contact_ratio)
+    note = (
+        f"largest load per width {_N_PER_MM * loads[most]:.4g} N/mm, at z = {MILLI * faces.z[most[0]]:.3g} mm, "
+        f"{loads[most] / even:.3g} times the even load of the mean number of pairs; pale lines: contact at one time"
+    )
+    figure = sheet(HEAD + _MAP_LETTERS + 2.0 * _MAP + _MAP_GAP + FOOT, title, note)
+    rolls = np.degrees(pair.driver_roll_angle(places))
+    edges = MILLI * np.concatenate([faces.z - 0.5 * faces.width, [faces.z[-1] + 0.5 * faces.width]])
+    drawn = []
+    for bottom, values, what in (
+        (FOOT + _MAP + _MAP_GAP, _N_PER_MM * loads, "load per width [N/mm]"),
+        (FOOT, MEGA * pressures, "contact pressure [MPa]"),
+    ):
+        axes = panel(figure, bottom, _MAP, width=PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS)
+        _draw_map(axes, rolls, edges, values, what)
+        _draw_lines(axes, pair, contact, mesh)
+        drawn.append(axes)
+    drawn[0].tick_params(labelbottom=False)
+    drawn[1].set_xlabel("roll angle of the driver [°]")
+    mark_points(drawn, np.degrees(path_of_contact(pair).driver_roll_angle))
+    return figure
+
+
+def over_flank(
+    values: FloatArray, positions: FloatArray, present: npt.NDArray[np.bool_], shift: FloatArray, places: FloatArray
+) -> FloatArray:
+    """Values of slices (n, m, s) of the pairs at `positions` (n, m), by slice and place along the path, (s, p).
+
+    What has no value on the way stays without one, and nothing is carried where no slice comes.
+    """
+    found = np.zeros((shift.size, places.size))
+    at, rows = positions[present], values[present]
+    order = np.argsort(at, kind="stable")
+    for number, own in enumerate(shift):
+        found[number] = np.interp(places, at[order] + own, rows[order, number], left=0.0, right=0.0)
+    return found
+
+
+def _reach(contact: ToothContact) -> tuple[float, float]:
+    """Range of the path on which slices can touch."""
+    assert contact.faces is not None
+    reach = float(np.abs(contact.faces.shift).max())
+    return contact.contact_range[0] + reach, contact.contact_range[1] - reach
+
+
+def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArray, what: str) -> None:
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    half = 0.5 * (rolls[1] - rolls[0])
+    sides = np.concatenate([rolls - half, [rolls[-1] + half]])
+    shown = np.ma.masked_where(~(values > 0.0), values)
+    colors = axes.pcolormesh(sides, edges, shown, cmap=colormaps["viridis"], vmin=0.0, rasterized=True, label="_map")
+    axes.grid(visible=False)
+    axes.set(ylabel="z across the face [mm]", xlim=(rolls[0], rolls[-1]), ylim=(edges[0], edges[-1]))
+    across, up = (float(inches) * MM_PER_INCH for inches in figure.get_size_inches())
+    box = axes.get_position()
+    place = (box.x1 + _BESIDE / across, box.y0, _SCALE / across, _MAP / up)
+    bar = figure.colorbar(colors, cax=figure.add_axes(place))
+    bar.ax.tick_params(labelsize=TICK, colors=INK)
+    bar.set_label(what, size=LABEL, color=INK)
+
+
+def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> None:
+    """Contact lines at one time, the middle of the mesh period."""
+    assert contact.faces is not None
+    row = int(np.abs(mesh.phases - 0.5).argmin())
+    for position in mesh.positions[row][contact.pairs(mesh.phases[row : row + 1]).present[0]]:
+        roll = np.degrees(pair.driver_roll_angle(position + contact.faces.shift))
+        axes.plot(roll, MILLI * contact.faces.z, color="white", alpha=0.7, lw=0.9, zorder=3, label="_contact line")

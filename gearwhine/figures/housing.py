@@ -1,0 +1,402 @@
+"""Model frequencies over measured ones with a band of ±5 %, and their errors; with shapes, the MAC of each pair.
+
+Circles whose area is the MAC, at the frequencies of both modes, are the FMAC of Fotsch and Ewins (2000): one picture of
+shapes, frequencies and what the survey confuses.
+
+Correlation matrix such as the MAC: a cell for each two modes, its number where it fits, pairs outlined.
+
+COMAC and enhanced COMAC over the degrees of freedom of a survey, the worst of them named.
+
+Measured mode shapes beside the model's at the survey's points, as wireframes of one scale and phase.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib import colormaps
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+
+from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    GREY,
+    HEAD,
+    HERTZ,
+    INK,
+    LABEL,
+    MM_PER_INCH,
+    NOTE,
+    PALE,
+    PANEL_WIDTH,
+    RED,
+    SHEET_WIDTH,
+    TICK,
+    panel,
+    sheet,
+    shortened,
+)
+from housing.correlation.comparison import Comparison
+
+FloatArray = npt.NDArray[np.float64]
+
+_BAND = 0.05  # within which the source's model was (TM-104434, Table II)
+_PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the room between them [mm of paper]
+_LARGEST = 60.0  # area of the circle of MAC 1 [points²]
+_FAINT = 0.05  # MACs below it are not drawn
+_TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
+
+
+def draw_comparison(title: str, comparison: Comparison, model_frequencies: FloatArray) -> Figure:
+    """Draw pairs of modes on the plane of measured and model frequency, and their errors in per cent.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    comparison
+        With pairs or without.
+    model_frequencies
+        (n,): of all the model's modes, rad/s; those without a partner are marked on their axis.
+    """
+    measured = _measured(comparison)
+    model = np.asarray(model_frequencies) / HERTZ
+    highest = 1.06 * max(float(measured.max()), max((pair.model / HERTZ for pair in comparison.pairs), default=0.0))
+    row = _error_labels(comparison, highest)
+    above = _ERRORS + row.height + 2.0 + _BETWEEN
+    figure = sheet(HEAD + _PLANE + above + FOOT, title, _note(comparison))
+    plane = panel(figure, FOOT + above, _PLANE)
+    below = panel(figure, FOOT, _ERRORS)
+    ends = np.array([0.0, highest])
+    plane.fill_between(ends, (1.0 - _BAND) * ends, (1.0 + _BAND) * ends, color=PALE, lw=0.0, zorder=1)
+    plane.plot(ends, ends, color=GREY, lw=0.7, zorder=2, label="_equal")
+    handles: list[Artist] = [Patch(color=PALE, label="±5 %")]
+    if comparison.shapes is not None:
+        _draw_macs(plane, comparison, highest)
+        handles.append(_dot("other MACs, by area", GREY, filled=False))
+    sizes = [_LARGEST * (1.0 if pair.mac is None else pair.mac) for pair in comparison.pairs]
+    at = np.array([[pair.measured, pair.model] for pair in comparison.pairs]).reshape(-1, 2).T / HERTZ
+    plane.scatter(at[0], at[1], s=sizes, color=BLUE, edgecolors="white", linewidths=0.5, zorder=5, label="pairs")
+    handles.append(_dot("pairs", BLUE))
+    _mark_unpaired(plane, comparison, measured, model[model <= highest])
+    if comparison.shapes is not None and (comparison.shapes.unpaired_measured or comparison.shapes.unpaired_model):
+        handles.append(Line2D([], [], color=RED, lw=1.2, label="without a partner"))
+    if comparison.shapes is None and np.count_nonzero(model <= highest) > len(comparison.pairs):
+        handles.append(Line2D([], [], color=GREY, lw=1.2, label="other model modes"))
+    plane.set(xlim=(0.0, highest), ylim=(0.0, highest), ylabel="model [Hz]")
+    plane.tick_params(labelbottom=False)
+    _draw_errors(below, comparison, highest)
+    draw_row(below, row, _ERRORS + 1.0)
+    key = plane.legend(handles=handles, loc="lower right", frameon=False, fontsize=NOTE, labelspacing=0.35)
+    key.set_zorder(6)
+    return figure
+
+
+def _measured(comparison: Comparison) -> FloatArray:
+    """Every measured frequency, paired or not [Hz]."""
+    if comparison.shapes is not None:
+        return comparison.shapes.measured_frequencies / HERTZ
+    return np.array([pair.measured for pair in comparison.pairs]) / HERTZ
+
+
+def _note(comparison: Comparison) -> str:
+    if not comparison.pairs:
+        return f"paired by {comparison.pairing}: none"
+    worst, rms = comparison.max_error_percent, comparison.rms_error_percent
+    return f"paired by {comparison.pairing}: largest error {worst:.2f} %, rms {rms:.2f} %"
+
+
+def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
+    shapes = comparison.shapes
+    assert shapes is not None
+    values = shapes.mac.copy()
+    for pair in comparison.pairs:
+        values[pair.mode - 1, pair.measured_mode - 1] = 0.0
+    i, j = np.nonzero((values >= _FAINT) & (shapes.model_frequencies[:, None] <= HERTZ * highest))
+    axes.scatter(
+        shapes.measured_frequencies[j] / HERTZ,
+        shapes.model_frequencies[i] / HERTZ,
+        s=_LARGEST * values[i, j],
+        facecolors="none",
+        edgecolors=GREY,
+        linewidths=0.6,
+        zorder=4,
+        label="other MACs",
+    )
+
+
+def _mark_unpaired(axes: Axes, comparison: Comparison, measured: FloatArray, model: FloatArray) -> None:
+    """Short marks on the axes at modes without a partner: red where one was to be expected."""
+    shapes = comparison.shapes
+    paired = {pair.mode for pair in comparison.pairs}
+    expected = set() if shapes is None else set(shapes.unpaired_model)
+    for number, frequency in enumerate(model, start=1):
+        if number not in paired:
+            color = RED if number in expected else GREY
+            axes.axhline(frequency, 0.0, _TICK, color=color, lw=1.2, zorder=3, label="_unpaired model")
+    for number in () if shapes is None else shapes.unpaired_measured:
+        axes.axvline(measured[number - 1], 0.0, 1.5 * _TICK, color=RED, lw=1.2, zorder=3, label="_unpaired measured")
+
+
+def _draw_errors(axes: Axes, comparison: Comparison, highest: float) -> None:
+    errors = np.array([pair.error_percent for pair in comparison.pairs])
+    reach = max(1.15 * float(np.abs(errors).max(initial=0.0)), 130.0 * _BAND)
+    axes.axhspan(-100.0 * _BAND, 100.0 * _BAND, color=PALE, lw=0.0, zorder=1)
+    axes.axhline(0.0, color=GREY, lw=0.7, zorder=2)
+    places = np.array([pair.measured for pair in comparison.pairs]) / HERTZ
+    axes.vlines(places, 0.0, errors, color=BLUE, lw=1.6, zorder=3)
+    axes.plot(places, errors, color=BLUE, marker="o", ms=3.5, ls="", zorder=4, label="error")
+    axes.set(xlim=(0.0, highest), ylim=(-reach, reach), xlabel="measured [Hz]", ylabel="error [%]")
+
+
+def _error_labels(comparison: Comparison, highest: float) -> LabelRow:
+    pairs = comparison.pairs
+    labels = [
+        Label(f"{round(pair.error_percent, 1) + 0.0:+.1f}", pair.measured / HERTZ, pair.error_percent) for pair in pairs
+    ]
+    return arrange(labels, [PANEL_WIDTH * label.x / highest for label in labels], PANEL_WIDTH)
+
+
+def _dot(name: str, color: str, *, filled: bool = True) -> Line2D:
+    return Line2D([], [], color=color, marker="o", ms=4.5, mfc=color if filled else "none", mew=0.7, ls="", label=name)
+
+
+_COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
+_LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # beside the cells: row names, gap, colours, their numbers [mm]
+_BELOW = 11.0  # for the columns' names, which stand [mm]
+_CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # a cell's largest and least height, and the most of all [mm]
+_FITS = (4.2, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
+_NOTHING = 0.05  # values below it are left blank
+_DARK = 0.5  # values above it are written in white
+
+
+def draw_mac_matrix(
+    title: str,
+    values: FloatArray,
+    rows: Sequence[str],
+    columns: Sequence[str],
+    *,
+    outlined: Collection[tuple[int, int]] = (),
+    axes_named: tuple[str, str] = ("model mode", "measured mode"),
+    named: str = "MAC",
+    note: str = "",
+) -> Figure:
+    """Draw a matrix of values from 0 to 1, its first row at the bottom.
+
+    Parameters
+    ----------
+    title, note
+        Of the sheet.
+    values
+        (n, m).
+    rows, columns
+        Names of modes, such as ``3  1049 Hz``.
+    outlined
+        Cells of pairs: row and column from 0.
+    axes_named
+        Titles of rows and columns.
+    named
+        Name of the values.
+
+    Raises
+    ------
+    ValueError
+        Names that do not fit the values, or no values.
+    """
+    if values.shape != (len(rows), len(columns)) or values.size == 0:
+        raise ValueError(f"{len(rows)} and {len(columns)} names for values of shape {values.shape}")
+    room = SHEET_WIDTH - _LEFT - _BESIDE - _SCALE - _NUMBERS
+    high = float(np.clip(_TALLEST / len(rows), _LEAST_CELL, _CELL))
+    wide = min(room / len(columns), 1.6 * high)
+    width, height = wide * len(columns), high * len(rows)
+    figure = sheet(HEAD + height + _BELOW + FOOT, title, note)
+    axes = panel(figure, FOOT + _BELOW, height, left=_LEFT, width=width)
+    axes.grid(visible=False)
+    scale = Normalize(0.0, 1.0)
+    axes.pcolormesh(values, cmap=_COLORS, norm=scale, edgecolors="white", linewidth=0.3)
+    for row, column in outlined:
+        axes.add_patch(Rectangle((column, row), 1.0, 1.0, fill=False, edgecolor=RED, lw=1.2, zorder=4))
+    if wide >= _FITS[0] and high >= _FITS[1]:
+        for (row, column), value in np.ndenumerate(values):
+            if value >= _NOTHING:
+                color, size = "white" if value > _DARK else INK, min(1.05 * wide, 5.5)
+                text = f"{value:.2f}"
+                axes.text(column + 0.5, row + 0.5, text, ha="center", va="center", size=size, color=color)
+    _name(axes.xaxis, columns, wide, upright=True)
+    _name(axes.yaxis, rows, high, upright=False)
+    axes.tick_params(length=0.0)
+    axes.set(xlabel=axes_named[1], ylabel=axes_named[0])
+    axes.yaxis.set_label_coords(-(_LEFT - 3.0) / width, 0.5)
+    across, up = (float(inches) * MM_PER_INCH for inches in figure.get_size_inches())
+    place = ((_LEFT + width + _BESIDE) / across, (FOOT + _BELOW) / up, _SCALE / across, height / up)
+    bar = figure.colorbar(ScalarMappable(scale, _COLORS), cax=figure.add_axes(place))
+    bar.ax.tick_params(labelsize=TICK, colors=INK)
+    bar.set_label(named, size=LABEL, color=INK)
+    return figure
+
+
+def _name(axis: Axis, names: Sequence[str], size: float, *, upright: bool) -> None:
+    """Names in the middles of the cells, every other one or fewer where they would touch."""
+    step = max(int(np.ceil(2.6 / size)), 1)
+    places = range(0, len(names), step)
+    axis.set_ticks([place + 0.5 for place in places])
+    axis.set_ticklabels([names[place] for place in places], size=NOTE, rotation=90.0 if upright else 0.0)
+
+
+_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # of a panel, and between them [mm of paper]
+_NAMED = 6  # at most, of the degrees of freedom that stand out
+_STANDS_OUT = 2.0  # times the median of the enhanced criterion
+
+
+def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray, names: Sequence[str]) -> Figure:
+    """Draw both criteria as bars in the survey's order; red what stands out by the one that sees signs and gains.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    comac, enhanced
+        (n,): NaN where unknown.
+    names
+        (n,): of the degrees of freedom, such as ``12 +z``.
+
+    Raises
+    ------
+    ValueError
+        Arrays that do not fit.
+    """
+    count = len(names)
+    if comac.shape != (count,) or enhanced.shape != (count,) or count == 0:
+        raise ValueError(f"criteria of shapes {comac.shape} and {enhanced.shape} for {count} degrees of freedom")
+    known = np.flatnonzero(np.isfinite(enhanced))
+    worst = known[np.argsort(-enhanced[known], kind="stable")][:_NAMED]
+    worst = worst[enhanced[worst] > _STANDS_OUT * np.median(enhanced[known])] if known.size else worst
+    labels = [Label(names[dof], float(dof + 1), float(enhanced[dof]), RED) for dof in worst]
+    row = arrange(labels, [PANEL_WIDTH * (dof + 0.5) / count for dof in worst], PANEL_WIDTH)
+    note = "COMAC: 1 where pairs agree in amplitude; enhanced COMAC: 0 where they agree in sign and size too"
+    figure = sheet(HEAD + 2.0 * _CRITERIA_HEIGHT + 2.0 * _CRITERIA_GAP + row.height + 2.0 + FOOT, title, note)
+    lower = panel(figure, FOOT, _CRITERIA_HEIGHT)
+    upper = panel(figure, FOOT + _CRITERIA_HEIGHT + row.height + _CRITERIA_GAP + 2.0, _CRITERIA_HEIGHT)
+    _bars(upper, comac, worst)
+    _bars(lower, enhanced, worst)
+    upper.set(ylim=(0.0, 1.0), ylabel="COMAC")
+    upper.tick_params(labelbottom=False)
+    largest = float(np.nanmax(enhanced)) if known.size else 0.0
+    lower.set(ylim=(0.0, max(1.08 * largest, 0.1)), ylabel="enhanced COMAC")
+    lower.set(xlabel="measured degree of freedom, in the survey's order")
+    draw_row(lower, row, _CRITERIA_HEIGHT + 1.0)
+    return figure
+
+
+def _bars(axes: Axes, values: FloatArray, worst: npt.NDArray[np.int64]) -> None:
+    places = np.arange(1, len(values) + 1)
+    colors = [RED if place - 1 in worst else BLUE for place in places]
+    axes.bar(places, np.nan_to_num(values), width=0.85, color=colors, lw=0.0)
+    axes.set_xlim(0.5, len(values) + 0.5)
+    axes.grid(visible=False, axis="x")
+
+
+IntArray = npt.NDArray[np.int64]
+
+_MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # beside the panels, between two pairs, and for a pair's words [mm]
+_IN_A_ROW = 2  # pairs
+_LONGEST = 56  # caption [letters]
+_REACH = 0.09  # largest displacement drawn, as a part of the survey's diagonal
+_FAINTEST = 0.3  # opacity of what is farthest from the eye
+
+
+@dataclass(frozen=True)
+class ShapePair:
+    """A measured shape and the model's.
+
+    Attributes
+    ----------
+    heading : str
+    measured, model : ndarray, shape (n_points, 3)
+        Displacements at the same phase, to the same scale.
+    """
+
+    heading: str
+    measured: FloatArray
+    model: FloatArray
+
+
+def draw_measured_shapes(
+    title: str, positions: FloatArray, edges: IntArray, pairs: Sequence[ShapePair], towards_eye: FloatArray
+) -> Figure:
+    """Draw pairs of shapes, two pairs in a row, the measured one left.
+
+    Parameters
+    ----------
+    title : str
+    positions : ndarray, shape (n_points, 3)
+        Of the survey [m].
+    edges : ndarray of int, shape (n_edges, 2)
+        Points to join.
+    pairs : sequence of ShapePair
+    towards_eye : ndarray, shape (3,)
+        From the survey to the camera, a unit vector; y points up.
+    """
+    flat, depth = _projected(positions, towards_eye)
+    reach = _REACH * float(np.linalg.norm(np.ptp(positions, axis=0)))
+    low, high = flat.min(axis=0) - reach, flat.max(axis=0) + reach
+    width = (SHEET_WIDTH - 2.0 * _MARGIN - (_IN_A_ROW - 1) * _GAP) / (2 * _IN_A_ROW)
+    tall = width * float(np.clip((high - low)[1] / (high - low)[0], 0.4, 1.6))
+    rows = -(-len(pairs) // _IN_A_ROW)
+    height = HEAD + rows * (tall + _CAPTION) + _MARGIN
+    note = "left: measured, right: model; same camera and phase, shapes of one size; colours by part of the largest"
+    figure = sheet(height, title, note)
+    near = (depth - depth.min()) / (np.ptp(depth) or 1.0)
+    for number, pair in enumerate(pairs):
+        row, column = divmod(number, _IN_A_ROW)
+        left = _MARGIN + column * (2.0 * width + _GAP)
+        up = height - HEAD - (row + 1) * (tall + _CAPTION)
+        figure.text(
+            left / SHEET_WIDTH, (up + tall + 4.0) / height, shortened(pair.heading, _LONGEST), fontsize=NOTE + 0.5,
+            color=INK, parse_math=False,
+        )  # fmt: skip
+        largest = max(float(np.linalg.norm(shape, axis=1).max()) for shape in (pair.measured, pair.model)) or 1.0
+        for side, (name, shape) in enumerate((("measured", pair.measured), ("model", pair.model))):
+            place = (left + side * width) / SHEET_WIDTH, up / height, width / SHEET_WIDTH, tall / height
+            axes = figure.add_axes(place)
+            axes.set_axis_off()
+            axes.set_xlim(low[0], high[0])
+            axes.set_ylim(low[1], high[1])
+            axes.set_aspect("equal")
+            axes.text(0.02, 1.0, name, transform=axes.transAxes, fontsize=NOTE - 0.5, color=GREY, va="bottom")
+            moved, _ = _projected(positions + shape * (reach / largest), towards_eye)
+            _wires(axes, flat, moved, np.linalg.norm(shape, axis=1) / largest, edges, near)
+    return figure
+
+
+def _projected(positions: FloatArray, towards_eye: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Places on the picture, shape (n, 2), and nearness to the eye, shape (n,)."""
+    right = np.cross([0.0, 1.0, 0.0], towards_eye)
+    right /= np.linalg.norm(right)
+    upward = np.cross(towards_eye, right)
+    return positions @ np.stack([right, upward], axis=1), positions @ towards_eye
+
+
+def _wires(
+    axes: Axes, rest: FloatArray, moved: FloatArray, amplitude: FloatArray, edges: IntArray, near: FloatArray
+) -> None:
+    """The wires at rest in grey, and moved, the far ones fainter and behind."""
+    order = np.argsort(near[edges].mean(axis=1)) if len(edges) else np.zeros(0, dtype=np.int64)
+    edges = edges[order]
+    axes.add_collection(LineCollection(list(rest[edges]), colors=PALE, linewidths=0.5, zorder=1))
+    colours = colormaps["viridis"](amplitude[edges].mean(axis=1))
+    colours[:, 3] = _FAINTEST + (1.0 - _FAINTEST) * near[edges].mean(axis=1)
+    axes.add_collection(LineCollection(list(moved[edges]), colors=colours, linewidths=0.9, zorder=2))
+    dots = colormaps["viridis"](amplitude)
+    dots[:, 3] = _FAINTEST + (1.0 - _FAINTEST) * near
+    axes.scatter(moved[:, 0], moved[:, 1], s=2.0, c=dots, linewidths=0.0, zorder=3)

@@ -1,0 +1,158 @@
+"""Sweep figures: levels over the swept key, and a waterfall for each sensor."""
+
+from collections.abc import Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from gearwhine.figures.spectra import draw_waterfall
+from gearwhine.figures.style import GREY, SERIES, tidy
+from gearwhine.output import file_stems
+
+_MOST_WATERFALLS = 12  # of a grid over several keys
+_MARKS = 30  # points up to which each is marked
+
+
+def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Draw a gathered sweep: yields the name of each figure, such as ``sweep-rms``, and the figure.
+
+    Levels stand over the speed, or over the first key where the speed is not swept; of other keys each combination has
+    a line of its own in them, and a waterfall of its own up to twelve pictures in all.
+    """
+    if not bool(dataset["done"].any()):
+        return
+    swept = [str(name) for name in dataset["done"].dims]
+    along = "speed" if "speed" in swept else swept[0]
+    others = [name for name in swept if name != along]
+    places = [dict(zip(others, place, strict=True)) for place in product(*(range(dataset.sizes[n]) for n in others))]
+    if "sensor_rms" in dataset:
+        yield "sweep-rms", _sensor_levels(title, dataset, along, places)
+        yield from _waterfalls(title, dataset, along, places)
+    if "mesh_force_mean" in dataset:
+        yield "sweep-mesh-force", _mesh_forces(title, dataset, along, places)
+
+
+def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
+    sensors = [str(name) for name in dataset["sensor"].values]
+    figure = Figure(figsize=(9.0, 0.9 + 2.4 * len(sensors)), layout="constrained")
+    for axes, sensor in zip(figure.subplots(len(sensors), 1, sharex=True, squeeze=False)[:, 0], sensors, strict=True):
+        _draw_lines(axes, dataset["sensor_rms"].sel(sensor=sensor), along, places)
+        axes.set_yscale("log")
+        axes.set_ylabel("acceleration\n[m/s², rms]")
+        axes.set_title(sensor, fontsize=10, loc="left", parse_math=False)
+    _finish(figure, dataset, along, places)
+    figure.suptitle(f"{title}: acceleration over {_axis_label(dataset, along)}", fontsize=11, parse_math=False)
+    return figure
+
+
+def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
+    contacts = [str(name) for name in dataset["contact"].values]
+    figure = Figure(figsize=(9.0, 0.9 + 2.6 * len(contacts)), layout="constrained")
+    for row, contact in zip(figure.subplots(len(contacts), 2, sharex=True, squeeze=False), contacts, strict=True):
+        left, right = row
+        _draw_lines(left, dataset["mesh_force_peak"].sel(contact=contact), along, places)
+        _draw_lines(left, dataset["mesh_force_mean"].sel(contact=contact), along, places, dashed=True)
+        left.set_ylabel("mesh force [N]")
+        left.set_ylim(0.0, 1.08 * float(dataset["mesh_force_peak"].sel(contact=contact).max()) or 1.0)
+        left.set_title(f"{contact}: largest, and mean (dashed)", fontsize=10, loc="left", parse_math=False)
+        _draw_lines(right, 100.0 * dataset["contact_loss"].sel(contact=contact), along, places)
+        right.set_ylabel("time apart [%]")
+        right.set_ylim(0.0, max(1.08 * 100.0 * float(dataset["contact_loss"].sel(contact=contact).max()), 1.0))
+    _finish(figure, dataset, along, places)
+    figure.suptitle(f"{title}: gear-mesh force over {_axis_label(dataset, along)}", fontsize=11, parse_math=False)
+    return figure
+
+
+def _waterfalls(
+    title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]
+) -> Iterator[tuple[str, Figure]]:
+    """A waterfall for each sensor and each combination of the other keys that has a spectrum."""
+    pictures = []
+    for sensor, place in product([str(name) for name in dataset["sensor"].values], places):
+        data = dataset.isel(place).transpose(along, ...)
+        spectra = data["sensor_spectrum"].sel(sensor=sensor).transpose(along, "order").values
+        if np.isfinite(spectra).any():
+            pictures.append((sensor, place, data, spectra))
+    pictures = pictures[:_MOST_WATERFALLS]
+    names = [" ".join([sensor, *_described(dataset, place)]) for sensor, place, *_ in pictures]
+    for stem, name, (_, _, data, spectra) in zip(file_stems(names, "waterfall-"), names, pictures, strict=True):
+        figure = draw_waterfall(
+            f"{title}: {name}",
+            _numbers(data, along),
+            data["frequency"].transpose(along, "order").values,
+            spectra,
+            value_name=_axis_label(dataset, along),
+            unit="m/s²",
+            mesh_frequencies=data["mesh_frequency"].transpose(along, "contact").values if "contact" in data else (),
+            housing_frequencies=(
+                data["housing_frequency"].transpose(along, "housing_mode").values if "housing_mode" in data else ()
+            ),
+        )
+        _name_values(figure.axes[0].yaxis, data, along)
+        yield stem, figure
+
+
+def _draw_lines(
+    axes: Any, levels: xr.DataArray, along: str, places: list[dict[str, int]], *, dashed: bool = False
+) -> None:
+    at = _numbers(levels, along)
+    order = np.argsort(at)
+    for number, place in enumerate(places):
+        values = levels.isel(place).values
+        style = {"ls": (0, (4, 3)), "lw": 0.9} if dashed else {"ls": "-", "lw": 1.2}
+        mark = "o" if len(at) <= _MARKS and not dashed else None
+        axes.plot(at[order], values[order], color=SERIES[number % len(SERIES)], marker=mark, ms=3.0, **style)
+    tidy(axes)
+
+
+def _finish(figure: Figure, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> None:
+    """Name the axis below, and the lines where there are several."""
+    for axes in figure.axes:
+        specification = axes.get_subplotspec()
+        if specification is not None and specification.is_last_row():
+            axes.set_xlabel(_axis_label(dataset, along))
+            _name_values(axes.xaxis, dataset, along)
+    if len(places) > 1:
+        colours = SERIES[: len(places)]
+        names = [", ".join(_described(dataset, place)) for place in places[: len(colours)]]
+        handles = [
+            figure.axes[0].plot([], [], color=colour, lw=1.2, label=name)[0]
+            for colour, name in zip(colours, names, strict=False)
+        ]
+        legend = figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=8)
+        for text in legend.get_texts():
+            text.set(parse_math=False, color=GREY)
+
+
+def _numbers(data: xr.Dataset | xr.DataArray, along: str) -> Any:
+    """The swept values; where they are words, their places."""
+    values = data[along].values
+    return values.astype(np.float64) if values.dtype.kind in "fiu" else np.arange(len(values), dtype=np.float64)
+
+
+def _name_values(axis: Any, data: xr.Dataset, along: str) -> None:
+    """Words in place of numbers where the swept values are words."""
+    values = data[along].values
+    if values.dtype.kind not in "fiu":
+        axis.set_ticks(range(len(values)), [str(value) for value in values])
+
+
+def _axis_label(dataset: xr.Dataset, along: str) -> str:
+    attributes = dataset[along].attrs
+    unit = attributes.get("units", "")
+    name = "speed" if along == "speed" else attributes.get("long_name", along)
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
+def _described(dataset: xr.Dataset, place: dict[str, int]) -> list[str]:
+    """A combination of the other keys in words."""
+    texts = []
+    for name, index in place.items():
+        value, unit = dataset[name].values[index], dataset[name].attrs.get("units", "")
+        last = dataset[name].attrs.get("long_name", name).rpartition(".")[2]
+        shown = f"{value:g}" if dataset[name].dtype.kind in "fiu" else str(value)
+        texts.append(f"{last} {shown}{f' {unit}' if unit not in ('', '1') else ''}")
+    return texts

@@ -1,0 +1,426 @@
+"""Transient figures: spectra, mesh forces, orbits.
+
+Sensor spectra, a panel each, their leading lines named.
+
+Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars.
+
+Tooth friction over time: force across the line of action, and power loss.
+
+Modal coordinates in time and frequency, after Figs. 7, 8, 10 and 11 of NASA TM-101442.
+
+Orbits of gears: mean position of each centre, and its motion about it.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from coupling import amplitude_spectrum
+from coupling.signals import decibels
+from coupling.signals.histories import Histories
+from coupling.signals.spectrum import Window, signal_parts
+from gearwhine.case import Case, mesh_frequencies
+from gearwhine.figures.labels import Label, arrange, draw_row
+from gearwhine.figures.spectra import draw_lines
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    GREY,
+    HEAD,
+    INK,
+    LABEL,
+    LEFT,
+    NOTE,
+    RED,
+    SERIES,
+    SHEET_WIDTH,
+    legend,
+    panel,
+    panel_size,
+    sheet,
+    shortened,
+    tidy,
+)
+from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.signature import Contribution, SolvedSignature, TracedLine
+from gearwhine.solve.transient import SolvedTransient
+from housing.correlation.comparison import Comparison
+
+FloatArray = npt.NDArray[np.float64]
+
+_HEIGHT, _BETWEEN, _RIGHT = 40.0, 7.0, 14.0  # of a panel, above it, and beside it for levels [mm]
+_NAMED = 6  # lines in a panel
+_LEAST = 1e-4  # of the highest line, below which none is named
+
+
+def draw_sensor_spectra(
+    title: str,
+    solved: SolvedTransient,
+    lines: dict[str, tuple[TracedLine, ...]],
+    *,
+    mesh_frequencies: Sequence[float] = (),
+    marked: FloatArray,
+    marked_as: str = "housing modes",
+) -> Figure:
+    """Draw amplitudes in m/s², levels in dB beside them, and what the leading lines are above each panel.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    solved
+        The transient.
+    lines
+        Of each sensor, highest first.
+    mesh_frequencies
+        Hz; they and their multiples are marked.
+    marked
+        (n,): frequencies of modes, Hz.
+    marked_as
+        Names of the quantities.
+    """
+    width, limit = SHEET_WIDTH - LEFT - _RIGHT, solved.trusted_limit
+    rows = {}
+    for name, spectrum in solved.sensor_spectra.items():
+        told = [line for line in lines[name] if abs(line.value) >= _LEAST * abs(lines[name][0].value)][:_NAMED]
+        labels = [Label(shortened(_text(line)), line.frequency, abs(line.value), _color(line)) for line in told]
+        rows[name] = (spectrum, arrange(labels, [label.x / limit * width for label in labels], width))
+    height = HEAD + FOOT + sum(_HEIGHT + _BETWEEN + row.height for _, row in rows.values())
+    note = f"{title}; peak amplitudes, levels of their rms values re 1 µm/s²"
+    figure = sheet(height, "Housing acceleration", note)
+    bottom = FOOT
+    for number, (name, (spectrum, row)) in enumerate(reversed(rows.items())):
+        axes = panel(figure, bottom, _HEIGHT, width=width)
+        draw_lines(axes, spectrum, limit)
+        low, high = axes.get_ylim()
+        for base in mesh_frequencies:
+            for harmonic in range(1, int(limit / base * (1.0 + 1e-9)) + 1):
+                axes.axvline(harmonic * base, color=RED, lw=0.7, ls=(0, (4, 3)), zorder=0)
+        inside = marked[marked <= limit]
+        places = np.full(inside.size, 0.02)
+        axes.plot(inside, places, marker=6, color=GREY, ms=4, ls="", transform=axes.get_xaxis_transform())
+        axes.set_ylabel("acceleration [m/s²]", fontsize=LABEL)
+        beside = axes.twinx()
+        beside.set_ylim(*decibels([low, high]).tolist())
+        beside.set_ylabel("level [dB]", fontsize=LABEL, color=INK)
+        beside.tick_params(labelsize=NOTE, colors=INK)
+        beside.spines[["top"]].set_visible(False)
+        draw_row(axes, row, panel_size(axes)[1] + 0.8)
+        axes.annotate(
+            name, (0.99, 0.95), xycoords="axes fraction", fontsize=LABEL, ha="right", va="top", parse_math=False
+        )
+        if number:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel("frequency [Hz]")
+        bottom += _HEIGHT + _BETWEEN + row.height
+    handles = []
+    if len(mesh_frequencies):
+        handles.append(Line2D([], [], color=RED, lw=0.7, ls=(0, (4, 3)), label="mesh harmonic"))
+    if marked.size:
+        handles.append(Line2D([], [], color=GREY, marker=6, ms=4, ls="", label=marked_as))
+    legend(figure, handles)
+    return figure
+
+
+def _text(line: TracedLine) -> str:
+    name = line.named.name.replace(" mode of ", " ")
+    return f"{line.frequency:.0f} Hz {'free ' if line.named.kind == 'mode' else ''}{name}"
+
+
+def _color(line: TracedLine) -> str:
+    return RED if line.named.kind == "mesh" else INK
+
+
+_LINES = 3  # of each sensor
+_PARTS = 6  # of each kind
+_BAR, _NAMES, _BARS_GAP = 3.4, 31.0, 15.0  # height of a bar, room for its name, and above a panel [mm]
+_MARGIN = 4.0
+_VISIBLE = 0.05  # percent, below which a part is next to nothing
+
+
+def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> Figure:
+    """Draw the parts in phase with each line, in percent of it: those of modes, then those of bearings, largest first.
+
+    Bars to the left work against the line. Beyond the largest parts of each kind there is a bar of all others.
+    """
+    width = (SHEET_WIDTH - 2.0 * _MARGIN) / 2.0 - _NAMES - 3.0
+    shown = [(name, line) for name, told in lines.items() for line in told[:_LINES]]
+    groups = [(name, line, _gathered(line.modes), _gathered((*line.bearings, line.free))) for name, line in shown]
+    heights = [_BAR * max(len(modes), len(bearings)) for _, _, modes, bearings in groups]
+    height = HEAD + FOOT + sum(heights) + _BARS_GAP * len(groups)
+    note = f"{title}; parts in phase with the line, in percent of it; left: housing modes, right: bearings"
+    figure = sheet(height, "Where the lines come from", note)
+    up = height - HEAD
+    for (name, line, modes, bearings), tall in zip(groups, heights, strict=True):
+        up -= _BARS_GAP - 5.0 + tall
+        heading = f"{name}: {line.frequency:.0f} Hz, {abs(line.value):.3g} m/s² peak, {line.named.name}"
+        figure.text(
+            _MARGIN / SHEET_WIDTH,
+            (up + tall + 1.2) / height,
+            shortened(heading, 100),
+            fontsize=NOTE + 1.0,
+            color=INK,
+            parse_math=False,
+        )
+        for side, parts in enumerate((modes, bearings)):
+            left = _MARGIN + side * (width + _NAMES + 3.0) + _NAMES
+            _draw(panel(figure, up, tall, left=left, width=width), parts, BLUE if side == 0 else SERIES[2])
+        up -= 5.0
+    return figure
+
+
+def _gathered(parts: Sequence[Contribution]) -> list[tuple[str, float]]:
+    """Names and shares of the largest parts, and of all others together."""
+    ranked = sorted(parts, key=lambda part: -abs(part.value))
+    told = [(part.name, part.share) for part in ranked[:_PARTS]]
+    rest = ranked[_PARTS:]
+    return [*told, (f"{len(rest)} others", sum(part.share for part in rest))] if rest else told
+
+
+def _draw(axes: Axes, parts: list[tuple[str, float]], color: str) -> None:
+    names, shares = [shortened(name, 26) for name, _ in parts], [100.0 * share for _, share in parts]
+    axes.barh(range(len(parts)), shares, color=[color if share >= 0.0 else RED for share in shares], height=0.72)
+    axes.set_yticks(range(len(parts)), names, fontsize=NOTE, parse_math=False)
+    axes.tick_params(axis="y", length=0.0)
+    axes.invert_yaxis()
+    axes.axvline(0.0, color=GREY, lw=0.7)
+    low, high = min(0.0, *shares), max(0.0, *shares)
+    room = 0.2 * (high - low) or 1.0
+    # A value stands beyond its bar, on the left of negative ones.
+    axes.set_xlim(low - (room if min(shares) <= -_VISIBLE else 0.0), high + room)
+    for place, share in enumerate(shares):
+        axes.annotate(
+            _percent(share), (share, place), (2.0 if share > -_VISIBLE else -2.0, 0.0), textcoords="offset points",
+            fontsize=NOTE - 0.5, color=INK, va="center", ha="left" if share > -_VISIBLE else "right",
+        )  # fmt: skip
+    axes.grid(visible=False, axis="y")
+
+
+def _percent(share: float) -> str:
+    return "0" if abs(share) < _VISIBLE else f"{share:.{0 if abs(share) >= 10.0 else 1}f}"
+
+
+_PERIODS = 6  # of the mesh that are drawn
+
+
+def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, float]) -> Figure:
+    """Draw six mesh periods of each contact with friction.
+
+    Parameters
+    ----------
+    title
+        Of the figure.
+    histories
+        With friction.
+    mesh_frequencies
+        Of the contacts, Hz.
+    """
+    shown = {name: found for name, found in histories.mesh_friction.items() if name in mesh_frequencies}
+    figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(shown)), layout="constrained")
+    rows = figure.subplots(len(shown), 2, squeeze=False)
+    for (left, right), (name, found) in zip(rows, shown.items(), strict=True):
+        times = 1e3 * (histories.times - histories.times[0])
+        kept = times <= 1e3 * _PERIODS / mesh_frequencies[name]
+        left.plot(times[kept], found[kept, 0], color=BLUE, lw=1.0)
+        left.axhline(0.0, color=GREY, lw=0.6)
+        left.set(xlabel="time [ms]", ylabel="friction force [N]")
+        left.set_title(f"{name}: across the line of action", fontsize=10, loc="left", parse_math=False)
+        mean = float(np.mean(found[:, 1]))
+        right.plot(times[kept], found[kept, 1], color=RED, lw=1.0)
+        right.axhline(mean, color=GREY, lw=0.8, ls="--")
+        right.set(xlabel="time [ms]", ylabel="friction takes [W]")
+        right.set_title(f"{mean:.3g} W in the mean", fontsize=10, loc="left")
+        tidy(left)
+        tidy(right)
+    figure.suptitle(title, fontsize=11, parse_math=False)
+    return figure
+
+
+_MODES = 4  # that a panel tells apart
+_LONGEST = 6000  # points of a curve
+
+
+def draw_modal_coordinates(
+    title: str, times: FloatArray, coordinates: Mapping[str, FloatArray], limit: float, window: Window
+) -> Figure:
+    """Draw each kind of coordinates of each part: left over time, right their spectra without the d.c. part.
+
+    Parameters
+    ----------
+    title
+        Of the figure.
+    times
+        (s,): s, evenly spaced.
+    coordinates
+        (s,) each, named ``part: kind number``, with an axis after a comma.
+    limit
+        Of the frequency axis, Hz.
+    window
+        Of the spectra.
+    """
+    groups: dict[str, dict[str, FloatArray]] = {}
+    for name, values in coordinates.items():
+        kind, _, axis = name.partition(", ")
+        head, _, number = kind.rpartition(" ")
+        groups.setdefault(f"{head}, {axis}" if axis else head, {})[number] = values
+    figure = Figure(figsize=(10.0, 0.7 + 2.1 * len(groups)), layout="constrained")
+    interval, every = float(times[1] - times[0]), max(1, times.size // _LONGEST)
+    rows = figure.subplots(len(groups), 2, squeeze=False)
+    for (left, right), (name, group) in zip(rows, groups.items(), strict=True):
+        top = 0.0
+        for color, (number, values) in zip(SERIES, list(group.items())[:_MODES], strict=False):
+            parts = signal_parts(values)
+            label = f"mode {number}: d.c. {float(parts.mean):.2e}, a.c. {float(parts.rms):.1e} rms"
+            left.plot(1e3 * (times - times[0])[::every], values[::every], color=color, lw=0.7, label=label)
+            spectrum = amplitude_spectrum(values, interval, window)
+            shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
+            right.plot(spectrum.frequencies[shown], spectrum.amplitude[shown], color=color, lw=0.8)
+            top = max(top, float(spectrum.amplitude[shown].max(initial=0.0)))
+        if top > 0.0:
+            right.set_yscale("log")
+            right.set_ylim(1e-5 * top, 3.0 * top)
+        right.set_xlim(0.0, limit)
+        left.legend(fontsize=7, frameon=False, loc="upper left", bbox_to_anchor=(0.0, 1.0), ncols=1)
+        low, high = left.get_ylim()
+        left.set_ylim(low, high + 0.45 * (high - low))
+        left.set_title(name, fontsize=9, loc="left", parse_math=False)
+        for axes in (left, right):
+            tidy(axes, size=8.0)
+    left.set_xlabel("time [ms]")
+    right.set_xlabel("frequency [Hz]; peak amplitudes")
+    figure.suptitle(f"{title} [m √kg; torsion: rad √(kg m²)]", fontsize=11, parse_math=False)
+    return figure
+
+
+def draw_orbits(title: str, motions: Mapping[str, FloatArray]) -> Figure:
+    """Draw each gear's centre from where it stands without load, and below enlarged about its mean.
+
+    Parameters
+    ----------
+    title
+        Of the figure.
+    motions
+        x, y of each gear's centre [m] in the first columns, shape (s, 2 or more). Gears of a row have one scale.
+    """
+    figure = Figure(figsize=(max(3.6 * len(motions), 5.0), 7.6), layout="constrained")
+    rows = figure.subplots(2, len(motions), squeeze=False)
+    orbits = {name: 1e6 * motion[:, :2] for name, motion in motions.items()}
+    reach = [1.12 * max(float(np.abs(orbit).max()) for orbit in orbits.values()) or 1.0, 0.0]
+    reach[1] = 1.12 * max(float(np.abs(orbit - orbit.mean(axis=0)).max()) for orbit in orbits.values()) or 1.0
+    for column, (name, orbit) in enumerate(orbits.items()):
+        above, below = rows[:, column]
+        center = orbit.mean(axis=0)
+        above.annotate("", center, (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": RED, "lw": 0.9})
+        above.plot([0.0], [0.0], marker="+", color=GREY, ms=7)
+        above.plot(orbit[:, 0], orbit[:, 1], color=BLUE, lw=0.8)
+        below.plot(*(orbit - center).T, color=BLUE, lw=0.5)
+        below.plot([0.0], [0.0], marker="+", color=RED, ms=7)
+        for axes, what, size in ((above, "x, y", reach[0]), (below, "about the mean: x, y", reach[1])):
+            axes.set(xlim=(-size, size), ylim=(-size, size), aspect="equal", xlabel=f"{what} [µm]")
+            tidy(axes)
+        above.set_title(name, fontsize=10, parse_math=False)
+        swing = 0.5 * np.ptp(orbit, axis=0)
+        note = f"d.c. ({center[0]:.3g}, {center[1]:.3g}) µm\na.c. ±({swing[0]:.2g}, {swing[1]:.2g}) µm"
+        above.text(0.03, 0.97, note, transform=above.transAxes, fontsize=NOTE + 1.0, color=INK, va="top")
+    figure.suptitle(title, fontsize=11, parse_math=False)
+    return figure
+
+
+_ORBIT_SAMPLES = 1 << 14  # of a long record: a path of hundreds of thousands takes long to draw, and memory
+
+
+def draw_transient(
+    case: Case,
+    solved: SolvedTransient,
+    signature: SolvedSignature | None,
+    housing: SolvedHousing | None,
+    comparison: Comparison | None,
+) -> Iterator[tuple[str, Figure]]:
+    """Draw what a transient shows: yields the name of each figure, such as ``spectrum``, and the figure."""
+    lines: dict[str, tuple[TracedLine, ...]] = dict.fromkeys(solved.sensor_spectra, ())
+    if signature is not None:
+        lines = signature.lines
+    meshes = mesh_frequencies(case) if case.gear_pair else ()
+    speed = _speed(case, solved)
+    # Along a run no line stands still.
+    marks = meshes if solved.turning is None else ()
+    if solved.sensor_spectra:
+        marked = _marked_modes(housing, comparison)
+        found = "dominant" if comparison is None or comparison.shapes is None else "measured"
+        legend = "housing modes" if comparison is None else f"{found} housing modes"
+        heading = f"{case.title}, {speed}"
+        spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=marks, marked=marked, marked_as=legend)
+        yield "spectrum", spectra
+    if any(lines.values()):
+        parts = draw_contributions(f"{case.title}, {speed}", lines)
+        yield "contributions", parts
+    if solved.force_spectra:
+        yield "mesh-force", _mesh_force(case, solved, meshes)
+    carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
+    if rates := {contact.name: abs(contact.rate) for contact in carrying if contact.drives and contact.rate}:
+        heading = f"{case.title}\nfriction between the teeth at {speed}"
+        yield "friction", draw_friction(heading, solved.histories, rates)
+    if solved.histories.gear_motion:
+        motions = solved.histories.gear_motion
+        if solved.record.sampling.is_long:
+            motions = {name: motion[-_ORBIT_SAMPLES:] for name, motion in motions.items()}
+        orbits = draw_orbits(f"{case.title}: orbits of the gears", motions)
+        yield "orbits", orbits
+    if solved.modal.coordinates:
+        window = next(iter(solved.force_spectra.values())).window if solved.force_spectra else "hann"
+        limit = min(solved.trusted_limit, 1.2 * max(meshes)) if meshes else solved.trusted_limit
+        heading = f"{case.title}: modal coordinates"
+        modal = draw_modal_coordinates(heading, solved.histories.times, solved.modal.coordinates, limit, window)
+        yield "modal-coordinates", modal
+
+
+def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) -> Figure:
+    drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
+    figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(drives)), layout="constrained")
+    rows = figure.subplots(len(drives), 2, squeeze=False)
+    times, speed = solved.histories.times, _speed(case, solved)
+    for (left, right), name, frequency in zip(rows, drives, meshes, strict=True):
+        shown, what = times <= times[0] + 6.0 / frequency, "six mesh periods"
+        if solved.turning is not None:
+            what = f"its first {6e3 / frequency:.3g} ms"
+        left.plot(1e3 * (times[shown] - times[0]), solved.histories.mesh_force[name][shown], color=BLUE, lw=1.0)
+        left.set(xlabel="time [ms]", ylabel="mesh force [N]")
+        left.set_title(f"{name}: {what}", fontsize=10, loc="left")
+        limit = min(4.2 * frequency, float(solved.force_spectra[name].frequencies[-1]))
+        draw_lines(right, solved.force_spectra[name], limit)
+        tidy(right)
+        if solved.turning is None:
+            _mark(right, meshes, limit)
+        right.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")
+        right.set_title("spectrum without its mean", fontsize=10, loc="left")
+        tidy(left)
+    figure.suptitle(f"{case.title}: gear-mesh force at {speed}", fontsize=11)
+    return figure
+
+
+def _mark(axes: Any, meshes: tuple[float, ...], limit: float) -> None:
+    for frequency in meshes:
+        for harmonic in range(1, int(limit / frequency) + 1):
+            axes.axvline(harmonic * frequency, color=RED, lw=0.8, ls=(0, (4, 3)), zorder=0)
+
+
+def _marked_modes(housing: SolvedHousing | None, comparison: Comparison | None) -> FloatArray:
+    if comparison is not None:
+        return np.array([pair.model for pair in comparison.pairs]) / (2.0 * np.pi)
+    return np.empty(0) if housing is None else housing.modes.frequencies_hz
+
+
+def _speed(case: Case, solved: SolvedTransient) -> str:
+    """Speed and torque for a caption; of a run, the speeds that its record goes through."""
+    assert case.operation is not None
+    if solved.turning is not None:
+        rates = solved.turning.at(solved.histories.times[[0, -1]])[1]
+        first, last = case.operation.speed * rates * 60.0 / (2.0 * np.pi)
+        return f"{first:.0f} to {last:.0f} rpm, averaged over the run"
+    return f"{case.operation.speed * 60.0 / (2.0 * np.pi):.0f} rpm, {case.operation.torque:.4g} N·m"

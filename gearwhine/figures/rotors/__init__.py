@@ -1,0 +1,1 @@
+"""Figures of rotors: Campbell diagram, mode shapes, critical speeds, responses."""

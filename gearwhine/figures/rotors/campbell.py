@@ -1,0 +1,302 @@
+"""Campbell diagram of a rotor: whirl frequencies and damping over the speed of rotation.
+
+Forward and backward whirl in figures: colours, lines and words.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from gearwhine.figures.labels import Label, arrange, draw_row
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    GREY,
+    HEAD,
+    HERTZ,
+    INK,
+    NOTE,
+    PANEL_WIDTH,
+    RED,
+    RPM,
+    SERIES,
+    legend,
+    panel,
+    sheet,
+)
+from rotors.whirl.whirl_modes import MOSTLY_AXIAL
+
+FloatArray = npt.NDArray[np.float64]
+
+# Below this part of a circular whirl the sense is no longer that of the mode as a whole.
+PLANAR = 0.05
+
+
+@dataclass(frozen=True)
+class Sense:
+    """Sense of whirl: its name, colour and line style."""
+
+    name: str
+    color: str
+    line: Any
+
+
+FORWARD = Sense("forward", BLUE, "-")
+BACKWARD = Sense("backward", RED, (0, (5, 2)))
+MIXED = Sense("planar or mixed", "#6b747c", (0, (6, 2, 1.2, 2)))
+AXIAL = Sense("along the axis", SERIES[3], (0, (1.2, 1.8)))
+
+
+def sense_of(direction: float, axial_share: float = 0.0) -> Sense:
+    """The sense for a whirl direction from −1 (circular backward) to 1 (circular forward), unless mostly axial."""
+    if axial_share > MOSTLY_AXIAL:
+        return AXIAL
+    if abs(direction) < PLANAR:
+        return MIXED
+    return FORWARD if direction > 0.0 else BACKWARD
+
+
+def with_rotation(directions: npt.ArrayLike, speeds: npt.ArrayLike) -> FloatArray:
+    """Directions about +z, (s, ...), as directions in the sense of rotation at speeds (s,); at rest as they are."""
+    values, turning = np.asarray(directions, dtype=np.float64), np.asarray(speeds, dtype=np.float64)
+    sign = np.where(turning < 0.0, -1.0, 1.0)
+    # A run-up against +z begins at rest, and the sense of its rest is that of its run.
+    if bool((turning <= 0.0).all()) and bool((turning < 0.0).any()):
+        sign = -np.ones_like(turning)
+    return np.asarray(values * sign.reshape(-1, *(1,) * (values.ndim - 1)))
+
+
+def legend_lines(senses: Sequence[Sense], *, solid: bool = False) -> list[Line2D]:
+    """A line for each sense that occurs, in the order forward, backward, mixed, axial; ``solid`` for colour alone."""
+    return [
+        Line2D([], [], color=sense.color, ls="-" if solid else sense.line, lw=1.3, label=sense.name)
+        for sense in (FORWARD, BACKWARD, MIXED, AXIAL)
+        if sense in senses
+    ]
+
+
+_HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
+_BRANCHES = 6  # lowest branches that are shown at least
+_ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
+_ALMOST_ALL = 0.9  # of the decrements are on their axis
+_UNDAMPED = 1e-9  # a damping ratio this small is rounding
+
+
+def draw_campbell(
+    title: str,
+    speeds: npt.ArrayLike,
+    frequencies: npt.ArrayLike,
+    directions: npt.ArrayLike,
+    damping_ratios: npt.ArrayLike,
+    *,
+    axial_shares: npt.ArrayLike = 0.0,
+    critical_speeds: npt.ArrayLike = (),
+    critical_directions: npt.ArrayLike = (),
+    critical_orders: npt.ArrayLike = 1.0,
+    orders: Sequence[float] = (1.0,),
+    operating_speed: float | None = None,
+    frequency_limit: float | None = None,
+) -> Figure:
+    """Draw whirl frequencies over speed, and below them the logarithmic decrement where there is damping.
+
+    Parameters
+    ----------
+    title
+        Of the sheet.
+    speeds
+        (s,): two or more, rad/s, ascending or descending; of one sign.
+    frequencies
+        (s, w): of each branch along the columns, rad/s; NaN where a branch is not known.
+    directions
+        (s, w): about +z, 1 circular counter-clockwise to −1 circular clockwise.
+    damping_ratios
+        (s, w): ζ; negative is unstable.
+    axial_shares
+        (s, w), or one of all: part of the kinetic energy along the axis.
+    critical_speeds, critical_directions
+        (c,): rad/s, and 1 forward to −1 backward in the sense of rotation.
+    critical_orders
+        (c,), or one of all: the multiple of the speed on whose line they are marked.
+    orders
+        Multiples of the speed of rotation that are drawn as lines.
+    operating_speed
+        rad/s, drawn as a line.
+    frequency_limit
+        Top of the frequency axis, rad/s; where not given, it shows the lowest six branches and all that the
+        orders cross.
+
+    Raises
+    ------
+    ValueError
+        Arrays whose shapes do not fit, or fewer than two speeds.
+    """
+    turning = np.abs(np.asarray(speeds, dtype=np.float64))
+    values, ratios = np.asarray(frequencies, dtype=np.float64), np.asarray(damping_ratios, dtype=np.float64)
+    senses = with_rotation(directions, speeds)
+    if turning.size < 2 or not values.shape == ratios.shape == senses.shape == (turning.size, values.shape[-1]):
+        raise ValueError(
+            f"speeds {turning.shape}, frequencies {values.shape}, directions {senses.shape} and damping ratios "
+            f"{ratios.shape} are not two or more speeds (s,) and three arrays (s, w)"
+        )
+    order = np.argsort(turning)
+    axial = np.broadcast_to(np.asarray(axial_shares, dtype=np.float64), values.shape)[order]
+    turning, values, ratios, senses = turning[order], values[order], ratios[order], senses[order]
+    if turning[0] == 0.0:
+        # At rest a whirl has no sense of its own; the shapes of double roots are then any.
+        senses[0] = senses[1]
+    top = frequency_limit or _top(turning, values, orders)
+    low, high = float(turning[0]), float(turning[-1])
+    # A branch that never comes below the top of the axis has no place in the damping either.
+    shown = np.flatnonzero((np.nan_to_num(values, nan=np.inf) < top).any(axis=0))
+    values, ratios, senses, axial = values[:, shown], ratios[:, shown], senses[:, shown], axial[:, shown]
+
+    multiples = np.broadcast_to(critical_orders, np.shape(np.atleast_1d(critical_speeds)))
+    criticals = _criticals(critical_speeds, critical_directions, multiples, low, high, top)
+    onset = stability_onset(turning, ratios)
+    labels = [
+        Label(f"{RPM * speed:.4g}", RPM * speed, multiple * speed / HERTZ, sense.color)
+        for speed, sense, multiple in criticals
+    ]
+    if onset is not None:
+        speed, branch = onset
+        height = float(np.interp(speed, turning, values[:, branch])) / HERTZ
+        labels.append(Label(f"unstable above {RPM * speed:.4g}", RPM * speed, min(height, top / HERTZ)))
+    row = arrange(labels, [(label.x / RPM - low) / (high - low) * PANEL_WIDTH for label in labels], PANEL_WIDTH)
+    is_damped = bool((np.abs(np.nan_to_num(ratios)) > _UNDAMPED).any())
+    lower = _DAMPING_HEIGHT + _BETWEEN if is_damped else 0.0
+
+    note = "speeds in rpm above the diagram: critical speeds, ● forward, ○ backward" if criticals else ""
+    note += f"; {row.left_out} not named" * bool(row.left_out)
+    figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + lower + FOOT, title, note)
+    axes = panel(figure, FOOT + lower, _HEIGHT)
+    axes.set(xlim=(RPM * low, RPM * high), ylim=(0.0, top / HERTZ), ylabel="whirl frequency [Hz]")
+    met = _draw_branches(axes, turning, values / HERTZ, senses, axial)
+    for multiple in orders:
+        _draw_order(axes, multiple, low, high, top)
+    for speed, sense, multiple in criticals:
+        face = sense.color if sense.name == "forward" else "white"
+        height = multiple * speed / HERTZ
+        axes.plot(RPM * speed, height, marker="o", ms=4.5, color=sense.color, mfc=face, zorder=4, label="critical")
+    draw_row(axes, row, _HEIGHT + 1.0)
+    lowest = axes
+    if is_damped:
+        lowest = panel(figure, FOOT, _DAMPING_HEIGHT)
+        _draw_decrement(lowest, turning, ratios, senses, axial)
+        lowest.set_xlim(axes.get_xlim())
+        axes.tick_params(labelbottom=False)
+    lowest.set_xlabel("speed of rotation [rpm]")
+    handles = legend_lines(met)
+    for each in {axes, lowest}:
+        if operating_speed is not None:
+            line = each.axvline(RPM * abs(operating_speed), color=INK, lw=0.8, ls=":", zorder=1, label="operation")
+            handles = [*legend_lines(met), line]
+        if onset is not None:
+            each.axvspan(RPM * onset[0], RPM * high, color=GREY, alpha=0.14, lw=0.0, zorder=0.2, label="unstable")
+    legend(figure, handles)
+    return figure
+
+
+def stability_onset(speeds: FloatArray, damping_ratios: FloatArray) -> tuple[float, int] | None:
+    """The lowest speed from which a branch is unstable, and that branch; None where all are stable.
+
+    Between two speeds, (s,) ascending, the damping ratio, (s, w), is taken as linear.
+    """
+    found: list[tuple[float, int]] = []
+    for branch, ratios in enumerate(damping_ratios.T):
+        unstable = np.flatnonzero(np.nan_to_num(ratios) < -_UNDAMPED)
+        if not unstable.size:
+            continue
+        first = int(unstable[0])
+        if first == 0 or np.isnan(ratios[first - 1]):
+            found.append((float(speeds[first]), branch))
+            continue
+        before, after = max(float(ratios[first - 1]), 0.0), float(ratios[first])
+        step = float(speeds[first] - speeds[first - 1])
+        found.append((float(speeds[first - 1]) + step * before / (before - after), branch))
+    return min(found, default=None)
+
+
+def _top(speeds: FloatArray, frequencies: FloatArray, orders: Sequence[float]) -> float:
+    """Top of the frequency axis: the lowest branches whole, and all that the orders cross; rad/s."""
+    highest = np.sort(np.where(np.isnan(frequencies), -np.inf, frequencies).max(axis=0))
+    highest = highest[highest > 0.0]
+    if not highest.size:
+        return max(orders, default=1.0) * float(speeds[-1]) or 1.0
+    wanted = max(
+        _ABOVE * max(orders, default=0.0) * float(speeds[-1]), 1.05 * float(highest[min(_BRANCHES, highest.size) - 1])
+    )
+    return min(wanted, 1.05 * float(highest[-1]))
+
+
+def _criticals(
+    speeds: npt.ArrayLike, directions: npt.ArrayLike, orders: npt.ArrayLike, low: float, high: float, top: float
+) -> list[tuple[float, Sense, float]]:
+    """Critical speeds within the diagram, each with its sense and the order that it is of."""
+    rows = zip(*(np.atleast_1d(values).tolist() for values in (speeds, directions, orders)), strict=True)
+    return [
+        (speed, sense_of(direction), order)
+        for speed, direction, order in rows
+        if low <= speed <= high and order * speed <= top
+    ]
+
+
+def _runs(senses: list[Sense]) -> Iterator[tuple[slice, Sense]]:
+    """Samples of a branch that share one sense: slices that overlap in one sample, and the sense."""
+    start = 0
+    for index in range(1, len(senses) + 1):
+        if index == len(senses) or senses[index] != senses[start]:
+            yield slice(start, index + 1), senses[start]
+            start = index
+
+
+def _draw_branches(
+    axes: Axes, speeds: FloatArray, values: FloatArray, directions: FloatArray, axial: FloatArray
+) -> list[Sense]:
+    """Draw each branch, (s, w), in the colours and lines of its senses; returns the senses."""
+    met = []
+    middles = [0.5 * (each[1:] + each[:-1]).T for each in (directions, axial)]
+    for values_of, *ways in zip(values.T, *middles, strict=True):
+        for run, sense in _runs([sense_of(*way) for way in zip(*(way.tolist() for way in ways), strict=True)]):
+            axes.plot(
+                RPM * speeds[run], values_of[run], color=sense.color, ls=sense.line, lw=1.2, zorder=3, label="branch"
+            )
+            met.append(sense)
+    return met
+
+
+def _draw_order(axes: Axes, multiple: float, low: float, high: float, top: float) -> None:
+    """The line of a multiple of the speed, named where it leaves the panel."""
+    ends = np.array([low, high])
+    axes.plot(RPM * ends, multiple * ends / HERTZ, color=GREY, lw=0.8, zorder=2, label=f"{multiple:g}×")
+    leaves_above = multiple * high > top
+    place = (RPM * (top / multiple if leaves_above else high), min(multiple * high, top) / HERTZ)
+    axes.annotate(
+        f"{multiple:g}×",
+        place,
+        (-3.0, -3.0) if leaves_above else (-2.0, 2.0),
+        textcoords="offset points",
+        fontsize=NOTE,
+        color=GREY,
+        ha="right",
+        va="top" if leaves_above else "bottom",
+    )
+
+
+def _draw_decrement(
+    axes: Axes, speeds: FloatArray, ratios: FloatArray, directions: FloatArray, axial: FloatArray
+) -> None:
+    """The logarithmic decrement 2πζ / √(1 − ζ²) of each branch."""
+    decrement = 2.0 * np.pi * ratios / np.sqrt(np.maximum(1.0 - ratios**2, 1e-12))
+    _draw_branches(axes, speeds, decrement, directions, axial)
+    axes.axhline(0.0, color=INK, lw=0.7, zorder=1)
+    # A heavily damped branch would press all others, and the question of stability, onto the line.
+    finite = decrement[np.isfinite(decrement)]
+    least, most = min(float(finite.min()), 0.0), float(np.quantile(finite, _ALMOST_ALL))
+    axes.set_ylim(1.15 * least - 0.03 * max(most, 0.0), max(1.15 * most, -0.1 * least, 1e-3))
+    axes.set_ylabel("log. decrement [1]")

@@ -1,0 +1,1 @@
+"""Library objects built from a case: rotors, gears, bearings, mesh, fixtures, machine."""

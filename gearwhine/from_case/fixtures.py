@@ -1,0 +1,134 @@
+"""Fixtures of a case's housing on its mesh: supports, mounts, joints, masses, sensors; and their places."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support, did_you_mean
+from gearwhine.case.errors import UNSAID
+from gearwhine.from_case.mesh import cover_joints
+from housing import HousingError
+from housing import Support as HousingSupport
+from housing.fem.matrices import Additions, Matrices
+from housing.model.fixtures import Fixture
+from housing.model.seats import sensor_port
+from meshes import GeometryError, Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+_REACH = 0.05  # farthest that what sits on the surface may be given from it, as a part of the housing's diagonal
+
+
+def build_supports(case: Case) -> list[HousingSupport]:
+    """The supports of a case, in the order of the file."""
+    assert case.housing is not None
+    return [entry.build() for entry in case.housing.support]
+
+
+def build_attachments(case: Case) -> Iterator[tuple[str, str, Fixture]]:
+    """All that is fastened, each with its key and label."""
+    given = case.housing
+    assert given is not None
+    for index, support in enumerate(given.support):
+        yield f"housing.support[{index}]", f'support "{support.name}"', support.build()
+    for index, mount in enumerate(given.mount):
+        yield f"housing.mount[{index}]", f'mount "{mount.name}"', mount.build()
+    for index, joint in enumerate(given.joint):
+        yield f"housing.joint[{index}]", f'joint "{joint.name}"', joint.build()
+    for tied in cover_joints(case):
+        yield "housing.box.cover.bolts", tied.name, tied
+    for index, mass in enumerate(given.mass):
+        yield f"housing.mass[{index}]", f'mass "{mass.name}"', mass.build()
+
+
+def check_places(case: Case, mesh: Mesh) -> None:
+    """Require a place on the mesh for every fixture and sensor of a case's housing.
+
+    Raises
+    ------
+    CaseError
+        With every one that does not.
+    """
+    given = case.housing
+    assert given is not None
+    problems = list(_misplaced(case, mesh))
+    for index, sensor in enumerate(given.sensor):
+        found = sensor_port(mesh, sensor.build()).position
+        key, label = f"housing.sensor[{index}].position", f'sensor "{sensor.name}"'
+        problems += _check_reach(mesh, key, label, sensor.position, found)
+    if problems:
+        raise CaseError(problems)
+
+
+def attach_all(case: Case, mesh: Mesh, free: Matrices) -> Matrices:
+    """The free housing's matrices with supports, mounts, joints and masses of a case on it.
+
+    Raises
+    ------
+    CaseError
+        With every one of them that does not fit the mesh.
+    """
+    problems: list[Problem] = []
+    additions = Additions()
+    for key, label, attachment in build_attachments(case):
+        try:
+            additions += attachment.additions(mesh)
+        except (HousingError, GeometryError) as error:
+            problems.append(Problem(key, UNSAID, f"what fits the mesh; {error}", label=label))
+    if problems:
+        raise CaseError(problems)
+    return free.plus(additions)
+
+
+def _check_reach(
+    mesh: Mesh, key: str, label: str, asked: tuple[float, float, float], found: FloatArray
+) -> Iterator[Problem]:
+    """Yield a place that is not meant to be on the surface, rather than move it far."""
+    reach = _REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    if np.linalg.norm(found - asked) > reach:
+        given, nearest = (
+            ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in place) for place in (asked, found)
+        )
+        expected = (
+            f"a place within {1e3 * reach:.3g} mm of the surface; ({given}) mm is not, the nearest point of it is "
+            f"({nearest}) mm"
+        )
+        yield Problem(key, UNSAID, expected, label=label)
+
+
+def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
+    """Surfaces that the mesh does not have, boxes without surface, points off the surface."""
+    given = case.housing
+    assert given is not None
+    named: list[tuple[str, str, str]] = []
+    fastened: list[tuple[str, int, Support | Mount | LumpedMass]] = []
+    fastened += [("support", index, entry) for index, entry in enumerate(given.support)]
+    fastened += [("mount", index, entry) for index, entry in enumerate(given.mount)]
+    fastened += [("mass", index, entry) for index, entry in enumerate(given.mass)]
+    for kind, index, entry in fastened:
+        key, label = f"housing.{kind}[{index}]", f'{kind} "{entry.name}"'
+        if entry.surface is not None:
+            named.append((f"{key}.surface", label, entry.surface))
+        elif entry.box is not None or entry.plane is not None:
+            form, holds = ("box", "holds") if entry.plane is None else ("plane", "bears")
+            try:
+                entry.build_patch().facets(mesh)
+            except GeometryError as error:
+                yield Problem(
+                    f"{key}.{form}", UNSAID, f"a {form} that {holds} some of the surface; {error}", label=label
+                )
+    for index, joint in enumerate(given.joint):
+        for end, surface in enumerate(joint.surfaces or ()):
+            named.append((f"housing.joint[{index}].surfaces[{end}]", f'joint "{joint.name}"', surface))
+    known = sorted(mesh.surfaces)
+    for key, label, surface in named:
+        if surface not in mesh.surfaces:
+            listed = ", ".join(known[:20]) + (", …" if len(known) > 20 else "")
+            expected = f"a surface of the mesh ({listed or 'it names none'})" + did_you_mean(surface, known)
+            yield Problem(key, surface, expected, label=label)
+    for index, mass in enumerate(given.mass):
+        if mass.position is not None:
+            found = mass.build().place(mesh).position
+            label = f'mass "{mass.name}"'
+            yield from _check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, found)

@@ -1,0 +1,132 @@
+"""Gear pairs of a case: geometry, contact law, and static transmission error under the mean torque."""
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
+from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
+from gearwhine.case import Gear as GivenGear
+from gearwhine.case import GearPair as GivenPair
+from gearwhine.from_case.rotors import build_gear, build_rotor, gear_inertia
+from gearwhine.progress import Progress, silent
+
+FloatArray = npt.NDArray[np.float64]
+
+# Part of the geometry's backlash by which a given one may differ without a word.
+_DIFFERS = 0.1
+
+
+def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair, ...]:
+    """Every gear pair of the case.
+
+    Raises
+    ------
+    CaseError, coupling.gears.GearError
+        Where the case has no gear pairs, or one cannot be solved as it stands.
+    """
+    require(case, "gear_pair", command="gears")
+    torques = pair_torques(case) if case.operation else (0.0,) * len(case.gear_pair)
+    speeds = rotor_speeds(case) if case.operation else {}
+    solved = []
+    for number, (given, torque) in enumerate(zip(case.gear_pair, torques, strict=True)):
+        progress(f"gear pair {given.driver} -> {given.driven}")
+        driver, driven = case.gear_named(given.driver), case.gear_named(given.driven)
+        loaded = load_gear_pair(
+            build_pair(given, number),
+            pair_geometry(case, given),
+            torque=torque,
+            inertias=(_inertia_at(case, driver), _inertia_at(case, driven)),
+            speed=speeds.get(shaft_of(driver)),
+        )
+        solved.append(loaded)
+    return tuple(solved)
+
+
+def build_pair(given: GivenPair, number: int = 0) -> GearPair:
+    """A gear pair of the case as the gear room's; ``number`` is its place in the list, for messages."""
+    stiffness: StiffnessModel | str = given.stiffness.model
+    if given.stiffness.file is not None:
+        position, values = _table(given.stiffness.file, f"gear_pair[{number}].stiffness.file")
+        stiffness = stiffness_model("table", position=position, stiffness=values)
+    elif given.stiffness.value is not None:
+        stiffness = stiffness_model(given.stiffness.model, value=given.stiffness.value)
+    return GearPair(
+        driver=given.driver,
+        driven=given.driven,
+        stiffness=stiffness,
+        damping_ratio=given.damping_ratio,
+        damping=given.damping,
+        backlash=given.backlash,
+        friction=given.friction,
+        misalignment=given.misalignment,
+        corner_contact=given.corner_contact,
+    )
+
+
+def backlash_warnings(pair: GivenPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
+    """A warning where the given backlash is not the one that thicknesses and distance of the shafts say."""
+    made = geometry.designed_backlash
+    if pair.backlash is None or made is None:
+        return []
+    if abs(pair.backlash - made) <= _DIFFERS * made:
+        return []
+    message = (
+        f"{geometry.label}: the backlash of {1e3 * pair.backlash:.4g} mm is not the {1e3 * made:.4g} mm that the "
+        "thickness of the teeth and the distance of the shafts leave along the line of action; leave 'backlash' out "
+        "for that"
+    )
+    return [{"name": "backlash", "message": message}]
+
+
+def pair_geometries(case: Case) -> tuple[GearPairGeometry, ...]:
+    """Both gears of every pair of the case in mesh."""
+    return tuple(pair_geometry(case, pair) for pair in case.gear_pair)
+
+
+def pair_geometry(case: Case, pair: GivenPair) -> GearPairGeometry:
+    """The two gears at the distance of their shafts, or without backlash where there are no shafts."""
+    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
+    distance = pair.centre_distance
+    if driver.rotor is not None and driven.rotor is not None:
+        axes = case.rotor_named(driver.rotor).axis, case.rotor_named(driven.rotor).axis
+        distance = float(np.hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
+    return GearPairGeometry(build_gear(case, driver), build_gear(case, driven), distance)
+
+
+def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
+    """Two columns of a CSV file: position in base pitches, stiffness [N/m]; a first line of names may stand."""
+    rows = []
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise CaseError([Problem(key, str(path), "a text file in UTF-8")]) from error
+    for number, line in enumerate(lines, start=1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        try:
+            first, second = (float(part) for part in line.split(","))
+        except ValueError as error:
+            if number == 1:
+                continue
+            expected = f"two numbers with a comma between in line {number} of {path}"
+            raise CaseError([Problem(key, line[:60], expected)]) from error
+        rows.append((first, second))
+    if len(rows) < 2:
+        raise CaseError([Problem(key, str(path), "at least two rows: position in base pitches, stiffness in N/m")])
+    columns = np.array(rows, dtype=np.float64).T
+    return columns[0], columns[1]
+
+
+def _inertia_at(case: Case, given: GivenGear) -> float:
+    """Polar inertia of a gear with the discs at its station [kg m²]; of its whole rotor where that is nothing."""
+    inertia = gear_inertia(case, given)[1]
+    if given.rotor is not None and given.at is not None:
+        rotor = case.rotor_named(given.rotor)
+        discs = rotor.build(case.material).discs
+        inertia += sum(disc.polar_inertia for disc in discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
+        if inertia == 0.0:
+            inertia = build_rotor(case, rotor).polar_inertia
+    return inertia if inertia > 0.0 else build_gear(case, given).polar_inertia

@@ -1,0 +1,204 @@
+"""Housing mesh of a case, from a box, a CAD file or a mesh file, with a surface for each seat.
+
+Material regions of a case's mesh: the material of each element.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.check_housing import box_geometry
+from gearwhine.case.errors import UNSAID, did_you_mean
+from gearwhine.case.housing import Region
+from housing import Joint, Material
+from housing import cover_joints as housing_cover_joints
+from meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
+from meshes.bores import CylindricalBore
+from meshes.errors import MeshSizeError
+from meshes.lengths import UNITS
+
+
+def ignore_warning(warning: str) -> None:
+    """Ignore a warning."""
+
+
+def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, order: int = 2) -> Mesh:
+    """The housing's finite-element mesh.
+
+    Parameters
+    ----------
+    case : Case
+    warn : callable
+        Receives warnings, a sentence each.
+    order : {1, 2}
+        Of the elements, where they are made here and not read.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no housing, its shape cannot be meshed or its file not read, or a seat is not found in it.
+    """
+    require(case, "housing", command="mesh")
+    given = case.housing
+    assert given is not None
+    if given.box is not None:
+        with _at_fault("housing.box", "a box that can be meshed"):
+            return mesh_box(box_geometry(given.box, given.seat), given.box.mesh_size, order=order)
+    if given.mesh is not None:
+        with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
+            mesh = read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit])
+            mesh = mesh.rotated(np.array(given.mesh.rotation))
+        return _with_seats(case, mesh)
+    assert given.cad is not None
+    turn = np.array(given.cad.rotation)
+    with _at_fault("housing.cad", "a solid that can be meshed", file=True):
+        found = mesh_cad(
+            given.cad.file,
+            given.cad.mesh_size,
+            glue=given.cad.glue,
+            unit=None if given.cad.unit is None else UNITS[given.cad.unit],
+            order=order,
+            refine=[(_in_the_file(seat.center, turn), seat.diameter) for seat in given.seat],
+            refined_size=given.cad.seat_mesh_size,
+        )
+    for remark in found.remarks:
+        warn(f"{given.cad.file.name}: {remark}")
+    return _with_seats(case, found.mesh.rotated(turn))
+
+
+def _in_the_file(place: tuple[float, float, float], turn: npt.NDArray[np.float64]) -> tuple[float, float, float]:
+    """Coordinates of a point of the machine in the frame of the file."""
+    x, y, z = (turn.T @ np.array(place)).tolist()
+    return x, y, z
+
+
+@contextmanager
+def _at_fault(key: str, expected: str, *, file: bool = False) -> Iterator[None]:
+    """Raise a geometry error as a problem of its key."""
+    try:
+        yield
+    except MeshSizeError as error:
+        raise CaseError([Problem(f"{key}.mesh_size", UNSAID, f"another size of elements; {error}")]) from error
+    except GeometryError as error:
+        raise CaseError([Problem(f"{key}.file" if file else key, UNSAID, f"{expected}; {error}")]) from error
+
+
+def _with_seats(case: Case, mesh: Mesh) -> Mesh:
+    """The mesh with a surface for each seat: its own of that name, or the bore by centre and diameter.
+
+    Raises
+    ------
+    CaseError
+        With every seat that is not found.
+    """
+    assert case.housing is not None
+    problems = []
+    for index, seat in enumerate(case.housing.seat):
+        try:
+            mesh = with_bore(mesh, seat.name, seat.center, seat.diameter)
+        except GeometryError as error:
+            key, label = f"housing.seat[{index}]", f'seat "{seat.name}"'
+            problems.append(
+                Problem(key, UNSAID, f"a bore of the housing, by centre and diameter; {error}", label=label)
+            )
+    if problems:
+        raise CaseError(problems)
+    return mesh
+
+
+def cover_joints(case: Case) -> list[Joint]:
+    """The bolts of a box's cover, each tying its two patches."""
+    given = case.housing
+    if given is None or given.box is None or given.box.cover is None or given.box.cover.bolts is None:
+        return []
+    box = box_geometry(given.box, given.seat)
+    parts = material_of(case, given.material)
+    own = material_of(case, given.box.cover.bolts.material or given.material)
+    return housing_cover_joints(box, parts, own)
+
+
+def material_of(case: Case, name: str) -> Material:
+    """A material of the case, for a solid.
+
+    Raises
+    ------
+    CaseError
+        Where its shear modulus is not that of an isotropic one.
+    """
+    steel = case.material[name]
+    if not steel.is_isotropic:
+        expected = f"E / (2 (1 + ν)) = {steel.youngs_modulus / (2.0 * (1.0 + steel.poisson_ratio)):.5g} Pa in a housing"
+        shown = f"{steel.shear_modulus:.5g} Pa"
+        raise CaseError([Problem(f"material.{name}.shear_modulus", shown, f"{expected}, whose solids are isotropic")])
+    return Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
+
+
+def bores_along_axes(mesh: Mesh) -> list[tuple[str, CylindricalBore]]:
+    """The bores along each axis that a mesh has: those along z, where shafts are, then others, the widest first."""
+    return [
+        (axis, bore)
+        for axis, direction in zip("zxy", np.eye(3)[[2, 0, 1]], strict=True)
+        for bore in find_bores(mesh, axis=direction)
+    ]
+
+
+def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, Material, dict[str, Material]]:
+    """The mesh with the case's regions as its volumes, the material of the rest, and that of each region.
+
+    Raises
+    ------
+    CaseError
+        Where a region names a volume that the mesh does not have, holds no element, or shares some with another; all
+        of them at once.
+    """
+    given = case.housing
+    assert given is not None
+    rest = material_of(case, given.material)
+    if not given.region:
+        return mesh, rest, {}
+    problems: list[Problem] = []
+    members: dict[str, npt.NDArray[np.int64]] = {}
+    taken = np.full(mesh.n_elements, -1)
+    for index, region in enumerate(given.region):
+        elements = _elements(mesh, index, region, problems)
+        other = np.unique(taken[elements])
+        for rival in other[other >= 0].tolist():
+            count = int(np.count_nonzero(taken[elements] == rival))
+            expected = (
+                f'elements of its own ({count} of its {len(elements)} are in region "{given.region[rival].name}" too)'
+            )
+            problems.append(_problem(index, region, expected))
+        taken[elements] = index
+        members[region.name] = elements
+    if problems:
+        raise CaseError(problems)
+    materials = {region.name: material_of(case, region.material) for region in given.region}
+    return replace(mesh, volumes=members), rest, materials
+
+
+def _elements(mesh: Mesh, index: int, region: Region, problems: list[Problem]) -> npt.NDArray[np.int64]:
+    if region.volume is not None:
+        if region.volume not in mesh.volumes:
+            known = sorted(mesh.volumes)
+            expected = f"a volume of the mesh ({', '.join(known) or 'it has none'})" + did_you_mean(
+                region.volume, known
+            )
+            problems.append(_problem(index, region, expected))
+        return np.asarray(mesh.volumes.get(region.volume, np.empty(0, dtype=np.int64)))
+    assert region.box is not None
+    low, high = np.sort(np.array(region.box), axis=0)
+    elements = np.flatnonzero(((mesh.centers >= low) & (mesh.centers <= high)).all(axis=1))
+    if not len(elements):
+        span = [f"{1e3 * a:.4g} to {1e3 * b:.4g}" for a, b in mesh.bounds.T]
+        expected = f"a box with the middle of an element in it; the housing spans {' x '.join(span)} mm"
+        problems.append(_problem(index, region, expected))
+    return elements
+
+
+def _problem(index: int, region: Region, expected: str) -> Problem:
+    key, value = ("volume", region.volume) if region.volume is not None else ("box", region.box)
+    return Problem(f"housing.region[{index}].{key}", value, expected, label=f'region "{region.name}"')

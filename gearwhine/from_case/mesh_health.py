@@ -1,0 +1,169 @@
+"""Mesh checks: defects of a housing's mesh as errors of the case, and warnings of its size and quality."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case.box import Box
+from gearwhine.case.check_housing import wall_volume
+from gearwhine.case.errors import UNSAID
+from gearwhine.from_case.fixtures import check_places
+from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of
+from gearwhine.output.warnings import warning
+from gearwhine.progress import Progress, silent
+from housing import Joint
+from meshes import Mesh, MeshDefect, diagnose, resolution_defects
+from meshes.gmsh_meshing import expected_elements
+from meshes.lengths import UNITS
+from meshes.quality import WaveCarrier
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
+_MANY_UNKNOWNS = 1.5e6
+
+
+def require_meshable(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
+    """Warnings about the mesh of a case.
+
+    Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
+    has joints, which may be what joins them.
+
+    Raises
+    ------
+    CaseError
+        Where it is wrong; with everything that is, at once.
+    """
+    given = case.housing
+    assert given is not None
+    source = given.mesh or given.cad
+    unit = None if source is None or source.unit is None else UNITS[source.unit]
+    found = diagnose(mesh, unit=unit)
+    if given.joint or cover_joints(case):
+        found = tuple(one for one in found if not _of_loose_bodies(one))
+    wrong = [one for one in found if one.severity == "error"]
+    if wrong:
+        key = "housing.mesh.file" if given.mesh else "housing.cad.file" if given.cad else "housing.box"
+        value: object = UNSAID if source is None else str(source.file)
+        raise CaseError([Problem(key, value, f"a sound mesh; {one.name}: {one.message}") for one in wrong])
+    return _warnings(found)
+
+
+def _of_loose_bodies(one: MeshDefect) -> bool:
+    """Whether a defect lies between bodies; elements of one body that do not match are an error."""
+    return one.name == "disconnected" or (one.name == "non-conforming" and one.severity == "warning")
+
+
+def resolution_warnings(case: Case, mesh: Mesh, limit_hz: float | None) -> list[dict[str, Any]]:
+    """Warnings about element size for modes up to a frequency; without one, about the kind of element alone."""
+    # Without a limit, one so low that no element is too large for it.
+    return _warnings(resolution_defects(mesh, _wave(case, limit_hz if limit_hz else 1e-6)))
+
+
+def _wave(case: Case, limit_hz: float) -> WaveCarrier:
+    assert case.housing is not None
+    given = case.material[case.housing.material]
+    return WaveCarrier(given.youngs_modulus, given.poisson_ratio, given.density, _HERTZ * limit_hz)
+
+
+@dataclass(frozen=True)
+class ForeseenMesh:
+    """Mesh of a case's housing as far as it is known before anything is solved.
+
+    Attributes
+    ----------
+    size : ndarray, shape (3,)
+        Of the housing along x, y and z [m].
+    mesh_size : float or None
+        Length of the elements where they are made here [m].
+    bolts : list of housing.Joint, or None
+        Of a box's cover.
+    mesh : Mesh or None
+        Of a file; of a CAD file by straight elements, which show its bores as well, sooner.
+    """
+
+    size: FloatArray
+    mesh_size: float | None
+    bolts: list[Joint] | None = None
+    mesh: Mesh | None = None
+
+
+def preview_mesh(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh, list[dict[str, Any]]]:
+    """Size of the mesh and warnings about it, before anything is solved.
+
+    A CAD or mesh file is read and checked whole; for a box the element size is compared with the shortest wave.
+
+    Raises
+    ------
+    CaseError
+        Where the file cannot be read, its mesh is wrong, or something finds no place on it.
+    """
+    given = case.housing
+    assert given is not None
+    if given.box is not None:
+        load = _foresee_load(expected_elements(wall_volume(given.box), given.box.mesh_size))
+        foreseen = ForeseenMesh(np.array(given.box.size), given.box.mesh_size, bolts=cover_joints(case))
+        return foreseen, _foresee_size(case, given.box) + load
+    remarks: list[str] = []
+    progress("meshing the drawing" if given.mesh is None else "reading the mesh")
+    mesh = build_mesh(case, remarks.append, order=1)
+    warnings = [warning("geometry", remark) for remark in remarks] + require_meshable(case, mesh)
+    with noted_on_failure(warnings):
+        materials_of(case, mesh)
+        check_places(case, mesh)
+    foreseen = ForeseenMesh(np.ptp(mesh.bounds, axis=0), None if given.cad is None else given.cad.mesh_size, mesh=mesh)
+    if given.cad is not None:
+        return foreseen, warnings + _foresee_load(mesh.n_elements)
+    return foreseen, warnings + resolution_warnings(case, mesh, given.frequency_limit)
+
+
+def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
+    assert case.housing is not None
+    limit = case.housing.frequency_limit
+    if limit is None:
+        return []
+    walls = box.walls
+    thinnest = min(walls.left, walls.right, walls.bottom, walls.top, walls.back, walls.front)
+    length = _wave(case, limit).shortest_wave(thinnest)
+    if box.mesh_size <= length / 3.0:
+        return []
+    message = (
+        f"elements of {1e3 * box.mesh_size:.3g} mm are longer than 1/3 of the shortest wave, "
+        f"{1e3 * length:.3g} mm at {limit:.4g} Hz in the wall of {1e3 * thinnest:.3g} mm; modes near "
+        f"that frequency come out too high: use a mesh_size of at most {1e3 * length / 3.0:.3g} mm"
+    )
+    return [warning("size", message)]
+
+
+def _foresee_load(elements: float) -> list[dict[str, Any]]:
+    """Warning about a mesh too large for most computers."""
+    unknowns = _UNKNOWNS_EACH * elements
+    if unknowns < _MANY_UNKNOWNS:
+        return []
+    message = (
+        f"about {elements:.1g} elements or more, that is {unknowns:.1g} degrees of freedom: modes of so many take tens "
+        "of gigabytes of memory and long; a larger mesh_size takes less"
+    )
+    return [warning("load", message)]
+
+
+@contextmanager
+def noted_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
+    """Add the warnings so far to an exception as notes: one of them may be its cause."""
+    try:
+        yield
+    except Exception as error:
+        for one in warnings:
+            error.add_note(f"warning: {one['message']}")
+        raise
+
+
+def _warnings(defects: tuple[MeshDefect, ...]) -> list[dict[str, Any]]:
+    """Mesh defects as warnings of the command's JSON."""
+    return [warning(one.name, one.message, count=one.count, place_m=one.place.tolist()) for one in defects]

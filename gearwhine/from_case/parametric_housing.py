@@ -1,0 +1,397 @@
+"""Parametric housing: modes at any values of the fitted parameters, and surrogates about solved ones.
+
+Parameters of a case's `[update]`: the numbers of the case that each one sets, and their values.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from gearwhine.case import Case, CaseError, Problem, UpdateParameter, case_document, parse_case
+from gearwhine.case.box import FACES
+from gearwhine.case.check_housing import box_geometry
+from gearwhine.case.errors import Location, key_of, look_up
+from gearwhine.case.overrides import matching_places, parse_key_path
+from gearwhine.case.units import amount, si_amount
+from gearwhine.from_case.fixtures import attach_all, build_attachments
+from gearwhine.from_case.mesh import build_mesh, materials_of
+from gearwhine.progress import Progress, silent
+from housing import HousingError, assemble, solve_modes
+from housing.fem.matrices import Additions
+from housing.measured.survey_planning import survey_grid
+from housing.model.material import element_constants
+from housing.model.seats import seat_matrix
+from housing.updating import ModalState, ModelSensitivity, Parameter, Surrogate, modal_sensitivities, values_at
+from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
+from meshes.box.morph import MorphError
+
+_SPREAD = 1.0 / 3.0  # of the larger distance from the nominal value to an end of the range
+
+
+@dataclass(frozen=True)
+class FittedNumber:
+    """A parameter of the case, and the places that it sets.
+
+    Attributes
+    ----------
+    given : UpdateParameter
+    parameter : housing.updating.Parameter
+        In SI.
+    places : tuple of locations
+    own : tuple of float
+        Value before the fit, in SI.
+    """
+
+    given: UpdateParameter
+    parameter: Parameter
+    places: tuple[Location, ...]
+    own: tuple[float, ...]
+
+    @property
+    def start(self) -> float:
+        """Its value in the case as it stands."""
+        return 1.0 if self.given.factor else self.own[0]
+
+    def as_written(self, value: float) -> float:
+        """A value as the updated case has it: five digits in the unit of its range."""
+        unit = unit_in_si(self.given)
+        return float(f"{value / unit:.5g}") * unit
+
+    def entries(self, value: float) -> Iterator[tuple[Location, float]]:
+        """Numbers to set and their places, in SI, for a value."""
+        for place, own in zip(self.places, self.own, strict=True):
+            yield place, own * value if self.given.factor else value
+
+
+@dataclass(frozen=True)
+class FittedCase:
+    """A case whose numbers are fitted: it makes the case of any values.
+
+    Attributes
+    ----------
+    document : dict
+        The case resolved, with a wall of its own for each face.
+    numbers : tuple of FittedNumber
+    """
+
+    document: dict[str, Any]
+    numbers: tuple[FittedNumber, ...]
+
+    def at(self, values: Sequence[float]) -> Case:
+        """The case with these values in place.
+
+        Raises
+        ------
+        CaseError
+            Where they make no sound case.
+        """
+        return parse_case(self.document_at(values), source="update")
+
+    def document_at(self, values: Sequence[float]) -> dict[str, Any]:
+        """The same as tables and lists."""
+        document = self.document
+        for number, value in zip(self.numbers, values, strict=True):
+            for place, entry in number.entries(value):
+                document = with_entry(document, place, entry)
+        return document
+
+
+def fitted_case(case: Case, mesh_size: float | None = None) -> FittedCase:
+    """The parameters of a case, with elements of another size if wanted [m].
+
+    Raises
+    ------
+    CaseError
+        With every key that leads to no number, is set twice, or whose number is outside its range.
+    """
+    assert case.update is not None
+    document = case_document(case)
+    box = document.get("housing", {}).get("box")
+    if box is not None and not isinstance(box["wall"], Mapping):
+        box["wall"] = dict.fromkeys(FACES, box["wall"])
+    if box is not None and mesh_size is not None:
+        box["mesh_size"] = mesh_size
+    problems: list[Problem] = []
+    numbers, taken = [], dict[Location, str]()
+    for index, given in enumerate(case.update.parameter):
+        label = f'parameter "{given.name}"'
+        places = list[Location]()
+        own = list[float]()
+        for position, key in enumerate(given.keys):
+            where = f"update.parameter[{index}].keys[{position}]"
+            steps = parse_key_path(key)
+            found = list(matching_places(document, steps or ()))
+            if not found:
+                problems.append(Problem(where, key, "the key path of a number in this case", label))
+            for place in found:
+                value = si_amount(look_up(document, place))
+                if value is None:
+                    problems.append(Problem(where, key, f"a number; {key_of(place)} is none", label))
+                elif place in taken:
+                    problems.append(Problem(where, key, f"a key that no other sets ({taken[place]!r} does)", label))
+                else:
+                    taken[place] = given.name
+                    places.append(place)
+                    own.append(value)
+        if places and len(own) == len(places):
+            number = _number(given, tuple(places), tuple(own), index, label, problems)
+            numbers += [] if number is None else [number]
+    if problems:
+        raise CaseError(problems)
+    return FittedCase(document, tuple(numbers))
+
+
+def _number(
+    given: UpdateParameter,
+    places: tuple[Location, ...],
+    own: tuple[float, ...],
+    index: int,
+    label: str,
+    problems: list[Problem],
+) -> FittedNumber | None:
+    low, high = given.bounds
+    start = 1.0 if given.factor else own[0]
+    nominal = start if given.nominal is None else amount(given.nominal)
+    if not low <= start <= high or not low <= nominal <= high:
+        expected = f"a range with the case's own {start:g} in it (SI)"
+        problems.append(Problem(f"update.parameter[{index}].range", list(given.range), expected, label))
+        return None
+    spread = _SPREAD * max(high - nominal, nominal - low) if given.spread is None else amount(given.spread)
+    return FittedNumber(given, Parameter(given.name, low, high, nominal, spread), places, own)
+
+
+def unit_in_si(given: UpdateParameter) -> float:
+    """SI value of the unit that a parameter is written in."""
+    return amount(f"1 {given.unit}") if given.unit else 1.0
+
+
+def with_entry(document: Any, place: Location, value: Any) -> Any:
+    """Tables and lists with one entry replaced; what is not on the way to it is shared."""
+    if not place:
+        return value
+    step, *rest = place
+    copy = document.copy()
+    copy[step] = with_entry(document[step], tuple(rest), value)
+    return copy
+
+
+FloatArray = npt.NDArray[np.float64]
+
+_STEP = 1e-4  # in z, of the differences that give the rates of what a parameter changes
+_WORST_SHAPE = 0.12  # shape number below which a moved mesh is given up for a new one
+
+
+@dataclass(frozen=True)
+class ParametricHousing:
+    """Solves the housing of a case at coordinates z of its parameters.
+
+    Attributes
+    ----------
+    case : FittedCase
+    modes : int
+        Number of modes.
+    measured : callable, optional
+        From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
+    threads : int
+    progress : callable
+    draft : bool
+        Whether modes go without their proof, which on a search's way they may (:func:`housing.solve_modes`).
+    as_written : bool
+        Whether values are rounded as an updated case has them, so that the design solved is the one written: where the
+        last digits differ the mesher may well go another way, and frequencies with it by some 0.03 %.
+    """
+
+    case: FittedCase
+    modes: int
+    measured: Callable[[Mesh], sparse.csr_array] | None = None
+    threads: int = 2
+    progress: Progress = silent
+    draft: bool = False
+    as_written: bool = False
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Fitted parameters."""
+        return tuple(number.parameter for number in self.case.numbers)
+
+    @property
+    def start(self) -> FloatArray:
+        """z of the case as it stands."""
+        return np.array([number.parameter.coordinate(number.start) for number in self.case.numbers])
+
+    def case_at(self, coordinates: FloatArray) -> Case:
+        """The case at coordinates."""
+        values = values_at(self.parameters, coordinates).tolist()
+        if self.as_written:
+            values = [number.as_written(value) for number, value in zip(self.case.numbers, values, strict=True)]
+        return self.case.at(values)
+
+    def solve(self, coordinates: FloatArray, near: "HousingAtParameters | None" = None) -> "HousingAtParameters":
+        """Solve at coordinates, on the mesh of a neighbour where that can follow, else on a new one.
+
+        Raises
+        ------
+        housing.HousingError
+            Where the values make no sound housing.
+        """
+        try:
+            case = self.case_at(coordinates)
+            followed = None if near is None else _followed(near, case)
+            if followed is not None:
+                try:
+                    return self._solved(coordinates, case, followed)
+                except HousingError:
+                    pass  # the move may have folded an element, of which a new mesh knows nothing
+            return self._solved(coordinates, case, build_mesh(case))
+        except (CaseError, GeometryError) as error:
+            raise HousingError(str(error)) from error
+
+    def _solved(self, coordinates: FloatArray, case: Case, mesh: Mesh) -> "HousingAtParameters":
+        """The case on a mesh of its housing."""
+        parted, material, materials = materials_of(case, mesh)
+        matrices = attach_all(case, mesh, assemble(parted, material, materials, threads=self.threads))
+        solved = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
+        given = case.housing
+        assert given is not None
+        ports = [seat_matrix(mesh, seat.build()) for seat in given.seat]
+        seats = (
+            np.stack([solved.project(port)[:, :2] for port in ports], axis=1)
+            if ports
+            else np.empty((len(solved.frequencies), 0, 2))
+        )
+        bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+        skin = survey_grid(mesh, bounds).normal_motion(solved.shapes)
+        measured = None if self.measured is None else solved.project(self.measured(mesh))
+        state = ModalState(solved.frequencies, seats, skin, measured)
+        return HousingAtParameters(self, np.asarray(coordinates), case, mesh, state, solved.shapes)
+
+
+@dataclass(frozen=True)
+class HousingAtParameters:
+    """A housing solved at coordinates z.
+
+    Attributes
+    ----------
+    designs : HousingDesigns
+        The parametric housing.
+    coordinates : ndarray, shape (n_parameters,)
+    case : Case
+    mesh : Mesh
+    state : housing.updating.ModalState
+    shapes : ndarray, shape (n_modes, n_nodes, 3), or None
+        Mass-normalised [1/√kg]; None once they are let go.
+    known : Surrogate, or None
+        Its neighbourhood where that was worked out before.
+    """
+
+    designs: ParametricHousing
+    coordinates: FloatArray
+    case: Case
+    mesh: Mesh
+    state: ModalState
+    shapes: FloatArray | None
+    known: Surrogate | None = None
+
+    def surrogate(self) -> Surrogate:
+        """Its neighbourhood, by the exact rates of stiffness and mass."""
+        return self._surrogate if self.known is None else self.known
+
+    def light(self) -> "HousingAtParameters":
+        """The same with its neighbourhood and without its shapes, a twentieth of the size, for another process."""
+        return replace(self, shapes=None, known=self.surrogate())
+
+    @cached_property
+    def _surrogate(self) -> Surrogate:
+        assert self.shapes is not None
+        parted, material, materials = materials_of(self.case, self.mesh)
+        constants = element_constants(parted, material, materials)
+        rates = modal_sensitivities(self.mesh, constants, self.shapes, self.rates())
+        return Surrogate.about(self.coordinates, self.state, rates)
+
+    def rates(self) -> list[ModelSensitivity]:
+        """Derivatives of the model by each coordinate, by central differences of quantities linear in small steps."""
+        return [self._rate(number) for number in range(len(self.coordinates))]
+
+    def _rate(self, number: int) -> ModelSensitivity:
+        either = []
+        for way in (1.0, -1.0):
+            beside = self.coordinates.copy()
+            beside[number] += way * _STEP
+            # Not by the case's own values, which stop at the end of the range.
+            parameter = self.designs.parameters[number]
+            values = values_at(self.designs.parameters, self.coordinates)
+            values[number] += parameter.deviation(float(self.coordinates[number]), way * _STEP)
+            either.append(self.designs.case.at(values.tolist()))
+        above, below = either
+        velocity = self._velocity(above, below)
+        return ModelSensitivity(
+            velocity, self._constants_rate(above, below), *self._attached_rates(above, below, velocity)
+        )
+
+    def _velocity(self, above: Case, below: Case) -> FloatArray | None:
+        geometries = [_geometry(case) for case in (above, below)]
+        if geometries[0] == geometries[1]:
+            return None
+        assert geometries[0] is not None
+        assert geometries[1] is not None
+        apart = self._morph.displacement(geometries[0]) - self._morph.displacement(geometries[1])
+        return np.asarray(apart / (2.0 * _STEP))
+
+    @cached_property
+    def _morph(self) -> BoxMorph:
+        geometry = _geometry(self.case)
+        assert geometry is not None
+        return BoxMorph(self.mesh, geometry)
+
+    def _constants_rate(self, above: Case, below: Case) -> FloatArray | None:
+        if above.material == below.material:
+            return None
+        constants = []
+        for case in (above, below):
+            parted, material, materials = materials_of(case, self.mesh)
+            constants.append(element_constants(parted, material, materials))
+        return np.asarray((constants[0] - constants[1]) / (2.0 * _STEP))
+
+    def _attached_rates(
+        self, above: Case, below: Case, velocity: FloatArray | None
+    ) -> tuple[sparse.csr_array | None, sparse.csr_array | None]:
+        assert above.housing is not None
+        assert below.housing is not None
+        same = all(
+            getattr(above.housing, key) == getattr(below.housing, key) for key in ("support", "mount", "joint", "mass")
+        )
+        if same and velocity is None:
+            return None, None
+        matrices = []
+        for case, way in ((above, 1.0), (below, -1.0)):
+            mesh = self.mesh
+            if velocity is not None:
+                mesh = replace(mesh, points=mesh.points + way * _STEP * velocity)
+            total = sum((attachment.additions(mesh) for *_, attachment in build_attachments(case)), Additions())
+            n = len(mesh.points)
+            matrices.append((total.stiffness.matrix(n), total.mass.matrix(n)))
+        stiffness, mass = ((one - other) / (2.0 * _STEP) for one, other in zip(*matrices, strict=True))
+        return sparse.csr_array(stiffness), sparse.csr_array(mass)
+
+
+def _geometry(case: Case) -> BoxGeometry | None:
+    given = case.housing
+    assert given is not None
+    return None if given.box is None else box_geometry(given.box, given.seat)
+
+
+def _followed(near: HousingAtParameters, case: Case) -> Mesh | None:
+    """The neighbour's mesh, moved to a case's geometry; None where it cannot or should not be."""
+    geometry, before = _geometry(case), _geometry(near.case)
+    if geometry is None or geometry == before:
+        return near.mesh
+    try:
+        mesh = near._morph.moved(geometry)
+    except MorphError:
+        return None
+    return mesh if mesh_quality(mesh).shape[0] > _WORST_SHAPE else None

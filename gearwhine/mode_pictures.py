@@ -1,0 +1,207 @@
+"""Mode pictures: the selection of shapes, and their drawing as pictures, films or animated models."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.errors import UNSAID
+from gearwhine.progress import Progress
+from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
+
+if TYPE_CHECKING:
+    from housing.correlation.comparison import Comparison
+    from housing.measured import MappedSurvey
+
+ModeFormat = Literal["png", "glb", "gif", "mp4"]
+
+_HERTZ = 2.0 * np.pi
+_MOST_MODES = 5000
+_DOMINANT = 8
+
+
+def check_request(
+    case: Case, which: str | None, mode_format: ModeFormat, lines: Sequence[float], *, measured: bool
+) -> None:
+    """Refuse what cannot be drawn before anything is solved.
+
+    Raises
+    ------
+    CaseError
+        For numbers of modes that are none, lines as models or below zero, or measured shapes without a survey.
+    housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
+        Where nothing here draws or encodes.
+    """
+    if which not in (None, "dominant", "all"):
+        parse_numbers(str(which), None)
+    if lines and mode_format == "glb":
+        raise CaseError(
+            [Problem("--format", mode_format, "png, gif or mp4 with --line, whose points need not move in phase")]
+        )
+    for line in lines:
+        if not 0.0 < line < np.inf:
+            raise CaseError([Problem("--line", line, "a frequency above zero [Hz]")])
+    if measured:
+        require(case, "housing", "measured", command="render --measured")
+        assert case.measured is not None
+        survey = case.measured.survey
+        if survey is None or survey.geometry is None:
+            raise CaseError(
+                [Problem("measured.file", UNSAID, "a survey with points and shapes, for render --measured")]
+            )
+    if mode_format != "glb" and (which is not None or lines):
+        from housing.pictures.scene import find_renderer
+
+        find_renderer()
+    if mode_format == "mp4":
+        from housing.pictures.animations import find_encoder
+
+        find_encoder()
+
+
+def draw_modes(
+    housing: SolvedHousing,
+    comparison: "Comparison | None",
+    which: str,
+    view: str,
+    mode_format: ModeFormat,
+    place: Path,
+    progress: Progress,
+) -> list[str]:
+    """Draw modes into a folder and name the files.
+
+    Parameters
+    ----------
+    housing : SolvedHousing
+    comparison : Comparison or None
+        With measured modes; those paired with one count as the dominant ones and say so in the picture.
+    which : str
+        ``dominant``, ``all``, or numbers as :func:`parse_numbers` reads them.
+    view : str
+        From where to look at pictures and films.
+    mode_format : {"png", "glb", "gif", "mp4"}
+        A picture of each mode and one sheet of all; or a model, or a film, of each.
+    place : path
+    progress : callable
+    """
+    notes = {}
+    if comparison is not None:
+        notes = {
+            pair.mode: f"measured {pair.measured / _HERTZ:.0f} Hz ({pair.error_percent:+.1f} %"
+            + (")" if pair.mac is None else f", MAC {pair.mac:.2f})")
+            for pair in comparison.pairs
+        }
+    count = len(housing.modes.frequencies)
+    if which == "all":
+        numbers = list(range(1, count + 1))
+    elif which == "dominant":
+        numbers = sorted(notes) if notes else strongest_modes(housing, _DOMINANT)
+    else:
+        numbers = parse_numbers(which, count)
+    if mode_format == "glb":
+        from housing.pictures.gltf import write_mode_models
+
+        return [path.name for path in write_mode_models(housing.mesh, housing.modes, numbers, place)]
+    from gearwhine.drawing_process import draw_in_process
+    from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
+
+    surface = drawn_housing(housing.mesh)
+    shapes = drawn_modes(surface, housing.modes, numbers, notes)
+    sheet = "modes.png" if len(numbers) > 1 and mode_format == "png" else None
+    return draw_in_process(surface, shapes, place, mode_format, view, progress, sheet=sheet)
+
+
+def draw_lines(
+    housing: SolvedHousing,
+    folder: Path,
+    frequencies: Sequence[float],
+    view: str,
+    mode_format: ModeFormat,
+    place: Path,
+    progress: Progress,
+) -> list[dict[str, Any]]:
+    """Draw operating shapes at lines of the run in ``folder`` into ``place``; return their documents.
+
+    Raises
+    ------
+    CaseError
+        As :func:`gearwhine.solve.operating_shapes.read_spectrum_lines`.
+    """
+    from gearwhine.drawing_process import draw_in_process
+    from gearwhine.solve.operating_shapes import lines_document, operating_shape_of_line, read_spectrum_lines
+    from housing.pictures.drawn_shapes import drawn_housing
+
+    lines = read_spectrum_lines(folder, frequencies, housing)
+    surface = drawn_housing(housing.mesh)
+    shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
+    draw_in_process(surface, shapes, place, mode_format, view, progress)
+    return lines_document(lines, housing, surface)
+
+
+def draw_measured(
+    case: Case,
+    housing: SolvedHousing,
+    comparison: "Comparison | None",
+    survey: "MappedSurvey | None",
+    view: str,
+    place: Path,
+) -> list[str]:
+    """Draw measured shapes beside those of the model that they are paired with, as ``measured-and-model.png``.
+
+    Raises
+    ------
+    CaseError
+        Where no measured mode has a partner.
+    """
+    from gearwhine.figures import ShapePair, draw_measured_shapes, save
+    from gearwhine.solve.comparison import mapped_shapes, read_measured
+    from housing.pictures.scene import viewing_direction
+    from housing.pictures.survey_wireframe import laid_over, point_motions, wireframe
+
+    measured = read_measured(case)
+    if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:
+        raise CaseError([Problem("measured.file", UNSAID, "measured shapes of which some are like the model's")])
+    geometry, of_model = survey.geometry, mapped_shapes(housing, survey)
+    drawn = []
+    for pair in comparison.pairs:
+        model = of_model[pair.mode - 1]
+        laid = laid_over(measured.shapes[pair.measured_mode - 1], model)
+        likeness = "" if pair.mac is None else f", MAC {pair.mac:.2f}"
+        drawn.append(
+            ShapePair(
+                f"{pair.measured / _HERTZ:.0f} Hz measured, mode {pair.mode} at {pair.model / _HERTZ:.0f} Hz "
+                f"({pair.error_percent:+.1f} %{likeness})",
+                point_motions(geometry, laid),
+                # What was not measured is left out of both.
+                point_motions(geometry, np.where(np.isfinite(laid), model, np.nan)),
+            )
+        )
+    title = f"Measured and model shapes: {case.title}"
+    figure = draw_measured_shapes(title, geometry.positions, wireframe(geometry), drawn, viewing_direction(view))
+    return [save(figure, place / "measured-and-model.png")]
+
+
+def parse_numbers(text: str, count: int | None) -> list[int]:
+    """Mode numbers from text such as ``1,4-6``; ``count`` is how many modes there are, where that is known.
+
+    Raises
+    ------
+    CaseError
+        For anything else, or a mode that does not exist.
+    """
+    numbers: list[int] = []
+    for part in text.split(","):
+        first, _, last = part.partition("-")
+        if not first.strip().isdecimal() or (last and not last.strip().isdecimal()):
+            raise CaseError([Problem("--modes", text, "'dominant', 'all', or numbers such as '1,4,9' or '1-6'")])
+        if int(last or first) > _MOST_MODES:
+            raise CaseError([Problem("--modes", text, f"mode numbers of at most {_MOST_MODES}")])
+        numbers += range(int(first), int(last or first) + 1)
+    missing = [number for number in numbers if number < 1 or (count is not None and number > count)]
+    if missing or not numbers:
+        raise CaseError(
+            [Problem("--modes", text, f"mode numbers from 1 to {count if count is not None else 'the last'}")]
+        )
+    return numbers

@@ -1,0 +1,123 @@
+"""The results folder: each command's results by themselves, with the case, its input files and when they were made.
+
+A command's results stand in the folder itself where no other command's do, else in a sub-folder named for the command;
+those of ``run`` always stand in the folder itself, and what another command left there moves to its sub-folder. The
+housing's modes are shared by all.
+"""
+
+import os
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from gearwhine.case import Case, dump_case
+from gearwhine.output.files import (
+    COMMANDS,
+    SUMMARY,
+    file_contents,
+    finite,
+    json_text,
+    listed_files,
+    read_summary,
+    staging,
+)
+from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, write_mode_cache
+
+_FOREMOST = "run"
+_ADDING = "render"  # draws what it is asked for, beside what it drew before
+
+
+def store_results(
+    command: str,
+    document: dict[str, Any],
+    case: Case,
+    folder: Path,
+    write: Callable[[Path], None],
+    housing: SolvedHousing | None = None,
+) -> None:
+    """Keep a command's results in a folder.
+
+    Parameters
+    ----------
+    command
+        One of `gearwhine.output.COMMANDS`.
+    document
+        What is printed and kept as the summary; it gains the command, the time, the input files and the files written.
+    case
+        Kept as it is resolved.
+    folder
+        The output folder.
+    write
+        Writes the command's own files into a folder.
+    housing
+        Whose modes are kept.
+    """
+
+    def settle(place: Path) -> Path | None:
+        own = _place_of(folder, command)
+        (place / own).mkdir(exist_ok=True)
+        for path in sorted(place.iterdir()):
+            if path.is_file() and path.name != MODE_CACHE_FILE:
+                path.rename(place / own / path.name)
+        names = {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
+        if housing is not None and housing.source is not None:
+            names.add(MODE_CACHE_FILE)
+        files = [*sorted(names), (own / SUMMARY).as_posix()]
+        document.update(
+            command=command, made_at=_now(), input_files=_input_files(case), folder=str(folder), files=files
+        )
+        (place / own / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+        return None if command == _ADDING else own
+
+    with staging(folder, settle) as place:
+        (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
+        write(place)
+        if housing is not None:
+            write_mode_cache(place, housing)
+
+
+def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
+    """The results that a folder holds: the place of each, relative to the folder, and its document; newest first."""
+    places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
+    found = [(own, summary) for own in places if (summary := read_summary(folder / own)) is not None]
+    return sorted(found, key=lambda one: str(one[1].get("made_at", "")), reverse=True)
+
+
+def _place_of(folder: Path, command: str) -> Path:
+    """Where a command's results go, relative to the folder, which is made ready for them."""
+    if not (folder / SUMMARY).exists():
+        return Path()
+    owner = (read_summary(folder) or {}).get("command")
+    if owner == command:
+        return Path()
+    if command != _FOREMOST:
+        return Path(command)
+    if owner in COMMANDS:
+        _give_way(folder, str(owner))
+    return Path()
+
+
+def _give_way(folder: Path, owner: str) -> None:
+    """Move the results of a command from the folder itself to its sub-folder."""
+    (folder / owner).mkdir(exist_ok=True)
+    document = dict(read_summary(folder) or {})
+    shared = [MODE_CACHE_FILE] if (folder / MODE_CACHE_FILE).is_file() else []
+    names = [one.name for one in listed_files(folder, Path()) if one.name not in (MODE_CACHE_FILE, SUMMARY)]
+    document["files"] = [*shared, *(f"{owner}/{name}" for name in [*names, SUMMARY])]
+    for name in names:
+        os.replace(folder / name, folder / owner / name)
+    (folder / owner / SUMMARY).write_text(json_text(document) + "\n", encoding="utf-8")
+    (folder / SUMMARY).unlink()
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _input_files(case: Case) -> dict[str, Any]:
+    """Digests of the files that a case names; none where one cannot be read any more."""
+    try:
+        return file_contents(case.model_dump())
+    except OSError:
+        return {}

@@ -1,0 +1,378 @@
+"""Steady state: quantities of periodic motions and of their branch over speed, and how they are shown."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Document, Section, Table, columns_of, counted, percent, table_of
+from gearwhine.output.warnings import add_warnings
+from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
+
+if TYPE_CHECKING:
+    from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
+
+PROOF = (
+    Quantity("period_s", lambda response: response.period),
+    Quantity("stable", lambda response: response.stable),
+    Quantity("largest_multiplier", lambda response: response.floquet.largest),
+    Quantity("instability", lambda response: response.floquet.leaving),
+    Quantity("residual", lambda response: response.residual),
+    Quantity("error", lambda response: response.error),
+    Quantity("elements", lambda response: response.elements),
+    Quantity("switches", lambda response: response.switches),
+    Quantity("newton_steps", lambda response: response.newton_steps),
+)
+"""Of a periodic response: its period, stability and accuracy."""
+
+PAIR = (
+    *MESH,
+    Quantity("mean_compression_m", lambda row: row[1].mean_compression[row[2]]),
+    Quantity(
+        "rms_compression_m",
+        lambda row: row[1].rms_compression[row[2]],
+        heading="a.c. compression [µm rms]",
+        shown=".3g",
+        scale=1e6,
+    ),
+    Quantity("neglected_force_n", lambda row: row[1].neglected_force[row[2]] if row[4] else ABSENT),
+    Quantity("neglected_part", lambda row: row[1].neglected_part[row[2]] if row[4] else ABSENT),
+    Quantity("force_lines", lambda row: row[3]),
+)
+"""Of a gear mesh as :data:`gearwhine.results.motion.MESH`, lines of its force, and whether motions are superposed."""
+
+
+def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[Any]:
+    """Gear meshes of one motion, or of all that are superposed."""
+    figures = solved.superposed if motion is None else motion.response
+    motions = solved.motions if motion is None else (motion,)
+    rows = []
+    for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True):
+        name = solved.machine.system.contacts[number].name
+        lines = _lines(motions, [one.histories.mesh_force[name] for one in motions], "amplitude_n")
+        rows.append((mesh, figures, number, lines, motion is None))
+    return rows
+
+
+def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict[str, Any]]:
+    """Sensors of one motion, or of all that are superposed."""
+    motions = solved.motions if motion is None else (motion,)
+    return [
+        {
+            "name": name,
+            # Of different frequencies: their powers add.
+            "rms_m_per_s2": float(np.hypot.reduce([one.sensor_rms[name] for one in motions])),
+            "lines": _lines(
+                motions, [one.histories.sensor_acceleration[name] for one in motions], "amplitude_m_per_s2"
+            ),
+        }
+        for name in motions[0].histories.sensor_acceleration
+    ]
+
+
+def _lines(motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str) -> list[dict[str, Any]]:
+    """The highest lines of all motions together, each with its excitation where that has a name."""
+    found = [
+        {"frequency_hz": frequency, key: amplitude} | ({"excitation": motion.excitation} if motion.excitation else {})
+        for motion, signal in zip(motions, signals, strict=True)
+        for frequency, amplitude in motion.lines(signal)
+    ]
+    return sorted(found, key=lambda line: -float(line[key]))[: motions[0].told_lines]
+
+
+def _multipliers(row: Any) -> Any:
+    values = row[1].response.floquet.values
+    return np.stack([values.real, values.imag], axis=-1)
+
+
+def _signals(of: Any, name: str, dimension: str, unit: str, what: str) -> Quantity:
+    """One period of the signals of a motion."""
+    return Quantity("", lambda row: of(row[1].histories) or None, name, (dimension, "period_time"), unit, what)
+
+
+MOTION = (
+    Quantity("", lambda row: row[2], "steady_motion", (), "1", "motion at operation"),
+    Quantity(
+        "", lambda row: row[1].histories.times, "period_time", ("period_time",), "s", "time in the period", common=True
+    ),
+    Quantity("", lambda row: row[1].response.stable, "steady_stable"),
+    Quantity("", lambda row: ["real", "imaginary"], "part", ("part",), common=True),
+    Quantity(
+        "",
+        _multipliers,
+        "floquet_multiplier",
+        ("multiplier", "part"),
+        "1",
+        "Floquet multiplier: growth of a disturbance in a period",
+    ),
+    _signals(
+        lambda histories: histories.mesh_force,
+        "steady_mesh_force",
+        "contact",
+        "N",
+        "gear-mesh force along the line of action",
+    ),
+    _signals(
+        lambda histories: histories.sensor_acceleration,
+        "steady_sensor_acceleration",
+        "sensor",
+        "m/s2",
+        "acceleration along the sensor",
+    ),
+    Part("", lambda row: row[1].response, PROOF),
+    Rows("gear_pairs", lambda row: _pairs(row[0], row[1]), PAIR),
+    Quantity("sensors", lambda row: _sensors(row[0], row[1])),
+)
+"""Of the solved state, one of its periodic motions, and its number from 1."""
+
+
+def _resampled(of: Any, name: str, dimension: str, unit: str, what: str) -> Quantity:
+    """One period of the signals of a motion, by as many samples as that with most."""
+
+    def values(row: Any) -> dict[str, Any] | None:
+        motion, count = row
+        return {label: motion.resampled(signal, count) for label, signal in of(motion.histories).items()} or None
+
+    whole = f"{what} in the motion of each group of excitations"
+    return Quantity("", values, f"excitation_{name}", (dimension, "period_part"), unit, whole)
+
+
+EXCITATION = (
+    Quantity("name", lambda row: row[0].excitation, "excitation"),
+    Quantity("", lambda row: row[0].response.period, "excitation_period", (), "s", "period of the motion"),
+    Quantity("", lambda row: row[0].response.stable, "excitation_stable"),
+    Quantity(
+        "",
+        lambda row: np.arange(row[1]) / row[1],
+        "period_part",
+        ("period_part",),
+        "1",
+        "time as a part of the motion's period",
+        common=True,
+    ),
+    _resampled(
+        lambda histories: histories.mesh_force, "mesh_force", "contact", "N", "gear-mesh force along the line of action"
+    ),
+    _resampled(
+        lambda histories: histories.sensor_acceleration,
+        "sensor_acceleration",
+        "sensor",
+        "m/s2",
+        "acceleration along the sensor",
+    ),
+    Part("", lambda row: row[0].response, PROOF),
+)
+"""Of the motion of one group of excitations, and the number of samples: their sum has no period."""
+
+
+def _excitations(solved: "SolvedSteady") -> list[Any]:
+    count = max(len(motion.histories.times) for motion in solved.motions)
+    return [(motion, count) for motion in solved.motions]
+
+
+SUPERPOSED = (
+    Quantity("stable", lambda solved: solved.superposed.stable),
+    Rows("excitations", _excitations, EXCITATION, "excitation"),
+    Rows("gear_pairs", lambda solved: _pairs(solved, None), PAIR),
+    Quantity("sensors", lambda solved: _sensors(solved, None)),
+)
+"""Of motions that are superposed: figures by the contact law at their sum, lines of all groups."""
+
+_POINT = ("branch_point",)
+
+
+def _of_contacts(name: str, of: Any, unit: str, what: str) -> Quantity:
+    return Quantity(
+        "",
+        lambda solved: of(solved.curve) if solved.machine.system.contacts else None,
+        f"branch_{name}",
+        (*_POINT, "contact"),
+        unit,
+        what,
+    )
+
+
+def _sensor_rms(solved: "SolvedSteady") -> Any:
+    names = list(solved.motions[0].histories.sensor_acceleration)
+    return np.stack([solved.branch_rms[name] for name in names], axis=-1) if names else None
+
+
+EVENT = (
+    Quantity("speed_rpm", lambda event: event.speed * RPM, heading="speed [rpm]", shown=".1f"),
+    Quantity("kind", lambda event: event.kind, heading="what happens"),
+)
+CURVE = (
+    Quantity(
+        "speed_rpm",
+        lambda solved: solved.curve.speeds * RPM,
+        "branch_speed",
+        _POINT,
+        "rpm",
+        "speed of the first driver",
+        attributes=lambda solved: {"ending": solved.curve.ending, "account": solved.curve.told(1.0 / RPM, "rpm")},
+    ),
+    Quantity(
+        "stable",
+        lambda solved: solved.curve.stable,
+        "branch_stable",
+        _POINT,
+        "",
+        "whether no small disturbance grows",
+    ),
+    Quantity("ending", lambda solved: solved.curve.ending),
+    Quantity("account", lambda solved: solved.curve.told(1.0 / RPM, "rpm")),
+    Quantity(
+        "",
+        lambda solved: [contact.name for contact in solved.machine.system.contacts] or None,
+        "contact",
+        ("contact",),
+    ),
+    _of_contacts("compression", lambda curve: curve.rms_compression, "m", "a.c. rms of the compression of the mesh"),
+    _of_contacts("peak_force", lambda curve: curve.peak_force, "N", "largest gear-mesh force"),
+    _of_contacts("contact_loss", lambda curve: curve.contact_loss, "1", "part of the period that the flanks are apart"),
+    Quantity("", _sensor_rms, "branch_sensor_rms", (*_POINT, "sensor"), "m/s2", "rms of the sensor's acceleration"),
+    Rows(
+        "gear_pairs",
+        lambda solved: [
+            (mesh, solved.curve, number)
+            for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True)
+        ],
+        (
+            Quantity("driver", lambda row: row[0].driver.name),
+            Quantity("driven", lambda row: row[0].driven.name),
+            Quantity("rms_compression_m", lambda row: row[1].rms_compression[:, row[2]]),
+            Quantity("peak_force_n", lambda row: row[1].peak_force[:, row[2]]),
+            Quantity("contact_loss_fraction", lambda row: row[1].contact_loss[:, row[2]]),
+        ),
+    ),
+    Quantity(
+        "sensors",
+        lambda solved: [{"name": name, "rms_m_per_s2": values} for name, values in solved.branch_rms.items()],
+    ),
+    Rows("bifurcations", lambda solved: solved.curve.bifurcations, EVENT),
+    Quantity("", lambda solved: [event.kind for event in solved.curve.bifurcations], "branch_event", ("branch_event",)),
+    Quantity(
+        "",
+        lambda solved: np.array([event.speed for event in solved.curve.bifurcations]) * RPM,
+        "branch_event_speed",
+        ("branch_event",),
+        "rpm",
+        "where the branch turns or its stability changes",
+    ),
+)
+"""Of the branch over speed."""
+
+STEADY = (
+    Quantity("speed_rpm", lambda solved: solved.motions[0].speed * RPM),
+    Quantity("coordinates", lambda solved: solved.machine.system.size),
+    Quantity("trusted_below_hz", lambda solved: solved.motions[0].trusted_limit),
+    Quantity("method", lambda solved: "periodic" if solved.superposed is None else "superposed"),
+    Rows(
+        "motions",
+        lambda solved: (
+            [(solved, motion, number) for number, motion in enumerate(solved.motions, start=1)]
+            if solved.superposed is None
+            else ABSENT
+        ),
+        MOTION,
+        "steady_motion",
+    ),
+    Rows("motions", lambda solved: ABSENT if solved.superposed is None else [solved], SUPERPOSED, "motion"),
+    Part("curve", lambda solved: ABSENT if solved.curve is None else solved, CURVE),
+)
+"""Of the steady state at the speed of operation, and of its branch over speed."""
+
+
+def steady_document(title: str, solved: "SolvedSteady") -> dict[str, Any]:
+    """The steady state as the command's JSON, with warnings where motions are superposed that should not be."""
+    document = {"title": title} | document_of(STEADY, solved)
+    if solved.superposed is not None:
+        add_warnings(document, solved.superposition_warnings())
+    return document
+
+
+_EVENTS = {
+    "fold": "the motion jumps to another one",
+    "period doubling": "the motion is taken over by one of twice the period",
+    "Neimark-Sacker": "a second frequency comes in",
+}
+# A multiplier beyond +1 alone tells no fold: over many mesh periods it may be an even power of one beyond -1.
+_UNSTABLE = {**_EVENTS, "fold": "disturbances grow without turning, the motion leaves for another one"}
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: as on the terminal, with the meshes, lines and events as tables."""
+    tables: tuple[Table, ...] = ()
+    for motion in document["motions"]:
+        tables += table_of(columns_of(PAIR), motion["gear_pairs"])
+        tables += line_table(motion["sensors"], "lines")
+    tables += table_of(columns_of(EVENT), document.get("curve", {}).get("bifurcations", ()), "Over speed")
+    return Section("Steady state", (*_content(document), *tables), pictures=("steady",))
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """What repeats, whether it is stable, and the events of a branch."""
+    return (Section("", tuple(_content(document))),)
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    motions = document["motions"]
+    what = "steady motion" if document.get("method") == "superposed" else "periodic motion"
+    yield (
+        f"{counted(len(motions), what)} at {document['speed_rpm']:.0f} rpm; {document['coordinates']} modal coordinates"
+    )
+    for number, motion in enumerate(motions, start=1):
+        yield from _motion(motion, f"Motion {number}: " if len(motions) > 1 else "")
+    if curve := document.get("curve"):
+        yield from curve_sentences(curve)
+
+
+def _motion(motion: Document, name: str) -> Iterator[str | Table]:
+    if "excitations" in motion:
+        yield (
+            "The excitations have no short common period: each has its own motion, other meshes linear about their "
+            "mean load, and these are superposed"
+        )
+        for one in motion["excitations"]:
+            yield _proof(one, f"  {one['name']}: ")
+        for pair in motion["gear_pairs"]:
+            yield (
+                f"  left out in {pair['driver']} → {pair['driven']}: {pair['neglected_force_n']:.3g} N rms, "
+                f"{percent(pair['neglected_part'])} of its varying force"
+            )
+    else:
+        yield _proof(motion, name)
+    yield from map(mesh_sentence, motion["gear_pairs"])
+    yield from table_of(SENSOR_COLUMNS, motion["sensors"])
+
+
+def _proof(motion: Document, name: str) -> str:
+    if motion["stable"]:
+        stability = f"stable, disturbances fall by {motion['largest_multiplier']:.4g} each period"
+    else:
+        stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
+    return (
+        f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes to {motion['residual']:.0e}, "
+        f"changes by {motion['error']:.0e} with elements half as long"
+    )
+
+
+def curve_sentences(curve: Document) -> Iterator[str]:
+    """The branch over speed: how far it was followed, the largest forces, what happens along it."""
+    speeds = curve["speed_rpm"]
+    unstable = sum(not stable for stable in curve["stable"])
+    yield (
+        f"Followed from {speeds[0]:.0f} to {speeds[-1]:.0f} rpm in {counted(len(speeds), 'point')}, "
+        f"{unstable} of them unstable"
+    )
+    if curve["ending"] != "end":
+        yield f"Left before the end of the range: {curve['account']}"
+    for pair in curve["gear_pairs"]:
+        worst = max(range(len(speeds)), key=pair["peak_force_n"].__getitem__)
+        yield (
+            f"Gear mesh {pair['driver']} → {pair['driven']}: largest force {pair['peak_force_n'][worst]:.0f} N at "
+            f"{speeds[worst]:.0f} rpm"
+        )
+    for event in curve["bifurcations"]:
+        yield f"{event['speed_rpm']:9.1f} rpm: {event['kind']}; {_EVENTS.get(event['kind'], 'stability changes')}"

@@ -1,0 +1,124 @@
+"""Check of a case before anything is solved: what cannot be built is refused, and the rest is known by arithmetic."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from coupling.gears import GearPairGeometry
+from gearwhine.case import Case, GearPair, Rotor, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.from_case import mesh_health
+from gearwhine.from_case.gear_pairs import backlash_warnings, build_pair, pair_geometries
+from gearwhine.from_case.machine import require_machine
+from gearwhine.from_case.mesh import material_of
+from gearwhine.from_case.mesh_health import ForeseenMesh
+from gearwhine.from_case.parametric_housing import fitted_case
+from gearwhine.from_case.rotors import build_bearings, build_rotor
+from gearwhine.output.warnings import warning
+from gearwhine.progress import Progress, silent
+from gearwhine.results.gear_documents import geometry_warnings
+from rotors import Rotor as BuiltRotor
+
+
+@dataclass(frozen=True)
+class CheckedRotor:
+    """Rotor of a checked case.
+
+    Attributes
+    ----------
+    given : Rotor
+        As the case has it.
+    built : rotors.Rotor
+    speed : float or None
+        [rad/s]; None without an operation.
+    """
+
+    given: Rotor
+    built: BuiltRotor
+    speed: float | None
+
+
+@dataclass(frozen=True)
+class CheckedPair:
+    """Gear pair of a checked case.
+
+    Attributes
+    ----------
+    given : GearPair
+    geometry : coupling.gears.GearPairGeometry
+    mesh_frequency : float or None
+        [Hz]; None without an operation.
+    torque : float or None
+        On the driver [N m]; likewise.
+    """
+
+    given: GearPair
+    geometry: GearPairGeometry
+    mesh_frequency: float | None
+    torque: float | None
+
+    @property
+    def mean_force(self) -> float | None:
+        """Force along the line of action, F = T / r_b of the driver [N]."""
+        return None if self.torque is None else abs(self.torque) / self.geometry.driver.base_radius
+
+
+@dataclass(frozen=True)
+class CheckedCase:
+    """A case that can be built.
+
+    Attributes
+    ----------
+    case : Case
+    mesh : ForeseenMesh or None
+        Of the housing.
+    rotors : tuple of CheckedRotor
+    pairs : tuple of CheckedPair
+    warnings : list of dict
+        As the documents have them.
+    """
+
+    case: Case
+    mesh: ForeseenMesh | None
+    rotors: tuple[CheckedRotor, ...]
+    pairs: tuple[CheckedPair, ...]
+    warnings: list[dict[str, Any]]
+
+
+def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
+    """Build all of a case but the housing's matrices, and read the file of its geometry.
+
+    Raises
+    ------
+    CaseError
+        Where a part of it cannot be built, or its housing's mesh is wrong.
+    """
+    require_machine(case)
+    for rotor in case.rotor:
+        # A load that a rolling bearing cannot carry is refused here as by the commands that solve it.
+        build_bearings(case, rotor.name)
+    if case.update is not None:
+        fitted_case(case)
+    mesh: ForeseenMesh | None = None
+    warnings: list[dict[str, Any]] = []
+    if case.housing is not None:
+        for name in {case.housing.material, *(region.material for region in case.housing.region)}:
+            material_of(case, name)
+        mesh, warnings = mesh_health.preview_mesh(case, progress)
+    speeds = rotor_speeds(case) if case.operation is not None else {}
+    rotors = tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
+    pairs = tuple(_checked_pairs(case))
+    for pair in pairs:
+        warnings += [*geometry_warnings(pair.geometry), *backlash_warnings(pair.given, pair.geometry)]
+    if case.measured is not None and case.measured.survey is not None:
+        warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
+    return CheckedCase(case, mesh, rotors, pairs, warnings)
+
+
+def _checked_pairs(case: Case) -> Iterator[CheckedPair]:
+    number = len(case.gear_pair)
+    frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
+    torques = pair_torques(case) if case.operation is not None else (None,) * number
+    for row in zip(case.gear_pair, pair_geometries(case), frequencies, torques, strict=True):
+        pair = CheckedPair(*row)
+        build_pair(pair.given).require_sound_faults(pair.geometry)
+        yield pair

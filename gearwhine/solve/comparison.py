@@ -1,0 +1,214 @@
+"""Comparison of a solved housing with the measured modes of its case: read, aligned, paired.
+
+Measured modes of a case: read, aligned with the model, and mapped to its degrees of freedom.
+
+Measured frequency responses beside the model's at the same points, with FRAC.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.errors import UNSAID
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import SolvedHousing, pair_modes
+from housing import HousingError
+from housing.correlation import frac, synthesised_responses
+from housing.correlation.comparison import Comparison
+from housing.correlation.pairing import PairingRule
+from housing.measured import (
+    Alignment,
+    MappedSurvey,
+    MeasuredGeometry,
+    MeasuredModes,
+    MeasuredResponses,
+    align_landmarks,
+    align_to_surface,
+    identify_modes,
+    map_survey,
+)
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+
+
+def read_measured(case: Case, progress: Progress = silent) -> MeasuredModes:
+    """The measured modes of a case: listed in it, read from its file, or found in the file's responses.
+
+    Raises
+    ------
+    CaseError
+        Where nothing is measured, or the responses hold no modes that are stable.
+    """
+    require(case, "measured", command="compare")
+    given = case.measured
+    assert given is not None
+    if given.survey is None:
+        assert given.frequencies is not None
+        ratios = None if given.damping_ratios is None else np.array(given.damping_ratios)
+        return MeasuredModes(_HERTZ * np.array(given.frequencies), ratios)
+    if given.survey.modes is not None:
+        return given.survey.modes
+    assert given.survey.responses is not None
+    progress("finding modes in the measured responses")
+    try:
+        return identify_modes(given.survey.responses).modes
+    except HousingError as error:
+        raise CaseError([Problem("measured.file", UNSAID, f"responses with modes in them; {error}")]) from error
+
+
+def map_measured(case: Case, mesh: Mesh, geometry: MeasuredGeometry) -> MappedSurvey:
+    """Put the survey of a case on its housing, aligned as the case says.
+
+    Raises
+    ------
+    CaseError
+        Where it cannot be aligned, or most of its points are far from the surface.
+    """
+    given = case.measured
+    assert given is not None
+    alignment: Alignment | None = None
+    key = "align"
+    try:
+        if given.align is True:
+            alignment = align_to_surface(mesh, geometry)
+        elif given.align is not False:
+            landmarks = {landmark.point: landmark.position for landmark in given.align.landmarks}
+            alignment = align_landmarks(geometry, landmarks)
+        key = "file"
+        return map_survey(mesh, geometry, alignment=alignment, tolerance=given.tolerance)
+    except HousingError as error:
+        raise CaseError([Problem(f"measured.{key}", UNSAID, f"a survey of this housing; {error}")]) from error
+
+
+def mapped_shapes(solved: SolvedHousing, survey: MappedSurvey) -> FloatArray:
+    """The model's modes at the survey's degrees of freedom, mass-normalised, shape (n_modes, n_dofs)."""
+    return survey.shapes(solved.modes.shapes)
+
+
+def compare_housing(case: Case, solved: SolvedHousing, progress: Progress = silent) -> Comparison:
+    """Pair the model's modes with the case's measured ones; see :func:`compare_with_survey`."""
+    return compare_with_survey(case, solved, progress)[0]
+
+
+def compare_with_survey(
+    case: Case, solved: SolvedHousing, progress: Progress = silent
+) -> tuple[Comparison, MappedSurvey | None]:
+    """Pair the model's modes with the case's measured ones, by shape where there are shapes, else by dominance.
+
+    Returns
+    -------
+    tuple
+        The pairs, and how the survey lies on the model, where there was one.
+
+    Raises
+    ------
+    CaseError
+        Where nothing is measured, the survey does not fit the housing, or the modes cannot be compared.
+    housing.HousingError
+        Where the model has too few modes in the band.
+    """
+    measured = read_measured(case, progress)
+    if measured.geometry is None:
+        return pair_modes(solved, measured), None
+    survey = map_measured(case, solved.mesh, measured.geometry)
+    assert case.measured is not None
+    rule = PairingRule(**case.measured.pairing.model_dump())
+    return pair_modes(solved, measured, mapped_shapes(solved, survey), rule), survey
+
+
+@dataclass(frozen=True)
+class ResponseCorrelation:
+    """FRAC of every measured response; see :func:`housing.correlation.frac`.
+
+    Attributes
+    ----------
+    geometry : MeasuredGeometry
+        Of the motions.
+    references : MeasuredGeometry
+        Of the forces.
+    band : tuple of float
+        First and last line compared [rad/s].
+    n_lines : int
+    frac : ndarray, shape (n_dofs, n_references)
+        NaN where a pair was not measured.
+    """
+
+    geometry: MeasuredGeometry
+    references: MeasuredGeometry
+    band: tuple[float, float]
+    n_lines: int
+    frac: FloatArray
+
+    @property
+    def n_measured(self) -> int:
+        """Number of responses that were measured."""
+        return int(np.count_nonzero(np.isfinite(self.frac)))
+
+    @property
+    def mean(self) -> float | None:
+        """Mean of those measured; None where there are none."""
+        known = np.isfinite(self.frac)
+        return float(self.frac[known].mean()) if known.any() else None
+
+
+def compare_responses(
+    case: Case, solved: SolvedHousing, survey: MappedSurvey, responses: MeasuredResponses
+) -> ResponseCorrelation:
+    """The model's responses with its own damping beside the measured ones, up to where its modes are all known.
+
+    Parameters
+    ----------
+    case : Case
+    solved : SolvedHousing
+    survey : MappedSurvey
+        The motions' degrees of freedom on the model.
+    responses : MeasuredResponses
+
+    Raises
+    ------
+    housing.HousingError
+        Where no two lines are left, a force was applied off the surface, or a mode has no damping at its own frequency.
+    """
+    limit = solved.modes.certificate.limit
+    lines = np.flatnonzero((responses.frequencies > 0.0) & (responses.frequencies <= limit))
+    if len(lines) < 2:
+        raise HousingError(
+            f"the responses have {len(lines)} lines between 0 and {limit / _HERTZ:.0f} Hz, up to where the model's "
+            "modes are known: expected two at least"
+        )
+    forces = replace(
+        responses.geometry, points=responses.reference_points, directions=responses.reference_directions, lines=()
+    )
+    given = case.measured
+    tolerance = None if given is None else given.tolerance
+    driven = map_survey(solved.mesh, forces, alignment=survey.alignment, tolerance=tolerance)
+    frequencies = responses.frequencies[lines]
+    model = synthesised_responses(
+        solved.modes, solved.total_damping_ratios, driven.matrix, survey.matrix, frequencies, responses.motion
+    )
+    return ResponseCorrelation(
+        geometry=responses.geometry,
+        references=forces,
+        band=(float(frequencies[0]), float(frequencies[-1])),
+        n_lines=len(lines),
+        frac=frac(model, responses.values[:, :, lines]),
+    )
+
+
+def compare_responses_document(
+    case: Case, solved: SolvedHousing, survey: MappedSurvey
+) -> ResponseCorrelation | str | None:
+    """Correlation of a case's frequency responses, or the reason why there is none; None without measured responses."""
+    given = case.measured
+    responses = None if given is None or given.survey is None else given.survey.responses
+    if responses is None:
+        return None
+    try:
+        return compare_responses(case, solved, survey, responses)
+    except HousingError as error:  # of the responses: the pairs of modes stand without them
+        return str(error)

@@ -1,0 +1,237 @@
+"""Linear analyses of the coupled system: its modes, their course over speed, and what reaches gears and sensors."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import CoupledMachine, ModesError, coupled_modes, system_campbell
+from coupling import stability as coupled_stability
+from coupling.linear.campbell import SystemCampbell
+from coupling.linear.complex_modes import CoupledModes, Stability
+from coupling.linear.frequency_response import (
+    FrequencyResponse,
+    mesh_error_response,
+    resonance_grid,
+    unbalance_response,
+)
+from coupling.signals.excitation import excitation_lines
+from coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
+from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require, rotor_speeds, table_range
+from gearwhine.case.errors import NOTHING
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import SolvedHousing
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+
+_LOWEST_HZ = 20.0  # of a frequency response
+_HARMONICS = 4.0  # of the mesh that a response covers where no housing says how far the model goes
+_MODES = 6  # at least so many of the lowest are in a diagram
+_UNBALANCE_STEPS = 200  # of the response over speed
+_DIRECT = 24  # frequencies at which superposition is held against the solved system
+
+
+@dataclass(frozen=True)
+class SolvedSystem:
+    """The coupled system of a case, linear about a contact.
+
+    Attributes
+    ----------
+    machine : coupling.CoupledMachine
+    speed : float
+        Of operation [rad/s].
+    housing : SolvedHousing or None
+        Whose modes the machine stands on.
+    mesh_phase : float or None
+        Phase of the first mesh at which the contact stands; None for the mean contact.
+    contact : coupling.ContactState
+        About which the modes and the responses to mesh errors are.
+    modes : coupling.CoupledModes
+    stability : coupling.Stability
+    responses : tuple of coupling.FrequencyResponse
+        To a unit transmission error of each mesh.
+    superposition_error : float or None
+        Largest difference of these from solving the system, at some frequencies, as a part of the largest amplitude.
+    campbell : coupling.SystemCampbell or None
+        Where speeds were given or asked for.
+    unbalance : tuple of coupling.FrequencyResponse
+        To the unbalances of each rotor that has any, over the speeds of the diagram.
+    unbalance_speeds : ndarray, shape (u,)
+        Of the leading rotor [rad/s].
+    """
+
+    machine: CoupledMachine
+    speed: float
+    housing: SolvedHousing | None
+    mesh_phase: float | None
+    contact: ContactState
+    modes: CoupledModes
+    stability: Stability
+    responses: tuple[FrequencyResponse, ...]
+    superposition_error: float | None
+    campbell: SystemCampbell | None = None
+    unbalance: tuple[FrequencyResponse, ...] = ()
+    unbalance_speeds: FloatArray | None = None
+
+    @property
+    def unloaded(self) -> ContactState:
+        """The contact with the mean mesh stiffness without load."""
+        return unloaded_contact(self.machine.system)
+
+
+def solve_system(
+    case: Case,
+    machine: CoupledMachine,
+    housing: SolvedHousing | None,
+    progress: Progress = silent,
+    *,
+    mesh_phase: float | None = None,
+    over_speed: bool = False,
+    sidebands: int = 0,
+) -> SolvedSystem:
+    """Modes, stability and frequency responses at the speed of operation; where asked, the modes over speed.
+
+    Parameters
+    ----------
+    case, machine, housing
+        The case and what was built of it.
+    progress
+        Told what is solved.
+    mesh_phase
+        At which the teeth of the first pair stand, 0 to 1; the mean contact where not given.
+    over_speed
+        Whether the Campbell diagram and the response to unbalance are wanted.
+    sidebands
+        How many the diagram shows on either side of each mesh order, at the distance of either gear's shaft order.
+
+    Raises
+    ------
+    CaseError
+        Where a phase is asked for without gears that turn, or a diagram without a speed.
+    coupling.ModesError
+        Where modes fail their proof.
+    """
+    progress("modes of the coupled system")
+    system = machine.system
+    contact = mean_contact(system) if mesh_phase is None else _instant(case, machine, mesh_phase)
+    modes = coupled_modes(system, contact)
+    responses, error = _mesh_responses(case, machine, housing, modes, contact)
+    assert case.operation is not None
+    speed = case.operation.speed
+    solved = SolvedSystem(
+        machine, speed, housing, mesh_phase, contact, modes, coupled_stability(modes), responses, error
+    )
+    return _over_speed(case, solved, housing, progress, sidebands) if over_speed else solved
+
+
+def diagram_speeds(case: Case) -> tuple[float, ...]:
+    """Speeds of the first driver [rad/s] for the diagram: the sweep's, else up to beyond operation; ascending in size.
+
+    Raises
+    ------
+    CaseError
+        For a machine that stands still, whose bearings' tables leave no range, or a sweep of one speed.
+    """
+    assert case.operation is not None
+    operation = case.operation.speed
+    if operation == 0.0:
+        raise CaseError([Problem("operation.speed", 0.0, "a speed: a diagram over speed is of a machine that turns")])
+    if case.sweep is not None:
+        speeds = sorted({abs(speed) for speed in case.sweep.speeds})
+        if len(speeds) < 2:
+            raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
+        return tuple(math.copysign(speed, operation) for speed in speeds)
+    low, high = 0.0, BEYOND_OPERATION * abs(operation)
+    for name, speed in rotor_speeds(case).items():
+        least, most = table_range(case, name)
+        ratio = abs(speed / operation)
+        if ratio > 0.0:
+            low, high = max(low, least / ratio), min(high, most / ratio)
+    if not low < high:
+        raise CaseError(
+            [Problem("bearing", NOTHING, "tables over speed with a range in common, for a diagram over speed")]
+        )
+    return tuple(math.copysign(speed, operation) for speed in np.linspace(low, high, CAMPBELL_STEPS + 1).tolist())
+
+
+def _instant(case: Case, machine: CoupledMachine, phase: float) -> ContactState:
+    """The contact when the first pair's teeth stand at a phase."""
+    require(case, "gear_pair", command="system --mesh-phase")
+    if not 0.0 <= phase <= 1.0:
+        raise CaseError([Problem("--mesh-phase", phase, "a part of the mesh period, 0 to 1")])
+    if machine.system.contacts[0].rate == 0.0:
+        raise CaseError([Problem("operation.speed", 0.0, "a speed: teeth that do not turn have no phase")])
+    return contact_at(machine.system, time_of_phase(machine.system, phase))
+
+
+def _mesh_responses(
+    case: Case,
+    machine: CoupledMachine,
+    housing: SolvedHousing | None,
+    modes: CoupledModes,
+    contact: ContactState,
+) -> tuple[tuple[FrequencyResponse, ...], float | None]:
+    """Responses to the error of each mesh by superposition, and how far they are from solving the system."""
+    touching = [number for number in range(len(machine.meshes)) if contact.stiffness[number] > 0.0]
+    if not touching:
+        return (), None
+    limit = _frequency_limit(case, housing)
+    frequencies = resonance_grid(modes, _HERTZ * min(_LOWEST_HZ, 0.1 * limit), _HERTZ * limit)
+    try:
+        found = [
+            mesh_error_response(machine, frequencies, mesh=number, contact=contact, modes=modes) for number in touching
+        ]
+    except ModesError:
+        # Modes that are all but one cannot be superposed; the system itself can always be solved.
+        solved = [mesh_error_response(machine, frequencies, mesh=number, contact=contact) for number in touching]
+        return tuple(solved), None
+    chosen = np.unique(np.linspace(0, frequencies.size - 1, _DIRECT).astype(int))
+    worst = 0.0
+    for number, by_modes in zip(touching, found, strict=True):
+        direct = mesh_error_response(machine, frequencies[chosen], mesh=number, contact=contact)
+        difference = np.abs(by_modes.coordinates[chosen] - direct.coordinates)
+        worst = max(worst, float(difference.max() / np.abs(direct.coordinates).max()))
+    return tuple(found), worst
+
+
+def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:
+    """Up to where responses are taken [Hz]: as far as the housing's modes, or over some harmonics of the meshes."""
+    if housing is not None:
+        return housing.modes.certificate.limit / _HERTZ
+    return _HARMONICS * max(mesh_frequencies(case)) if max(mesh_frequencies(case)) > 0.0 else 1000.0
+
+
+def _over_speed(
+    case: Case, solved: SolvedSystem, housing: SolvedHousing | None, progress: Progress, sidebands: int
+) -> SolvedSystem:
+    machine = solved.machine
+    speeds = diagram_speeds(case)
+    lines = excitation_lines(machine, sidebands=sidebands)
+    mean = solved.contact if solved.mesh_phase is None else mean_contact(machine.system)
+    if housing is not None:
+        limit = housing.modes.certificate.limit
+    else:
+        swinging = np.abs(solved.modes.eigenvalues[solved.modes.eigenvalues.imag > 0.0])
+        lowest = float(np.sort(swinging)[:_MODES][-1]) if swinging.size else 0.0
+        limit = 1.05 * max(lowest, max(line.order for line in lines) * abs(speeds[-1]))
+    campbell = system_campbell(
+        machine,
+        speeds,
+        frequency_limit=limit,
+        lines=lines,
+        contact=mean,
+        progress=lambda fraction: progress("coupled modes over speed", fraction),
+    )
+    driven = list(dict.fromkeys(one.rotor for one in machine.unbalances if one.moment != 0.0))
+    turning = np.linspace(speeds[0] or speeds[-1] / _UNBALANCE_STEPS, speeds[-1], _UNBALANCE_STEPS)
+    unbalance = []
+    for rotor in driven:
+        if machine.speeds[rotor] == 0.0:
+            continue
+        progress(f"response to the unbalance of {rotor}")
+        unbalance.append(unbalance_response(machine, turning, rotor=rotor, contact=mean))
+    return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)

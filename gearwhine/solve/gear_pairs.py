@@ -1,0 +1,326 @@
+"""What the teeth of a gear pair do under the torque of the case: who carries, how hard they press, how they err.
+
+Harris maps of gear pairs over torque, and the optimal tip relief.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears import (
+    GearPairGeometry,
+    LoadedMesh,
+    ToothContact,
+    harris_map,
+    loaded_transmission_error,
+    mesh_stiffness,
+    optimal_tip_relief,
+    tooth_contact,
+)
+from coupling.gears.contact.face_slices import FaceSlices
+from coupling.gears.contact.tooth_pair import flank_gap
+from coupling.gears.loaded.contact_pressure import mesh_pressure
+from coupling.gears.loaded.gear_pair import LoadedGearPair
+from coupling.gears.loaded.optimal_relief import (
+    HarrisMap,
+    PeakToPeak,
+    ReliefAim,
+    ReliefOptimum,
+    transmission_error_harmonics,
+)
+from gearwhine.case import Case
+from gearwhine.case import GearPair as GivenPair
+from gearwhine.progress import Progress, silent
+
+FloatArray = npt.NDArray[np.float64]
+
+HARMONICS = 8
+_PHASES = 400  # of the mesh period, evenly, for curves that pairs have in common
+_PLACES = 200  # along a flank
+
+
+@dataclass(frozen=True, eq=False)
+class ToothPairCurves:
+    """A gear pair at even phases of its mesh period, (n,), with every pair of teeth (n, m); NaN where one is absent.
+
+    Attributes
+    ----------
+    phases : ndarray, shape (n,)
+        Parts of the mesh period.
+    mesh : coupling.gears.StaticMesh
+        Under the case's torque.
+    stiffness : ndarray, shape (n,)
+        Of all pairs on the path of contact [N/m].
+    unloaded : ndarray, shape (n,)
+        Transmission error without load [m].
+    position : ndarray, shape (n, m)
+        Place on the path of contact [base pitches].
+    share : ndarray, shape (n, m)
+        Part of the load.
+    pressure : ndarray, shape (n, m)
+        Hertzian pressure, the largest over the face [Pa]; NaN where it is not known.
+    face_place : ndarray, shape (s,), or None
+        Distance of each slice from the middle of the face [m]; None where loads are even along it.
+    """
+
+    phases: FloatArray
+    mesh: LoadedMesh
+    stiffness: FloatArray
+    unloaded: FloatArray
+    position: FloatArray
+    share: FloatArray
+    pressure: FloatArray
+    face_place: FloatArray | None
+
+
+@dataclass(frozen=True, eq=False)
+class PairAnalysis:
+    """A solved gear pair, looked at from all sides.
+
+    Attributes
+    ----------
+    given : GearPair
+        As in the case.
+    solved : LoadedGearPair
+    widths_given : tuple of bool
+        Whether the case gives the face width of the driver and of the driven gear; one that only stands in for it says
+        nothing of a pressure.
+    unloaded : ndarray, shape (n,)
+        Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
+    pressure : ndarray, shape (n, m) or (n, m, s), or None
+        Hertzian pressure of every pair at every phase [Pa], see `coupling.gears.mesh_pressure`. None without load,
+        single pairs or face widths in the case.
+    pitch_pressure : float or None
+        The largest at the pitch point [Pa]; None also where that is not on the path of contact.
+    harris : coupling.gears.HarrisMap or None
+        From a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
+        unless asked for, and without a torque.
+    optimum : coupling.gears.ReliefOptimum or None
+        The relief that suits the case's torque, with all teeth alike; None unless asked for, and without a torque or
+        single pairs.
+    """
+
+    given: GivenPair
+    solved: LoadedGearPair
+    widths_given: tuple[bool, bool]
+    unloaded: FloatArray
+    pressure: FloatArray | None
+    pitch_pressure: float | None
+    harris: HarrisMap | None = None
+    optimum: ReliefOptimum | None = None
+
+    @property
+    def label(self) -> str:
+        """The pair's gears."""
+        return f"{self.solved.pair.driver} → {self.solved.pair.driven}"
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Mesh stiffness of all pairs on the path of contact at the phases of ``solved.static`` [N/m], (n,)."""
+        return mesh_stiffness(self.solved.contact, self.solved.static.phases)
+
+    @property
+    def flanks(self) -> tuple[FloatArray, FloatArray]:
+        """Roll angles [rad] of driver and driven gear from form circle to tip, and the material over the involute [m].
+
+        Both of shape (2, n).
+        """
+        gears = (self.solved.geometry.driver, self.solved.geometry.driven)
+        ends = [(gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)) for gear in gears]
+        rolls = [np.linspace(low, high, _PLACES) for low, high in ends]
+        return np.array(rolls), np.array([-flank_gap(gear, roll) for gear, roll in zip(gears, rolls, strict=True)])
+
+    @property
+    def shares(self) -> tuple[FloatArray, FloatArray] | None:
+        """Part of the load that a pair of teeth has along its path: places [base pitches] in order, and parts.
+
+        None without load or single pairs.
+        """
+        static = self.solved.static
+        if static.force == 0.0 or not self.solved.has_single_pairs:
+            return None
+        present = self.solved.contact.pairs(static.phases).present
+        order = np.argsort(static.positions[present], kind="stable")
+        return static.positions[present][order], static.load_shares[present][order]
+
+    @property
+    def largest_pressure(self) -> tuple[float, float] | None:
+        """The largest Hertzian pressure on the path of contact [Pa], and the driver's roll angle there [rad]."""
+        if self.pressure is None:
+            return None
+        geometry, faces, positions = self.solved.geometry, self.solved.contact.faces, self.solved.static.positions
+        if faces is not None:
+            positions = positions[..., None] + faces.shift
+        known = np.nan_to_num(self.pressure, nan=0.0, posinf=np.inf)
+        place = np.unravel_index(int(known.argmax()), known.shape)
+        return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
+
+    def curves(self) -> ToothPairCurves:
+        """The pair at even phases of the mesh period."""
+        phases = np.arange(_PHASES) / _PHASES
+        contact, faces = self.solved.contact, self.solved.contact.faces
+        mesh = loaded_transmission_error(contact, self.solved.static.force, phases)
+        absent = ~contact.pairs(phases).present
+        pressure = np.full(mesh.positions.shape, np.nan)
+        if self.pressure is not None:
+            whole = mesh_pressure(self.solved.geometry, contact, mesh)
+            # Over the face the largest; what lies off the path has none.
+            pressure = whole if whole.ndim == 2 else np.fmax.reduce(whole, axis=2)
+        return ToothPairCurves(
+            phases=phases,
+            mesh=mesh,
+            stiffness=mesh_stiffness(contact, phases),
+            unloaded=first_touch(contact, phases),
+            position=np.where(absent, np.nan, mesh.positions),
+            share=np.where(absent, np.nan, mesh.load_shares),
+            pressure=np.where(absent, np.nan, pressure),
+            face_place=None if faces is None or mesh.line_loads is None else faces.z,
+        )
+
+    @property
+    def harmonics(self) -> FloatArray:
+        """Amplitudes of the transmission error at the mesh frequency and its multiples [m], (8,).
+
+        Over the whole hunting period where mesh periods differ: what is not of the mesh frequency averages out.
+        """
+        mesh, hunting = self.solved.static, self.solved.hunting
+        if hunting is not None:
+            periods = self.solved.contact.hunting_period
+            over = hunting.transmission_error.reshape(periods, -1).mean(axis=0)
+            mesh = replace(hunting, phases=hunting.phases[: over.size], transmission_error=over)
+        return transmission_error_harmonics(mesh, HARMONICS)
+
+    @property
+    def unloaded_harmonics(self) -> FloatArray:
+        """The same without load, over the mesh period of ``solved.static`` [m], (8,)."""
+        return transmission_error_harmonics(replace(self.solved.static, transmission_error=self.unloaded), HARMONICS)
+
+    @property
+    def as_given(self) -> float | None:
+        """Peak to peak at the case's torque with all teeth alike [m]; None without a Harris map."""
+        if self.harris is None:
+            return None
+        return float(self.harris.peak_to_peak[np.abs(self.harris.forces - self.solved.static.force).argmin()])
+
+    @property
+    def pairs_in_contact(self) -> dict[int, float]:
+        """For how much of the mesh period so many pairs carry; each phase stands for up to half way to the next."""
+        static = self.solved.static
+        touching = (static.pair_forces > 0.0).sum(axis=1)
+        around = np.concatenate([[static.phases[-1] - 1.0], static.phases, [static.phases[0] + 1.0]])
+        part = 0.5 * (around[2:] - around[:-2])
+        return {int(count): float(part[touching == count].sum()) for count in np.unique(touching)}
+
+    @property
+    def loaded_contact_ratio(self) -> float:
+        """How many pairs carry in the mean: less than the contact ratio by relief, more by corner contact."""
+        return sum(count * part for count, part in self.pairs_in_contact.items())
+
+    @property
+    def corner_force(self) -> float:
+        """The largest force that a pair's corners carry, outside its path of contact [N]."""
+        static, end, faces = self.solved.static, self.solved.geometry.contact_ratio, self.solved.contact.faces
+        if faces is None or static.line_loads is None:
+            outside = (static.positions < 0.0) | (static.positions > end)
+            return float(static.pair_forces[outside].max(initial=0.0))
+        places = static.positions[..., None] + faces.shift
+        carried = np.where((places < 0.0) | (places > end), static.line_loads, 0.0)
+        return float(carried.sum(axis=-1).max(initial=0.0)) * faces.width
+
+
+def analyse_pairs(case: Case, solved: Sequence[LoadedGearPair]) -> tuple[PairAnalysis, ...]:
+    """Look at each solved pair under the case's torque and without."""
+    return tuple(_analysis(case, given, pair) for given, pair in zip(case.gear_pair, solved, strict=True))
+
+
+def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
+    """Transmission error without load at `phases` (n,): the least gap of the pairs there [m]."""
+    return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
+
+
+def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair) -> PairAnalysis:
+    unloaded = first_touch(pair.contact, pair.static.phases)
+    driver, driven = case.gear_named(pair.pair.driver), case.gear_named(pair.pair.driven)
+    given = driver.face_width is not None, driven.face_width is not None
+    if pair.static.force == 0.0 or not pair.has_single_pairs or not all(given):
+        return PairAnalysis(entry, pair, given, unloaded, None, None)
+    pressure = mesh_pressure(pair.geometry, pair.contact, pair.static)
+    return PairAnalysis(entry, pair, given, unloaded, pressure, _pitch_pressure(pair))
+
+
+def _pitch_pressure(pair: LoadedGearPair) -> float | None:
+    """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
+    pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
+    if not 0.0 <= pitch < pair.geometry.contact_ratio:
+        return None
+    shift = np.zeros(1) if faces is None else faces.shift
+    mesh = loaded_transmission_error(pair.contact, pair.static.force, np.unique((pitch - shift) % 1.0))
+    pressure = mesh_pressure(pair.geometry, pair.contact, mesh).reshape(*mesh.positions.shape, -1)
+    passing = np.isclose(mesh.positions[..., None] + shift, pitch, rtol=0.0, atol=1e-9)
+    return float(pressure[passing].max())
+
+
+_SEARCHED_SLICES = 21  # of a face, while the best relief is sought
+_LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
+
+
+def solve_over_torques(
+    pairs: Sequence[PairAnalysis], progress: Progress = silent, aims: Sequence[ReliefAim] = ()
+) -> tuple[PairAnalysis, ...]:
+    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque.
+
+    ``aims`` are those of the reliefs, one for each pair; all peak to peak where not given.
+    """
+    found = []
+    for pair, aim in zip(pairs, aims or [PeakToPeak()] * len(pairs), strict=True):
+        if pair.solved.static.force > 0.0:
+            progress(f"Harris map of {pair.label}")
+            pair = replace(pair, harris=_harris_map(pair.solved))
+            if pair.solved.has_single_pairs:
+                progress(f"best tip relief of {pair.label}")
+                pair = replace(pair, optimum=_best_relief(pair.solved, aim))
+        found.append(pair)
+    return tuple(found)
+
+
+def _harris_map(pair: LoadedGearPair) -> HarrisMap:
+    contact = pair.contact
+    if contact.hunting_period > 1:
+        contact = tooth_contact(
+            _alike(pair.geometry), pair.model, corner_contact=contact.has_corner_contact, faces=contact.faces
+        )
+    return harris_map(contact, pair.static.force * np.linspace(_LEAST, _MOST, _TORQUES))
+
+
+def _best_relief(pair: LoadedGearPair, aim: ReliefAim) -> ReliefOptimum:
+    given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
+    geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.contact.faces
+    corners = pair.contact.has_corner_contact
+    return optimal_tip_relief(
+        geometry,
+        pair.model,
+        [force],
+        shape="linear" if given is None else given.shape,
+        corner_contact=corners,
+        faces=faces,
+        searched_faces=None if faces is None else with_coarser_slices(faces, _SEARCHED_SLICES),
+        aim=aim,
+    )
+
+
+def with_coarser_slices(faces: FaceSlices, count: int) -> FaceSlices:
+    """The same face in at most `count` slices: quick enough to search with, and as good for finding a place."""
+    if faces.z.size <= count:
+        return faces
+    z = faces.face_width * ((np.arange(count) + 0.5) / count - 0.5)
+    shift, gap = (np.interp(z, faces.z, values) for values in (faces.shift, faces.gap))
+    return replace(faces, z=z, width=faces.face_width / count, shift=shift, gap=gap)
+
+
+def _alike(pair: GearPairGeometry) -> GearPairGeometry:
+    """A pair of gears with all their teeth alike: a relief is cut for all of them."""
+    driver, driven = (replace(gear, pitch_deviations=(), faults=()) for gear in (pair.driver, pair.driven))
+    return replace(pair, driver=driver, driven=driven)

@@ -1,0 +1,467 @@
+"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance.
+
+Mode cache: housing modes in the results folder, read again while the housing is unchanged.
+
+Modes are known again by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys
+that do not enter the modes, the materials it names, the places of the bearings for which the modes have attachments,
+the content of its files, and the versions and source of the code.
+A new key of the housing therefore counts until somebody says that it does not.
+"""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+import gearwhine
+import housing as room
+import meshes
+from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.errors import UNSAID
+from gearwhine.from_case.fixtures import attach_all, build_attachments, check_places
+from gearwhine.from_case.mesh import build_mesh, materials_of
+from gearwhine.from_case.mesh_health import noted_on_failure, require_meshable, resolution_warnings
+from gearwhine.output.files import file_contents, installed, source_digest, texts_in, with_contents
+from gearwhine.output.warnings import warning
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_health import bearing_places, housing_checks
+from housing import (
+    Housing,
+    HousingError,
+    ModeSet,
+    compare_by_dominance,
+    compare_by_shapes,
+    effective_mass,
+    modal_damping,
+    read_modes,
+    solve_modes,
+    write_modes,
+)
+from housing.correlation.comparison import Comparison
+from housing.correlation.pairing import PairingRule
+from housing.errors import ModeFileError
+from housing.measured import MeasuredModes
+from housing.measured.survey_planning import Survey, survey_grid
+from housing.model.housing import RESPONSE_ORDERS, bearing_port
+from housing.model.patches import rigid_motions
+from housing.model.seats import SensorPort
+from housing.modes.dominance import Dominance, dominance
+from housing.modes.effective_mass import damping_ratios as housing_damping_ratios
+from housing.modes.receptance import Selection, select_modes
+from housing.storage.mesh_arrays import mesh_digest
+from housing.storage.mode_file import ModeRecord, with_sensors
+from housing.storage.netcdf import LabelledArray, content_key
+from meshes import Mesh
+
+MODE_CACHE_FILE = "modes.nc"
+
+# Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the kept mesh afresh.
+_WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
+_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab", "pypardiso")
+
+
+def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
+    """Inputs of a case's housing modes; their content key is that of the modes.
+
+    Parameters
+    ----------
+    case : Case
+        With a housing.
+    mesh : Mesh, optional
+        The mesh of ``[housing.mesh]``: it counts as it was read, so that neither the file's name nor its format
+        matters, and what a file refers to does.
+    """
+    given = case.housing
+    assert given is not None
+    files = file_contents(given.model_dump())
+    if given.mesh is not None and mesh is not None:
+        files[str(given.mesh.file)] = {"mesh": mesh_digest(mesh)}
+    bearings = {name: list(place) for name, place in bearing_places(case).items()}
+    written = given.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=set(_WITHOUT_EFFECT))
+    named = texts_in(written)
+    return {
+        "housing": with_contents(written, files),
+        "bearings": bearings,
+        "attachment_orders": RESPONSE_ORDERS,
+        "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
+        "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+        "source": source_digest(meshes, room, gearwhine),
+    }
+
+
+def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord | None, str | None]:
+    """Cached modes of these inputs, or None; and a warning where the file cannot be used."""
+    path = folder / MODE_CACHE_FILE
+    if not path.exists():
+        return None, None
+    try:
+        record = read_modes(path)
+    except ModeFileError as error:
+        return None, f"{error}; the modes are solved again"
+    return (record if record.key == content_key(inputs) else None), None
+
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_COORDINATES = ("coordinate", "other_coordinate")
+_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
+_DAMPING = "modal_damping"  # its name in a mode-set file
+
+
+@dataclass(frozen=True)
+class SolvedHousing:
+    """Solved housing: mesh, modes, damping, seats, sensors, dominance and checks.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    mass : float
+        With the masses attached [kg].
+    attached_mass : float
+        Of these alone [kg].
+    modes : housing.ModeSet
+    damping_ratios : ndarray, shape (n_modes,)
+        As the case gives them; see :attr:`total_damping_ratios`.
+    damping_matrix : ndarray, shape (n_modes, n_modes), or None
+        Modal damping matrix of dashpots, mounts and joints [1/s]; None where nothing damps.
+    seats : dict of str to ndarray, shape (n_modes, 6)
+        Modes' motions at each bearing seat.
+    seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
+        The seats' motions from the nodes'.
+    loaded : dict of str to sparse array, shape (5, 3 n_nodes)
+        Motions of each place where the machine bears on the housing, see :func:`housing.bearing_port`: the modes'
+        attachments are for these.
+    sensors : dict of str to housing.SensorPort
+    survey : housing.Survey
+    strengths : housing.Dominance or None
+        None where there are no seats.
+    checks : dict
+        Health report, effective masses and the mass of the solid as their documents.
+    seconds : dict of str to float
+        Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
+    record : housing.ModeRecord
+        Content of its mode-set file.
+    source : Path or None
+        The file that the modes were read from; None where they were solved.
+    source_holds : bool
+        Whether that file also holds these sensors, so that it need not be written again.
+    warnings : list of dict
+        Warnings, as in the documents.
+    """
+
+    mesh: Mesh
+    mass: float
+    attached_mass: float
+    modes: ModeSet
+    damping_ratios: FloatArray
+    damping_matrix: FloatArray | None
+    seats: dict[str, FloatArray]
+    seat_ports: dict[str, sparse.csr_array]
+    loaded: dict[str, sparse.csr_array]
+    sensors: dict[str, SensorPort]
+    survey: Survey
+    strengths: Dominance | None
+    checks: dict[str, Any]
+    seconds: dict[str, float]
+    record: ModeRecord
+    source: Path | None = None
+    source_holds: bool = False
+    warnings: list[dict[str, Any]] = field(default_factory=list)
+
+    @property
+    def trusted_limit_hz(self) -> float:
+        """Frequency below which the modes are complete [Hz]."""
+        return self.modes.certificate.limit / _HERTZ
+
+    @property
+    def total_damping_ratios(self) -> FloatArray:
+        """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
+        if self.damping_matrix is None:
+            return self.damping_ratios
+        return housing_damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
+
+    @property
+    def survey_shapes(self) -> FloatArray:
+        """Mode shapes at the survey points, mass-normalised, shape (n_modes, n_points, 3) [1/√kg]."""
+        count = len(self.modes.frequencies)
+        return (self.survey.matrix @ self.modes.shapes.reshape(count, -1).T).T.reshape(count, -1, 3)
+
+    @property
+    def missing_compliance(self) -> FloatArray:
+        """Part of the static compliance that the modes lack without attachments, shape (n_loaded, 5).
+
+        Raises
+        ------
+        ValueError
+            Where there are no attachments.
+        """
+        if self.modes.residual_modes is None:
+            raise ValueError("static compliance of a housing without attachments")
+        return self.modes.residual_modes.proof.missing_parts.reshape(len(self.loaded), -1)
+
+    @cached_property
+    def selection(self) -> Selection | None:
+        """Modes that carry forces across the shafts from the bearings to the sensors; None where there are not both."""
+        ratios = self.total_damping_ratios
+        if not self.loaded or not self.sensors or not (ratios > 0.0).all():
+            return None
+        # Forces across the shafts alone: receptances by moments have another unit, and no common scale with these.
+        forces = sparse.csr_array(sparse.vstack([motions[:2] for motions in self.loaded.values()], format="csr"))
+        motions = sparse.csr_array(sparse.vstack([sensor.matrix for sensor in self.sensors.values()], format="csr"))
+        # From just above rest, where a free housing has no receptance.
+        limit = self.modes.certificate.limit
+        return select_modes(self.modes, ratios, forces, motions, (0.01 * limit, limit), _SELECTION_TOLERANCE)
+
+
+def solve_housing(
+    case: Case,
+    progress: Progress = silent,
+    *,
+    command: str = "modes",
+    folder: Path | None = None,
+    fresh: bool = False,
+) -> SolvedHousing:
+    """Mesh the housing and solve its certified modes, or read them from the mode cache.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+        Receives the next step in words.
+    command : str
+        On whose behalf, for messages.
+    folder : path, optional
+        A results folder; modes of the same housing kept there are read in place of solving.
+    fresh : bool
+        Solve also where they are.
+
+    Raises
+    ------
+    CaseError, housing.HousingError
+        Where the case cannot be solved as it stands.
+    housing.IncompleteModesError, housing.ReductionError, housing.HealthError
+        Where the modes fail their certificate, their static compliance its proof, or the model its checks.
+    """
+    require(case, "housing", command=command)
+    given = case.housing
+    assert given is not None
+    begin = time.perf_counter()
+    remarks: list[str] = []
+    mesh = build_mesh(case, remarks.append) if given.mesh is not None else None
+    inputs = mode_cache_inputs(case, mesh)
+    kept, spoilt = read_mode_cache(folder, inputs) if folder is not None and not fresh else (None, None)
+    if kept is not None and folder is not None:
+        mesh, warnings = kept.mesh, list(kept.notes["warnings"])
+        progress(f"modes read from {folder / MODE_CACHE_FILE} (unchanged housing)")
+    else:
+        if mesh is None:
+            progress("meshing the housing")
+            mesh = build_mesh(case, remarks.append)
+        warnings = [warning("geometry", remark) for remark in remarks] + require_meshable(case, mesh)
+    meshed = time.perf_counter() - begin
+    with noted_on_failure(warnings):
+        # Places and ports before modes: what is wrong with them is found out before the long work.
+        check_places(case, mesh)
+        described = describe_housing(case, mesh)
+        seat_ports = described.seat_ports()
+        loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
+        sensors = described.sensor_ports()
+        bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+        survey = survey_grid(mesh, bounds)
+        if kept is None:
+            modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
+            seconds = {"mesh": meshed, **seconds}
+            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _HERTZ)
+        else:
+            modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
+            damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
+            seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
+    seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
+    strengths = None
+    if seat_ports:
+        radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
+        strengths = dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
+    seconds["total"] = time.perf_counter() - begin
+    record = kept or ModeRecord(
+        mesh,
+        modes,
+        mass,
+        seats=tuple(described.seats),
+        seat_motions=np.stack(list(seats_in_modes.values()), axis=1) if seat_ports else np.empty((0, 0, 6)),
+        inputs=inputs,
+        notes={"seconds": seconds, "checks": checks, "warnings": warnings},
+        extras={} if damping_matrix is None else {_DAMPING: _damping_array(damping_matrix)},
+    )
+    record = with_sensors(record, sensors.values())
+    return SolvedHousing(
+        mesh=mesh,
+        mass=mass,
+        attached_mass=sum(entry.mass for entry in given.mass),
+        modes=modes,
+        damping_ratios=_damping(case, modes.frequencies_hz),
+        damping_matrix=damping_matrix,
+        seats=seats_in_modes,
+        seat_ports=seat_ports,
+        loaded=loaded,
+        sensors=sensors,
+        survey=survey,
+        strengths=strengths,
+        checks=checks,
+        seconds=seconds,
+        record=record,
+        source=None if kept is None or folder is None else folder / MODE_CACHE_FILE,
+        source_holds=kept is not None and kept.sensors == record.sensors,
+        warnings=warnings + ([] if spoilt is None else [warning("modes file", spoilt)]),
+    )
+
+
+def _damping_array(matrix: FloatArray) -> LabelledArray:
+    return LabelledArray(_COORDINATES, matrix, "s-1", "damping of what is fastened, by modes and attachments")
+
+
+def _solve_modes(
+    case: Case, described: Housing, loaded: dict[str, sparse.csr_array], progress: Progress
+) -> tuple[ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
+    """The modes, the housing's mass [kg], what damps it in its modes, its checks, and the seconds of each step."""
+    given = case.housing
+    assert given is not None
+    begin, mesh = time.perf_counter(), described.mesh
+    progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
+    free = described.free_matrices()
+    matrices = attach_all(case, mesh, free)
+    assembled = time.perf_counter() - begin
+    wanted = "modes" if given.frequency_limit is None else "frequency_limit"
+    try:
+        modes = solve_modes(
+            matrices,
+            frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
+            count=given.modes,
+            ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
+            port_orders=RESPONSE_ORDERS,
+            progress=progress,
+        )
+    except HousingError as error:
+        raise CaseError([Problem(f"housing.{wanted}", UNSAID, f"what this model has; {error}")]) from error
+    damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
+    progress("checking the housing against its geometry")
+    begin = time.perf_counter()
+    health = described.health(free, matrices, modes)
+    health.require()
+    checks = housing_checks(described, health, effective_mass(matrices, mesh.points, modes))
+    seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
+    return modes, matrices.total_mass, damping, checks, seconds
+
+
+def describe_housing(case: Case, mesh: Mesh) -> Housing:
+    """The housing of a case on its mesh as the library's description.
+
+    Raises
+    ------
+    CaseError
+        Where a region has no elements of its own.
+    housing.HousingError
+        As :class:`housing.Housing`.
+    """
+    parted, material, materials = materials_of(case, mesh)
+    fixtures = [fixture for _, _, fixture in build_attachments(case)]
+    given = case.housing
+    assert given is not None
+    seats, sensors = tuple(seat.build() for seat in given.seat), tuple(sensor.build() for sensor in given.sensor)
+    return Housing(parted, material, materials, fixtures, seats, sensors)
+
+
+def write_mode_cache(place: Path, solved: SolvedHousing) -> None:
+    """Write a solved housing's modes, unless the file that they were read from holds them, sensors and all."""
+    if not solved.source_holds:
+        write_modes(place / MODE_CACHE_FILE, solved.record)
+
+
+def base_participation(case: Case, mesh: Mesh, modes: ModeSet) -> FloatArray:
+    """Participation of modes and attachments in the motions of the ground, about the origin, shape (n, 6) [√kg, √kg m].
+
+    φᵀ M R over every degree of freedom: what is fixed moves with the ground, and pulls by the consistent mass.
+    """
+    mass = describe_housing(case, mesh).matrices().mass
+    moved = mass @ rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)
+    return modes.project_all(sparse.csr_array(moved.T))
+
+
+def pair_modes(
+    solved: SolvedHousing,
+    measured: MeasuredModes,
+    shapes: FloatArray | None = None,
+    rule: PairingRule | None = None,
+) -> Comparison:
+    """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
+
+    Parameters
+    ----------
+    solved : SolvedHousing
+    measured : housing.measured.MeasuredModes
+    shapes : ndarray, shape (n_modes, n_dofs), optional
+        The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
+    rule : housing.PairingRule, optional
+        Of the pairing by shape.
+
+    Raises
+    ------
+    CaseError
+        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
+        no seats to be driven at.
+    housing.HousingError
+        Where the model has too few modes in the band, or its shapes do not fit the measured ones.
+    """
+    if measured.shapes is None or shapes is None:
+        return _compare_by_dominance(solved, measured.frequencies)
+    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
+    return compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
+
+
+def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Comparison:
+    if solved.strengths is None:
+        raise CaseError(
+            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
+        )
+    comparison = compare_by_dominance(frequencies, solved.strengths)
+    _require_modes_up_to(solved, comparison.band[1], "dominant modes are looked for")
+    return comparison
+
+
+def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> None:
+    limit = solved.modes.certificate.limit
+    if limit < highest:
+        expected = (
+            f"at least {highest / _HERTZ:.5g} Hz: {why} up to there, and the model's are known only below the limit"
+        )
+        raise CaseError([Problem("housing.frequency_limit", f"{limit / _HERTZ:.5g} Hz", expected)])
+
+
+def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
+    """Numbers of the strongest modes, from 1; the lowest ones where there are no seats to be driven at."""
+    if solved.strengths is None:
+        return list(range(1, min(count, len(solved.modes.frequencies)) + 1))
+    return [int(mode) + 1 for mode in solved.strengths.strongest(count, (0.0, np.inf))]
+
+
+def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:
+    """Damping ratio of each mode: one for all, one for each, or by a table of frequency."""
+    assert case.housing is not None
+    given = case.housing.damping_ratio
+    if case.housing.damping_points:
+        places, ratios = np.array(case.housing.damping_points).T
+        return np.asarray(np.interp(frequencies_hz, places, ratios))
+    if isinstance(given, tuple):
+        if len(given) < len(frequencies_hz):
+            expected = f"a ratio for each of the {len(frequencies_hz)} modes found"
+            raise CaseError([Problem("housing.damping_ratio", f"{len(given)} ratios", expected)])
+        return np.array(given[: len(frequencies_hz)])
+    assert isinstance(given, float | int)
+    return np.full(len(frequencies_hz), float(given))

@@ -1,0 +1,155 @@
+"""Operating deflection shapes of a stored run at the spectral lines nearest to given frequencies."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import CaseError, Problem
+from gearwhine.solve.housing_modes import SolvedHousing
+from housing import HousingError
+from housing.modes.receptance import OperatingShape
+from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
+
+FloatArray = npt.NDArray[np.float64]
+
+RESULTS_FILE = "results.nc"
+_HERTZ = 2.0 * np.pi
+_MICRO = 1e6
+_TOLD = 2  # modes in a picture
+_SAME = 1e-9  # of frequencies and shapes, for the run's housing to be this one
+
+
+@dataclass(frozen=True)
+class RunLine:
+    """A line of a run's spectra.
+
+    Attributes
+    ----------
+    shape : housing.modes.receptance.OperatingShape
+    name : str
+        Name, such as ``2x mesh``, where a sensor's line there has a name; else empty.
+    """
+
+    shape: OperatingShape
+    name: str
+
+    @property
+    def hertz(self) -> float:
+        """[Hz]."""
+        return self.shape.frequency / _HERTZ
+
+
+def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
+    """The lines nearest to frequencies [Hz] in a results folder, each once, ascending.
+
+    Raises
+    ------
+    CaseError
+        Where there is no run on file, or not of this housing at steady speed, or no line there.
+    """
+    import xarray as xr
+
+    path = folder / RESULTS_FILE
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as dataset:
+            content = dataset.load()
+    except (OSError, ValueError) as error:
+        raise _missing(folder, "a results folder with a run: give it by -o, after 'gearwhine run'") from error
+    if "housing_acceleration_spectrum" not in content:
+        raise _missing(folder, "a run at steady speed on ground at rest, whose spectra have lines; 'gearwhine run' it")
+    survey = solved.survey.matrix @ solved.modes.shapes.reshape(len(solved.modes.shapes), -1).T
+    kept = content["survey_shape"].values.reshape(len(content["housing_mode"]), -1).T
+    # Signs count too: amplitudes are those of these very shapes.
+    if kept.shape != survey.shape or np.abs(kept - survey).max() > _SAME * np.abs(survey).max():
+        raise _missing(folder, "a run with this housing; these results are another's: 'gearwhine run' again")
+    lines = content["housing_line"].values
+    spacing = float(lines[1] - lines[0])
+    spectrum = content["housing_acceleration_spectrum"].values
+    chosen = set()
+    for frequency in asked:
+        place = int(np.argmin(np.abs(lines - frequency)))
+        if place == 0 or abs(lines[place] - frequency) > 0.5 * spacing * (1.0 + 1e-9):
+            span = f"a line from {lines[1]:.6g} to {lines[-1]:.6g} Hz, which stand {spacing:.4g} Hz apart"
+            raise CaseError([Problem("--line", f"{frequency:g}", span)])
+        chosen.add(place)
+    return [
+        RunLine(
+            OperatingShape(_HERTZ * float(lines[place]), spectrum[:, place, 0] + 1j * spectrum[:, place, 1]),
+            _name(content, float(lines[place]), spacing),
+        )
+        for place in sorted(chosen)
+    ]
+
+
+def operating_shape_of_line(line: RunLine, solved: SolvedHousing, housing: DrawnHousing) -> DrawnShape:
+    """A line's shape in micrometres, with the modes that have most of its kinetic energy."""
+    try:
+        motion = line.shape.displacement(solved.modes, housing.nodes)
+        largest = float(peak_displacement(motion).max())
+        shares = _leading(line, solved)
+        modes = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
+        return DrawnShape(
+            f"line-{line.hertz:.1f}Hz",
+            f"Operating shape at {line.hertz:.1f} Hz" + (f"   {line.name}" if line.name else ""),
+            f"largest {_MICRO * largest:.3g} µm, {largest * line.shape.frequency**2:.3g} m/s² (peak)\n"
+            f"kinetic energy: modes {modes}",
+            motion,
+            "Displacement [µm], peak",
+            _MICRO * largest,
+        )
+    except HousingError as error:
+        raise CaseError(
+            [Problem("--line", f"{line.hertz:g}", f"a line at which the housing moves; {error}")]
+        ) from error
+
+
+def lines_document(lines: list[RunLine], solved: SolvedHousing, housing: DrawnHousing) -> list[dict[str, Any]]:
+    """The lines as the command's JSON."""
+    document = []
+    for line in lines:
+        largest = float(peak_displacement(line.shape.displacement(solved.modes, housing.nodes)).max())
+        shares = line.shape.kinetic_shares
+        document.append(
+            {
+                "frequency_hz": line.hertz,
+                "name": line.name,
+                "largest_displacement_m": largest,
+                "largest_acceleration_m_per_s2": largest * line.shape.frequency**2,
+                "modes": [
+                    {
+                        "number": int(mode) + 1,
+                        "frequency_hz": float(solved.modes.frequencies_hz[mode]),
+                        "kinetic_energy_share": float(shares[mode]),
+                        "phase_rad": float(np.angle(line.shape.modal[mode])),
+                    }
+                    for mode in np.argsort(-shares, kind="stable")
+                ],
+            }
+        )
+    return document
+
+
+def _leading(line: RunLine, solved: SolvedHousing) -> list[tuple[int, float, float]]:
+    """Number, frequency [Hz] and share of the first few modes."""
+    shares = line.shape.kinetic_shares
+    return [
+        (int(mode) + 1, float(solved.modes.frequencies_hz[mode]), float(shares[mode]))
+        for mode in np.argsort(-shares, kind="stable")[:_TOLD]
+    ]
+
+
+def _name(content: Any, frequency: float, spacing: float) -> str:
+    """Name of the line in the sensors' tables, if it is listed there."""
+    if "line_name" not in content:
+        return ""
+    near = np.abs(content["line_frequency"].values - frequency) < 0.5 * spacing
+    names = [str(name) for name in content["line_name"].values[near]]
+    return names[0] if names else ""
+
+
+def _missing(folder: Path, expected: str) -> CaseError:
+    return CaseError([Problem("--line", str(folder / RESULTS_FILE), expected)])

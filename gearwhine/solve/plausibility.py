@@ -1,0 +1,155 @@
+"""Bearing loads of a run beside the loads that the bearings' stiffness was computed for.
+
+Warnings of unstable coupled modes: negative damping, or negative stiffness.
+
+Modal truncation error of sensors' lines, line by line and by bands.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import CoupledMachine, coupled_modes
+from coupling import stability as coupled_stability
+from coupling.linear.complex_modes import Stability
+from coupling.linear.frequency_response import BasisError
+from coupling.statics.mean_mesh import mean_contact
+from gearwhine.case import Case, RollingStiffness, StopStiffness
+from gearwhine.output.warnings import warning
+
+FloatArray = npt.NDArray[np.float64]
+
+_DIFFERENCE = 0.1  # part of the larger of both forces by which they may differ without a word
+_ROUNDING = 1e-6  # part of the load below which a component is none
+
+
+def bearing_load_warnings(case: Case, mean_force: Mapping[str, FloatArray]) -> list[dict[str, Any]]:
+    """Warn of bearings whose stiffness was made for another load than the mean force of the shaft on them.
+
+    The stiffness of rolling bearings and stops depends on the load that the case gives. Radial forces are compared as
+    vectors, since elements are pressed where the load points; the axial ones beside them. A difference counts against
+    the resultant load: of a bearing's small component nobody need hear.
+
+    Parameters
+    ----------
+    mean_force
+        x, y, z of the mean force on each bearing [N], shape (3,) each.
+    """
+    found = []
+    for given in case.bearing:
+        if not isinstance(given.stiffness, RollingStiffness | StopStiffness) or given.name not in mean_force:
+            continue
+        load = given.load
+        assumed = np.zeros(3) if load is None else np.array([load.x, load.y, load.z])
+        actual = np.asarray(mean_force[given.name], dtype=np.float64)
+        scale = max(float(np.linalg.norm(assumed)), float(np.linalg.norm(actual)))
+        radial = float(np.hypot(*(actual - assumed)[:2]))
+        axial = abs(float(actual[2] - assumed[2]))
+        if max(radial, axial) <= _DIFFERENCE * scale:
+            continue
+        # What rounding leaves in a direction without load would be typed in as a load.
+        actual = np.where(np.abs(actual) > _ROUNDING * scale, actual, 0.0)
+        sizes = [(float(np.hypot(*force[:2])), float(force[2])) for force in (assumed, actual)]
+        found.append(
+            warning(
+                "bearing load",
+                f'bearing "{given.name}": its stiffness was made for a load of {sizes[0][0]:.4g} N radial and '
+                f"{sizes[0][1]:.4g} N axial, the run finds {sizes[1][0]:.4g} N radial and {sizes[1][1]:.4g} N axial; "
+                f"give it the load {{ x = {actual[0]:.4g}, y = {actual[1]:.4g}, z = {actual[2]:.4g} }} N",
+                bearing=given.name,
+                assumed_force_n=assumed.tolist(),
+                mean_force_n=actual.tolist(),
+            )
+        )
+    return found
+
+
+_HERTZ = 2.0 * np.pi
+_TOLD = 5  # growing modes named one by one
+
+
+def unstable_modes_warnings(stability: Stability) -> list[dict[str, Any]]:
+    """One warning for each growing mode, the fastest first; beyond a few they are counted."""
+    found = []
+    for mode in stability.growing[:_TOLD]:
+        frequency = abs(mode.eigenvalue) / _HERTZ
+        where = f" ({mode.where})" if mode.where else ""
+        fed = ", ".join(part.name for part, _ in mode.feeders[:3])
+        found.append(
+            warning(
+                "unstable mode",
+                f"the coupled {mode.kind} mode{where} at {frequency:.5g} Hz has the damping ratio "
+                f"{mode.damping_ratio:.3g}: it grows by itself"
+                + (f", fed by {fed}" if fed else "")
+                + "; motions of this machine mean nothing beyond its onset",
+                frequency_hz=frequency,
+                damping_ratio=mode.damping_ratio,
+                kind=mode.kind,
+                where=mode.where,
+            )
+        )
+    if len(stability.growing) > _TOLD:
+        found.append(warning("unstable mode", f"{len(stability.growing) - _TOLD} further coupled modes grow as well"))
+    return found
+
+
+def machine_warnings(machine: CoupledMachine) -> list[dict[str, Any]]:
+    """Warnings of the growing modes of a machine about its mean contact.
+
+    Raises
+    ------
+    coupling.ModesError
+        Where modes fail their proof.
+    """
+    system = machine.system
+    return unstable_modes_warnings(coupled_stability(coupled_modes(system, mean_contact(system))))
+
+
+_BANDS = 8  # of equal width up to the limit
+_OF_A_BAND = 12  # frequencies at which each is looked at
+
+
+def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz: float | None) -> None:
+    """Add ``uncertainty`` to every line of the document's sensors, and its course by bands under ``basis_error``.
+
+    Parameters
+    ----------
+    document : dict
+        With ``sensors``, whose ``peaks`` or ``lines`` have a ``frequency_hz``, or with ``motions`` that have such.
+    error : coupling.BasisError or None
+        None, where no basis is behind the lines: nothing is added.
+    limit_hz : float or None
+        Upper end of the bands; no bands where it is not given.
+    """
+    if error is None:
+        return
+    holders = [document, *document.get("motions", ())]
+    sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
+    rows = [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
+    frequencies = np.unique([line["frequency_hz"] for _, line in rows])
+    told = error.at(_HERTZ * frequencies)
+    for name, line in rows:
+        line["uncertainty"] = float(told[name][np.searchsorted(frequencies, line["frequency_hz"])])
+    if limit_hz is not None:
+        document["basis_error"] = _bands(error, limit_hz)
+
+
+def _bands(error: BasisError, limit_hz: float) -> list[dict[str, Any]]:
+    """Median and largest relative error of each sensor, by bands."""
+    edges = np.linspace(0.0, limit_hz, _BANDS + 1)
+    inner = (np.arange(_OF_A_BAND) + 0.5) / _OF_A_BAND
+    frequencies = edges[:-1, None] + np.diff(edges)[:, None] * inner
+    told = {name: values.reshape(_BANDS, -1) for name, values in error.at(_HERTZ * frequencies.ravel()).items()}
+    return [
+        {
+            "from_hz": float(edges[band]),
+            "to_hz": float(edges[band + 1]),
+            "sensors": [
+                {"name": name, "median": float(np.median(values[band])), "largest": float(values[band].max())}
+                for name, values in told.items()
+            ],
+        }
+        for band in range(_BANDS)
+    ]

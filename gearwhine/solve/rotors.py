@@ -1,0 +1,551 @@
+"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow.
+
+What a rotor's weight, unbalance and bow do to it, by the speeds and probes of `[rotor_analysis]`.
+
+What swinging torques do to a rotor's torsion, by the torques and probes of `[rotor_analysis.torsional_response]`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import (
+    Case,
+    Probe,
+    RollingStiffness,
+    RotorAnalysis,
+    TorsionalAnalysis,
+    TorsionProbe,
+    campbell_speeds,
+    require,
+    response_speeds,
+    table_range,
+    whirl_speeds,
+)
+from gearwhine.case import Rotor as GivenRotor
+from gearwhine.from_case.rotors import build_bearings, build_rotor, rolling_states
+from gearwhine.output import file_stems
+from gearwhine.progress import Progress, silent
+from rotors import (
+    AxisSpring,
+    Bearing,
+    Campbell,
+    Coupling,
+    IncompleteModesError,
+    Rotor,
+    RotorError,
+    WhirlModes,
+    WhirlSolver,
+    critical_speeds,
+    rest_frequencies,
+    solve_axial_modes,
+    solve_lateral_modes,
+    solve_torsional_modes,
+    static_deflection,
+    torsional_response,
+    unbalance_response,
+    write_ross,
+)
+from rotors import campbell as rotor_campbell
+from rotors.analyses.campbell import Crossing
+from rotors.analyses.critical_speeds import CriticalSpeedMap, CriticalSpeeds, critical_speed_map
+from rotors.analyses.harmonic_response import orbit_of
+from rotors.analyses.rest_frequencies import RestFrequencies
+from rotors.analyses.statics import StaticDeflection
+from rotors.analyses.torsional_response import Torque, TorsionalDashpot, TorsionalResponse
+from rotors.analyses.unbalance import SynchronousResponse
+from rotors.modes.lateral import LateralModes
+from rotors.modes.torsional_and_axial import TorsionalModes
+from rotors.rolling.life import rated_revolutions
+from rotors.rolling_bearings import RollingState
+from rotors.whirl.whirl_modes import MOSTLY_AXIAL
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_DEFLECTION_PLACES = 201  # along a rotor, of its static deflection
+
+
+@dataclass(frozen=True)
+class SolvedWeight:
+    """A rotor in its bearings under gravity.
+
+    Attributes
+    ----------
+    deflection : rotors.StaticDeflection
+    speed : float
+        Where tables over speed were read [rad/s].
+    places : (p,) array
+        Evenly along the shaft, and every station [m].
+    displacement : (2, p) array
+        Over x and y [m].
+    """
+
+    deflection: StaticDeflection
+    speed: float
+    places: FloatArray
+    displacement: FloatArray
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Largest deflection and its place along the shaft [m]."""
+        sag = np.hypot(*self.displacement)
+        lowest = int(sag.argmax())
+        return float(sag[lowest]), float(self.places[lowest])
+
+
+@dataclass(frozen=True)
+class ProbeReading:
+    """What a probe reads at every speed.
+
+    Attributes
+    ----------
+    probe : Probe
+    speeds : (b,) array
+        [rad/s].
+    amplitude : (b,) complex array
+        Reading Re(amplitude e^{iΩt}) along the probe's angle, run-out included; t from where the mark passes x [m].
+    major_axis : (b,) array
+        Half the length of the orbit that is read there [m].
+    """
+
+    probe: Probe
+    speeds: FloatArray
+    amplitude: ComplexArray
+    major_axis: FloatArray
+
+    @property
+    def phase_lag(self) -> FloatArray:
+        """By which the reading is behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
+        return np.asarray(np.mod(-np.angle(self.amplitude), 2.0 * np.pi))
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Largest reading [m] and its speed [rad/s]."""
+        sizes = np.abs(self.amplitude)
+        highest = int(sizes.argmax())
+        return float(sizes[highest]), float(self.speeds[highest])
+
+
+@dataclass(frozen=True)
+class SolvedResponse:
+    """Synchronous response to unbalance and bow.
+
+    Attributes
+    ----------
+    response : rotors.SynchronousResponse
+    readings, at_operation : tuple of ProbeReading
+        Of every probe over the speeds of the response; and at the speed of operation alone, empty where there is none.
+    """
+
+    response: SynchronousResponse
+    readings: tuple[ProbeReading, ...]
+    at_operation: tuple[ProbeReading, ...]
+
+
+def solve_weight(
+    analysis: RotorAnalysis, rotor: Rotor, bearings: tuple[Bearing, ...], speed: float
+) -> SolvedWeight | str:
+    """Deflection and bearing loads under gravity, or why there are none: a free rotor falls, but may well whirl.
+
+    ``speed`` [rad/s] is where tables over speed are read.
+    """
+    try:
+        deflection = static_deflection(rotor, bearings, gravity=analysis.gravity, speed=speed)
+    except RotorError as error:
+        return str(error)
+    places = np.union1d(np.linspace(0.0, rotor.length, _DEFLECTION_PLACES), rotor.stations)
+    return SolvedWeight(deflection, speed, places, deflection.evaluate(places)[:2])
+
+
+def solve_response(
+    case: Case,
+    analysis: RotorAnalysis,
+    given: GivenRotor,
+    rotor: Rotor,
+    bearings: tuple[Bearing, ...],
+    operation: float | None,
+    *,
+    held: bool,
+) -> SolvedResponse | None:
+    """Response to unbalance and bow over speed; None without either, or without a speed.
+
+    A rotor that is not ``held`` has no answer at rest, which is left out.
+    """
+    speeds = [speed for speed in response_speeds(case, given.name) if speed or held]
+    if not (given.unbalance or given.bow) or not speeds:
+        return None
+    unbalances, bow = given.build_unbalance(), given.build_bow()
+    response = unbalance_response(rotor, bearings, unbalances, speeds, bow=bow)
+    probes = _probes(case, analysis, given)
+    at_operation: tuple[ProbeReading, ...] = ()
+    if operation:
+        once = unbalance_response(rotor, bearings, unbalances, [operation], bow=bow)
+        at_operation = tuple(_read(once, probe) for probe in probes)
+    return SolvedResponse(response, tuple(_read(response, probe) for probe in probes), at_operation)
+
+
+def _read(response: SynchronousResponse, probe: Probe) -> ProbeReading:
+    x, y = (part[:, 0] for part in response.reading([probe.at]))
+    along = x * np.cos(probe.angle) + y * np.sin(probe.angle)
+    return ProbeReading(probe, response.speeds, along, orbit_of(x, y, response.frequencies).major)
+
+
+def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Probe]:
+    """The probes of one rotor; where the case names none at all, one at each bearing and unbalance, along x."""
+    chosen = analysis.unbalance_response.probes
+    if chosen:
+        return [probe for probe in chosen if probe.rotor == given.name]
+    places = {bearing.at: bearing.name for bearing in case.bearing if bearing.rotor == given.name}
+    for number, unbalance in enumerate(given.unbalance, start=1):
+        places.setdefault(unbalance.at, f"unbalance {number}")
+    return [Probe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
+
+
+_HERTZ = 2.0 * np.pi
+_STEPS = 400  # of frequency, where none are given
+_MODES, _BEYOND = 3, 1.25  # up to this elastic mode, and a little beyond
+_RIGID = 1000.0 * _HERTZ  # highest frequency for a rotor that has no elastic mode [rad/s]
+_TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
+
+
+@dataclass(frozen=True)
+class TorsionReading:
+    """What a probe reads at every frequency, Re(amplitude e^{iωt}) each.
+
+    Attributes
+    ----------
+    probe : TorsionProbe
+    frequencies : (b,) array
+        [rad/s].
+    angle, torque : (b,) complex arrays
+        About the axis [rad]; and carried by the shaft to the right of the probe, at its right end to the left [N m].
+    """
+
+    probe: TorsionProbe
+    frequencies: FloatArray
+    angle: ComplexArray
+    torque: ComplexArray
+
+    @property
+    def largest_angle(self) -> tuple[float, float]:
+        """Largest angle [rad] and its frequency [rad/s]."""
+        return _largest(self.angle, self.frequencies)
+
+    @property
+    def largest_torque(self) -> tuple[float, float]:
+        """Largest torque [N m] and its frequency [rad/s]."""
+        return _largest(self.torque, self.frequencies)
+
+
+def _largest(amplitude: ComplexArray, frequencies: FloatArray) -> tuple[float, float]:
+    sizes = np.abs(amplitude)
+    highest = int(sizes.argmax())
+    return float(sizes[highest]), float(frequencies[highest])
+
+
+@dataclass(frozen=True)
+class SolvedTorsion:
+    """Steady torsional response of one rotor.
+
+    Attributes
+    ----------
+    response : rotors.TorsionalResponse
+    readings : tuple of TorsionReading
+    places : (p,) array
+        Along the shaft [m].
+    largest_torque : (p,) array
+        What the shaft carries there at most over all frequencies, zero to peak [N m].
+    worst_frequency : (p,) array
+        And at which frequency [rad/s].
+    """
+
+    response: TorsionalResponse
+    readings: tuple[TorsionReading, ...]
+    places: FloatArray
+    largest_torque: FloatArray
+    worst_frequency: FloatArray
+
+    @property
+    def worst(self) -> tuple[float, float, float]:
+        """Largest torque of the whole shaft [N m], its place [m] and its frequency [rad/s]."""
+        place = int(self.largest_torque.argmax())
+        return float(self.largest_torque[place]), float(self.places[place]), float(self.worst_frequency[place])
+
+
+def solve_torsion(
+    analysis: RotorAnalysis, given: GivenRotor, rotor: Rotor, modes: TorsionalModes
+) -> SolvedTorsion | None:
+    """The torsional response of one rotor; None where no torque acts on it. ``modes`` are its own, free to turn."""
+    wanted = analysis.torsional_response
+    torques = [] if wanted is None else [torque for torque in wanted.torques if torque.rotor == given.name]
+    if wanted is None or not torques:
+        return None
+    held = [spring for spring in wanted.springs if spring.rotor == given.name]
+    ratio = given.damping_ratio if wanted.damping_ratio is None else wanted.damping_ratio
+    response = torsional_response(
+        rotor,
+        [Torque(one.at, one.amplitude * np.exp(1j * one.phase)) for one in torques],
+        _frequencies(wanted, modes, damped=ratio > 0.0),
+        springs=[AxisSpring(one.at, one.stiffness) for one in held if one.stiffness > 0.0],
+        dashpots=[TorsionalDashpot(one.at, one.damping) for one in held if one.damping > 0.0],
+        damping_ratio=ratio,
+    )
+    probes = _torsion_probes(wanted, given, rotor)
+    angles, carried = (read([probe.at for probe in probes]) for read in (response.angle, response.torque))
+    places = np.union1d(np.linspace(0.0, rotor.length, _TORQUE_PLACES), rotor.stations)
+    sizes = np.abs(response.torque(places))
+    worst = sizes.argmax(axis=0)
+    return SolvedTorsion(
+        response,
+        tuple(
+            TorsionReading(probe, response.frequencies, angles[:, k], carried[:, k]) for k, probe in enumerate(probes)
+        ),
+        places,
+        sizes.max(axis=0),
+        response.frequencies[worst],
+    )
+
+
+def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bool) -> FloatArray:
+    """As given; else even steps up to beyond the third elastic mode, with the modes' own where damping bounds them."""
+    if wanted.frequency is not None:
+        return _HERTZ * np.array(wanted.frequency.frequencies)
+    elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
+    highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID
+    steps = highest * np.arange(1, _STEPS + 1) / _STEPS
+    return np.union1d(steps, elastic) if damped else steps
+
+
+def _torsion_probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: Rotor) -> list[TorsionProbe]:
+    """The probes of one rotor; where the case names none at all, one at each torque and at either end."""
+    if wanted.probes:
+        return [probe for probe in wanted.probes if probe.rotor == given.name]
+    places = {0.0: "left end", rotor.length: "right end"}
+    for number, torque in enumerate((one for one in wanted.torques if one.rotor == given.name), start=1):
+        places[torque.at] = f"torque {number}"
+    return [TorsionProbe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
+
+
+Bearings = tuple[Bearing, ...]
+Crossings = tuple[Crossing, ...] | str
+
+_PLACES = 101  # along a rotor, of its shapes
+
+
+@dataclass(frozen=True)
+class SolvedRotor:
+    """What is known of one rotor on grounded bearings.
+
+    Attributes
+    ----------
+    rotor : rotors.Rotor
+        With its gears as discs.
+    bearings, resting : tuple of rotors.Bearing
+        As given, with their tables over speed; and as they hold the rotor at rest.
+    rest_speed : float or None
+        The speed of their tables that stands for rest, the lowest that all of them hold [rad/s]; None without tables.
+    rest : rotors.RestFrequencies
+    axial : ndarray, shape (a,)
+        Natural frequencies at rest of motions along the axis, ascending [rad/s]; none where no bearing holds it.
+    lateral : rotors.LateralModes
+        In one plane at averaged support stiffness.
+    torsional : rotors.TorsionalModes
+    whirl : tuple of rotors.WhirlModes
+        At the speed of operation, then at those of the sweep.
+    campbell : rotors.Campbell or None
+        None without speeds.
+    crossings : tuple of rotors.Crossing or str
+        Damped critical speeds of whirl within the Campbell diagram, of once a revolution; or why they are not known.
+    orders : mapping of float to (tuple of rotors.Crossing or str)
+        The same of each other multiple of the speed that the case asks for.
+    critical : rotors.CriticalSpeeds
+        Undamped, of whirl alone; with tables, within the speeds that they hold.
+    operation : float or None
+        Speed of operation [rad/s].
+    weight : SolvedWeight or str
+        Deflection under gravity at operation, else at rest; or why there is none.
+    response : SolvedResponse or None
+        To unbalance and bow; None where there is neither.
+    torsion : SolvedTorsion or None
+        Response to torques that swing; None where none does.
+    stiffness_map : rotors.CriticalSpeedMap or None
+        Where the case asks for it.
+    rolling : mapping of str to rotors.rolling_bearings.RollingState
+        What its rolling bearings carry, by their names.
+    lives : mapping of str to float
+        Basic rating life of those whose dynamic rating the case gives, as far as it is defined [revolutions].
+    """
+
+    rotor: Rotor
+    bearings: Bearings
+    resting: Bearings
+    rest_speed: float | None
+    rest: RestFrequencies
+    axial: FloatArray
+    lateral: LateralModes
+    torsional: TorsionalModes
+    whirl: tuple[WhirlModes, ...]
+    campbell: Campbell | None
+    crossings: Crossings
+    orders: Mapping[float, Crossings]
+    critical: CriticalSpeeds
+    operation: float | None
+    weight: SolvedWeight | str
+    response: SolvedResponse | None
+    torsion: SolvedTorsion | None
+    stiffness_map: CriticalSpeedMap | None
+    rolling: Mapping[str, RollingState]
+    lives: Mapping[str, float]
+
+    @property
+    def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
+        """Which of the frequencies at rest are of motions across the axis for the most part."""
+        return np.asarray(self.rest.axial_share <= MOSTLY_AXIAL)
+
+    @property
+    def margins(self) -> FloatArray | None:
+        """Distance of each critical speed from operation, as a part of that; None where nothing turns."""
+        return None if not self.operation else self.critical.speeds / abs(self.operation) - 1.0
+
+    @property
+    def places(self) -> FloatArray:
+        """Evenly along the shaft from its left end, for shapes [m]."""
+        return np.linspace(0.0, self.rotor.length, _PLACES)
+
+    @property
+    def whirl_deflection(self) -> FloatArray | None:
+        """Largest deflection over a cycle of each whirl mode at operation along :attr:`places` [m/√kg]."""
+        return None if self.operation is None else _largest_over_cycle(*self.whirl[0].evaluate(self.places))
+
+    @property
+    def whirl_moment(self) -> FloatArray | None:
+        """Largest bending moment over a cycle of each whirl mode at operation along :attr:`places` [N/√kg]."""
+        return None if self.operation is None else _largest_over_cycle(*self.whirl[0].section_loads(self.places)[1])
+
+    @property
+    def damps_across(self) -> bool:
+        """Whether a coupling damps motion across the axis, which it does in the turning shaft."""
+        couplings = [part for part in self.rotor.segments if isinstance(part, Coupling)]
+        return any(part.lateral_damping > 0.0 or part.tilt_damping > 0.0 for part in couplings)
+
+
+def _largest_over_cycle(x: ComplexArray, y: ComplexArray) -> FloatArray:
+    return orbit_of(x, y, np.ones(1)).major
+
+
+def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
+    """Every rotor of the case, alone on grounded bearings.
+
+    Raises
+    ------
+    CaseError, rotors.RotorError
+        Where the case has no rotors, or one cannot be solved as it stands.
+    """
+    require(case, "rotor", command="rotors")
+    analysis = case.rotor_analysis or RotorAnalysis()
+    solved = []
+    for given in case.rotor:
+        progress(f"rotor {given.name}")
+        rotor, bearings = build_rotor(case, given), build_bearings(case, given.name)
+        lowest, _ = table_range(case, given.name)
+        resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
+        speeds = whirl_speeds(case, given.name)
+        operation = speeds[0] if case.operation is not None else None
+        reference = lowest if operation is None else operation
+        weight = solve_weight(analysis, rotor, bearings, reference)
+        progress(f"rotor {given.name}: whirl over speed")
+        diagram = campbell_speeds(case, given.name)
+        solver = WhirlSolver(rotor, bearings)
+        campbell = rotor_campbell(rotor, bearings, diagram, count=analysis.modes, solver=solver) if diagram else None
+        held = not isinstance(weight, str)
+        rest = rest_frequencies(rotor, resting, count=analysis.modes)
+        torsional = solve_torsional_modes(rotor)
+        rolling = rolling_states(case, given.name)
+        solved.append(
+            SolvedRotor(
+                rotor=rotor,
+                bearings=bearings,
+                resting=resting,
+                rest_speed=lowest if any(bearing.speeds is not None for bearing in bearings) else None,
+                rest=rest,
+                axial=_axial_frequencies(rotor, resting, rest),
+                lateral=solve_lateral_modes(rotor, [bearing.mean_support for bearing in resting]),
+                torsional=torsional,
+                whirl=tuple(solver.modes(speed, count=analysis.modes) for speed in speeds),
+                campbell=campbell,
+                crossings=() if campbell is None else _crossings(campbell),
+                orders={}
+                if campbell is None
+                else {order: _crossings(campbell, order) for order in sorted(set(analysis.orders) - {1.0})},
+                critical=critical_speeds(rotor, bearings, count=analysis.modes).lateral,
+                operation=operation,
+                weight=weight,
+                response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
+                torsion=solve_torsion(analysis, given, rotor, torsional),
+                stiffness_map=_stiffness_map(analysis, rotor, bearings),
+                rolling=rolling,
+                lives=_rated_lives(case, rolling),
+            )
+        )
+    return tuple(solved)
+
+
+def _rated_lives(case: Case, states: Mapping[str, RollingState]) -> dict[str, float]:
+    """Basic rating lives in revolutions."""
+    ratings = {
+        bearing.name: bearing.stiffness.rolling.dynamic_rating
+        for bearing in case.bearing
+        if isinstance(bearing.stiffness, RollingStiffness)
+    }
+    lives = {
+        name: rated_revolutions(state, rating)
+        for name, state in states.items()
+        if (rating := ratings.get(name)) is not None
+    }
+    return {name: life for name, life in lives.items() if life is not None}
+
+
+def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -> FloatArray:
+    """Natural frequencies along the axis: of those at rest where bearings tie it to the planes, else the rod's own."""
+    along = rest.axial_share > MOSTLY_AXIAL
+    if along.any():
+        return rest.frequencies[along]
+    springs = [AxisSpring(bearing.at, float(bearing.spatial_stiffness[2, 2])) for bearing in resting]
+    springs = [spring for spring in springs if spring.stiffness > 0.0]
+    # As high as the bending that is listed beside it.
+    limit = float(rest.frequencies.max(initial=0.0))
+    if not springs or not limit:
+        return np.zeros(0)
+    return solve_axial_modes(rotor, springs, frequency_limit=limit).frequencies
+
+
+def _stiffness_map(analysis: RotorAnalysis, rotor: Rotor, bearings: Bearings) -> CriticalSpeedMap | None:
+    """Critical speeds over the stiffness of all bearings, where the case asks for them and there are any."""
+    wanted = analysis.stiffness_map
+    if wanted is None or not bearings:
+        return None
+    direction = 1 if wanted.whirl == "forward" else -1
+    return critical_speed_map(rotor, bearings, wanted.stiffnesses, count=wanted.modes, direction=direction)
+
+
+def _crossings(campbell: Campbell, order: float = 1.0) -> Crossings:
+    """Damped critical speeds; a diagram of few speeds may not separate them, which is no reason to show nothing.
+
+    Motions that are for the most part along the axis are left out: no unbalance drives them.
+    """
+    try:
+        return tuple(one for one in campbell.crossings(order) if one.axial_share <= MOSTLY_AXIAL)
+    except IncompleteModesError as error:
+        return str(error)
+
+
+def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:
+    """Write every rotor as ``<name>.ross.toml``, and return what ROSS has no place for."""
+    remarks: list[str] = []
+    for one, stem in zip(solved, file_stems([one.rotor.name for one in solved]), strict=True):
+        remarks += write_ross(folder / f"{stem}.ross.toml", one.rotor, one.bearings)
+    return tuple(remarks)

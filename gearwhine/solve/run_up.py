@@ -1,0 +1,208 @@
+"""The signature of a run-up or a run-down: spectra along the run, and orders over the speed."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import signals as signature
+from coupling.signals.excitation import excitation_lines
+from gearwhine.case import Case, speed_ratios
+from gearwhine.output.warnings import warning
+from gearwhine.solve.transient import SolvedTransient
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_SLOWEST = 0.1  # part of the highest speed below which nothing is looked at: a turn would take samples without end
+_ROWS = 28  # of the waterfall; its stretches overlap by half
+_WINDOWS = 60  # of the order map, about, each overlapping the next by half
+_HARMONICS = 3  # of each mesh that are followed
+_ABOVE = 1.25  # orders up to this over the highest of interest are kept
+_APART, _PARTED = 3.0, 2.0  # lines of a window between orders: as wished, and where Hann's window just parts them
+_FEWEST = 20  # windows that make a course over speed, where the run has turns for them
+_FEWEST_TURNS = 4
+_BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lowest speed
+
+
+@dataclass(frozen=True)
+class RunSignature:
+    """What the signals of a run show, by their names.
+
+    Attributes
+    ----------
+    units : dict of str to str
+    spectra : dict of str to coupling.signals.Spectrogram
+        Of stretches along the run, up to the trusted limit.
+    speeds_rpm : ndarray, shape (t,)
+        Of the leading shaft in the middle of each stretch.
+    orders : dict of str to coupling.signals.OrderMap
+        By cycles each turn of the leading shaft.
+    named : dict of str to float
+        Orders that have names: shafts and harmonics of the meshes.
+    """
+
+    units: dict[str, str]
+    spectra: dict[str, signature.Spectrogram]
+    speeds_rpm: FloatArray
+    orders: dict[str, signature.OrderMap]
+    named: dict[str, float]
+
+    def followed(self) -> FloatArray:
+        """Peak amplitude of each signal at each named order, by the windows' speeds: (signals, orders, windows)."""
+        return np.array([[table.order_slice(order) for order in self.named.values()] for table in self.orders.values()])
+
+    def highest(self) -> list[dict[str, Any]]:
+        """Where along the run each named order of each signal is highest."""
+        rows = []
+        for (name, orders), courses in zip(self.orders.items(), self.followed(), strict=True):
+            for (what, order), along in zip(self.named.items(), courses, strict=True):
+                place = int(np.argmax(along))
+                rows.append(
+                    {
+                        "signal": name,
+                        "unit": self.units[name],
+                        "name": what,
+                        "order": order,
+                        "highest_amplitude": float(along[place]),
+                        "at_rpm": float(60.0 * orders.speeds[place]),
+                        "frequency_hz": float(order * orders.speeds[place]),
+                    }
+                )
+        return rows
+
+
+@dataclass(frozen=True)
+class _Windows:
+    """How a run is cut: the samples in which the machine turns, and the turns of an order map's windows.
+
+    Attributes
+    ----------
+    span : slice
+    turns : int
+        Of the leading shaft in each window.
+    named : dict of str to float
+        Orders that windows of that length tell apart.
+    merged : tuple of str
+        Names of the others.
+    """
+
+    span: slice
+    turns: int
+    named: dict[str, float]
+    merged: tuple[str, ...]
+
+
+def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | None:
+    """Spectra and orders of sensors and mesh forces along a run, as far as it is held in memory.
+
+    None at steady speed, and where the run has too few turns to tell orders apart: :func:`run_signature_warnings` says
+    why.
+    """
+    cut = _windows(case, solved)
+    turning = solved.turning
+    if not isinstance(cut, _Windows) or turning is None or case.operation is None:
+        return None
+    span, named = cut.span, cut.named
+    times = solved.histories.times[span]
+    interval = float(times[1] - times[0])
+    turns_per_second = abs(case.operation.speed) / _HERTZ
+    slowest = turns_per_second * float(turning.at(times)[1].min())
+    per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
+    per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * max(named.values())))
+    length = 2 * len(times) // (_ROWS + 1)
+    units, spectra, orders = {}, {}, {}
+    signals = {name: (signal, "m/s²") for name, signal in solved.histories.sensor_acceleration.items()}
+    for number in solved.machine.loaded_contacts:
+        name = solved.machine.system.contacts[number].name
+        signals[name] = solved.histories.mesh_force[name], "N"
+    for name, (signal, unit) in signals.items():
+        found = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
+        turned = signature.resample_by_angle(signal[span], times, turning, turns_per_second, per_turn=per_turn)
+        units[name], spectra[name] = unit, _up_to(found, solved.trusted_limit)
+        mapped = signature.order_map(
+            turned, turns=cut.turns, step=max(cut.turns // 2, 1), follow=sorted(set(named.values()))
+        )
+        orders[name] = _orders_up_to(mapped, _ABOVE * max(named.values()))
+    middles = next(iter(spectra.values())).times
+    return RunSignature(units, spectra, 60.0 * turns_per_second * turning.at(middles)[1], orders, named)
+
+
+def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
+    """What of a run's signature is missing, and why; nothing at steady speed."""
+    cut = _windows(case, solved)
+    if cut is None:
+        return []
+    if isinstance(cut, str):
+        return [warning("run signature", f"no spectra and orders along the run: {cut}")]
+    if not cut.merged:
+        return []
+    text = (
+        f"orders along the run without {', '.join(cut.merged)}: windows of {cut.turns} turns do not tell them from "
+        "their neighbours; a longer run does"
+    )
+    return [warning("run signature", text, turns=cut.turns)]
+
+
+def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
+    """How a run is cut; in words why it cannot be, and None at steady speed or without gears."""
+    turning, times = solved.turning, solved.histories.times
+    if turning is None or case.operation is None or not case.gear_pair:
+        return None
+    span = _turning_span(turning.at(times)[1])
+    times = times[span]
+    if len(times) < 2 * _ROWS:
+        return f"{len(times)} samples in which the machine turns; expected {2 * _ROWS} or more"
+    turns_per_second = abs(case.operation.speed) / _HERTZ
+    total = math.floor(turns_per_second * float(np.diff(turning.at(times[[0, -1]])[0])[0]) - 1.0)
+    if total < _FEWEST_TURNS:
+        return f"{max(total, 0)} whole turns of the leading shaft in the record; expected {_FEWEST_TURNS} or more"
+    named = _named_orders(case, solved)
+    # As many turns as part the closest orders, and the lowest from none, as far as the run leaves some windows.
+    ascending = np.unique([0.0, *named.values()])
+    needed = math.ceil(_APART / float(np.diff(ascending).min()) - 1e-9)
+    turns = max(2 * total // _WINDOWS, 2, needed)
+    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    if whole <= turns:
+        # Windows of whole turns of every shaft have every order as a line.
+        turns = math.ceil(turns / whole) * whole
+    turns = min(turns, max(2 * total // _FEWEST, 2))
+    # Of orders too close to each other the lower harmonic or the shaft that comes first is kept.
+    kept: dict[str, float] = {}
+    for name, order in named.items():
+        others = [0.0, *(one for one in kept.values() if one != order)]
+        if min(abs(order - one) for one in others) * turns >= _PARTED - 1e-9:
+            kept[name] = order
+    merged = tuple(name for name in named if name not in kept)
+    if not kept:
+        return f"windows of {turns} turns tell no order apart"
+    return _Windows(span, turns, kept, merged)
+
+
+def _turning_span(rates: FloatArray) -> slice:
+    """The longest stretch of samples in which the machine turns fast enough."""
+    fast = np.concatenate([[0], (rates >= _SLOWEST * rates.max()).astype(np.int64), [0]])
+    changes = np.diff(fast)
+    begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)
+    longest = int(np.argmax(ends - begins))
+    return slice(int(begins[longest]), int(ends[longest]))
+
+
+def _named_orders(case: Case, solved: SolvedTransient) -> dict[str, float]:
+    """Shafts and harmonics of the meshes, by the turns of the leading shaft."""
+    lines = excitation_lines(solved.machine, shaft_orders=(1.0,), mesh_harmonics=tuple(range(1, _HARMONICS + 1)))
+    # Exact fractions: the machine's speeds are rounded.
+    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    return {line.name: round(line.order * whole) / whole for line in lines}
+
+
+def _up_to(found: signature.Spectrogram, limit: float) -> signature.Spectrogram:
+    kept = found.frequencies <= limit * (1.0 + 1e-9)
+    return signature.Spectrogram(found.times, found.frequencies[kept], found.amplitude[:, kept], found.window)
+
+
+def _orders_up_to(found: signature.OrderMap, limit: float) -> signature.OrderMap:
+    kept = found.orders <= limit
+    return replace(found, orders=found.orders[kept], amplitude=found.amplitude[:, kept])

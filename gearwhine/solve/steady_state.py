@@ -1,0 +1,290 @@
+"""The steady state of a case directly: the motion that repeats with its excitation, and its branch over speed."""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
+from coupling.periodic.continuation import ResponseCurve
+from coupling.periodic.response import PeriodicResponse
+from coupling.periodic.superposition import (
+    ExcitationGroup,
+    SuperposedResponse,
+    common_cycles,
+    excitation_groups,
+    superposed_response,
+)
+from coupling.signals.histories import Histories, transient_outputs
+from coupling.signals.histories import histories as coupled_histories
+from coupling.signals.spectrum import Spectrum
+from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
+from gearwhine.case.errors import UNSAID
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION
+from gearwhine.output.warnings import warning
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import SolvedHousing
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_SLOWEST = 0.5  # of the speed of operation, where a case names no range
+_OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: little folds back below it
+_LEAST_SAMPLES = 512
+_HARMONICS = 4.0  # of the mesh that are of interest where no housing says how far the model goes
+_LINES = 20  # that are told of each signal
+_DOUBTFUL = 0.1  # part of a mesh's varying force that may be neglected without a warning
+
+CURVE_TOLERANCE = 1e-5
+"""Of the points of a branch, relative: a tenth of what a transient is asked for by default."""
+
+
+@dataclass(frozen=True)
+class SteadyMotion:
+    """A periodic motion at one speed.
+
+    Attributes
+    ----------
+    speed : float
+        Of the first driver's rotor [rad/s].
+    response : coupling.PeriodicResponse
+    histories : coupling.Histories
+        Of one period.
+    trusted_limit : float
+        Highest frequency that the model carries [Hz].
+    excitation : str
+        What drives it where it is one of several that are superposed; empty for the motion under all excitations.
+    """
+
+    speed: float
+    response: PeriodicResponse
+    histories: Histories
+    trusted_limit: float
+    excitation: str = ""
+
+    def spectrum(self, signal: FloatArray) -> Spectrum:
+        """Lines of a signal of the histories, exact."""
+        return amplitude_spectrum(signal, self.response.period / len(signal))
+
+    @property
+    def told_lines(self) -> int:
+        """Number of the highest lines of a signal that are told of."""
+        return _LINES
+
+    def lines(self, signal: FloatArray) -> list[tuple[float, float]]:
+        """Frequencies [Hz] and amplitudes of a signal's highest lines up to the trusted limit.
+
+        Each is a whole number of times the period's frequency.
+        """
+        spectrum = self.spectrum(signal)
+        limit = self.trusted_limit * (1.0 + 1e-9)
+        known = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit))
+        highest = known[np.argsort(-spectrum.amplitude[known], kind="stable")][:_LINES]
+        return [
+            (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]))
+            for i in highest
+            if spectrum.amplitude[i] > 0.0
+        ]
+
+    def resampled(self, signal: FloatArray, count: int) -> FloatArray:
+        """A whole period of a signal at another number of samples, by its own lines."""
+        if len(signal) == count:
+            return signal
+        return np.asarray(np.fft.irfft(np.fft.rfft(signal), count) * (count / len(signal)))
+
+    @property
+    def sensor_rms(self) -> dict[str, float]:
+        """Of each sensor's acceleration up to the trusted limit [m/s²]."""
+        signals = self.histories.sensor_acceleration
+        return {name: float(self.spectrum(signal).rms(self.trusted_limit)) for name, signal in signals.items()}
+
+
+@dataclass(frozen=True)
+class SolvedSteady:
+    """The steady state.
+
+    Attributes
+    ----------
+    machine : coupling.CoupledMachine
+        At the speed of operation.
+    motions : tuple of SteadyMotion
+        At the speed of operation: one, or all that a branch has there; where they are superposed, one of each group
+        of excitations.
+    superposed : coupling.SuperposedResponse or None
+        Their sum, where the excitations have no short common period.
+    curve : coupling.ResponseCurve or None
+        The branch over the speed of the first driver's rotor [rad/s].
+    branch_rms : dict of str to ndarray, shape (p,)
+        Of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].
+    """
+
+    machine: CoupledMachine
+    motions: tuple[SteadyMotion, ...]
+    curve: ResponseCurve | None = None
+    branch_rms: dict[str, FloatArray] = field(default_factory=dict)
+    superposed: SuperposedResponse | None = None
+
+    def superposition_warnings(self) -> list[dict[str, Any]]:
+        """Warnings where the sum of the groups' motions is no longer near the motion under all of them."""
+        found: list[dict[str, Any]] = []
+        sum_ = self.superposed
+        for number, contact in enumerate(self.machine.system.contacts if sum_ is not None else ()):
+            assert sum_ is not None
+            loss, part = float(sum_.contact_loss[number]), float(sum_.neglected_part[number])
+            if contact.drives and loss > 0.0:
+                text = f"its flanks are apart {100.0 * loss:.2g} % of the time under all excitations together"
+            elif contact.drives and part > _DOUBTFUL:
+                text = f"the sum leaves out {100.0 * part:.2g} % of its varying force"
+            elif not contact.drives and loss < 1.0:
+                text = f"these flanks touch {100.0 * (1.0 - loss):.2g} % of the time under all excitations together"
+            else:
+                continue
+            message = (
+                f"superposed motions are doubtful at {contact.name}: {text}; hold them against run, or use --exact"
+            )
+            found.append(
+                warning("superposition", message, contact=contact.name, neglected_part=part, contact_loss=loss)
+            )
+        return found
+
+
+def solve_steady(
+    case: Case,
+    machine: CoupledMachine,
+    housing: SolvedHousing | None,
+    progress: Progress = silent,
+    *,
+    over_speed: bool = False,
+    downwards: bool = False,
+    points: int = 100,
+    exact: bool = False,
+) -> SolvedSteady:
+    """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
+
+    Where the common period of all excitations is long, as that of hunting teeth is, each group of excitations has its
+    own motion and these are superposed, see :mod:`coupling.periodic.superposition`.
+
+    Parameters
+    ----------
+    case, machine, housing
+        The case and what was built of it.
+    progress
+        Told what is solved, and how far the branch has come.
+    over_speed
+        Whether the branch is wanted: over the range of ``[sweep]``, else from half to beyond the speed of operation.
+    downwards
+        Whether it begins at the highest speed.
+    points
+        On a branch that runs straight.
+    exact
+        Whether the common period is solved however long it is.
+
+    Raises
+    ------
+    CaseError
+        Where the speed is said to vary, the range holds one speed only, or a branch is asked for of motions that are
+        superposed.
+    coupling.CouplingError
+        Where the excitation does not repeat.
+    coupling.PeriodicError
+        Where no motion is found. A branch that is lost on its way is given as far as it was followed.
+    """
+    require(case, "rotor", "operation", command="steady")
+    assert case.operation is not None
+    speed = case.operation.speed
+    if speed == 0.0:
+        raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
+    progress("compiling the search for periodic motions (the first time takes longer)")
+    groups = () if exact else excitation_groups(machine.system)
+    if len(groups) > 1 and over_speed:
+        cycles = common_cycles(machine.system)
+        raise CaseError([Problem("operation.speed", UNSAID, _NO_BRANCH.format(_period_in_words(cycles)))])
+    if len(groups) > 1:
+        return _superposed(case, machine, housing, speed, groups, progress)
+    if not over_speed:
+        response = periodic_response(machine.system)
+        return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
+    low, high = _speed_range(case)
+    low, high = math.copysign(low, speed), math.copysign(high, speed)
+    rms: dict[str, list[float]] = {name: [] for name in machine.housing.sensors} if machine.housing is not None else {}
+
+    def seen(at: float, response: PeriodicResponse) -> None:
+        if rms:
+            motion = _motion(case, machine.at_speed(at), housing, at, response)
+            for name, value in motion.sensor_rms.items():
+                rms[name].append(value)
+
+    curve = response_curve(
+        lambda at: machine.at_speed(at).system,
+        *((high, low) if downwards else (low, high)),
+        points=points,
+        tolerance=CURVE_TOLERANCE,
+        progress=lambda fraction: progress("following the motion over speed", fraction),
+        seen=seen,
+    )
+    progress("the motions at the speed of operation")
+    reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
+    here = curve.at(speed) if reached[0] <= speed <= reached[1] else [periodic_response(machine.system)]
+    motions = tuple(_motion(case, machine, housing, speed, one) for one in here)
+    return SolvedSteady(machine, motions, curve, {name: np.array(values) for name, values in rms.items()})
+
+
+_NO_BRANCH = (
+    "excitations with a short common period, for a branch over speed follows one periodic motion; theirs {}; leave "
+    "unbalance, runout or a stage out, or solve one speed without --curve"
+)
+
+
+def _period_in_words(cycles: float) -> str:
+    if not np.isfinite(cycles):
+        return "does not exist"
+    return f"holds {cycles:.0f} cycles of the fastest one, which --exact follows in its time"
+
+
+def _superposed(
+    case: Case,
+    machine: CoupledMachine,
+    housing: SolvedHousing | None,
+    speed: float,
+    groups: tuple[ExcitationGroup, ...],
+    progress: Progress,
+) -> SolvedSteady:
+    progress(f"the motions of {len(groups)} groups of excitations without a short common period")
+    found = superposed_response(machine.system, groups)
+    motions = tuple(
+        replace(_motion(case, machine, housing, speed, one.response), excitation=one.name) for one in found.motions
+    )
+    return SolvedSteady(machine, motions, superposed=found)
+
+
+def _speed_range(case: Case) -> tuple[float, float]:
+    """Lowest and highest speed of the branch [rad/s]."""
+    assert case.operation is not None
+    if case.sweep is None:
+        return _SLOWEST * abs(case.operation.speed), BEYOND_OPERATION * abs(case.operation.speed)
+    speeds = [abs(speed) for speed in case.sweep.speeds]
+    low, high = min(speeds), max(speeds)
+    if not 0.0 < low < high:
+        raise CaseError(
+            [Problem("sweep.speed", UNSAID, "a range of speeds above zero, over which a motion is followed")]
+        )
+    return low, high
+
+
+def _motion(
+    case: Case,
+    machine: CoupledMachine,
+    housing: SolvedHousing | None,
+    speed: float,
+    response: PeriodicResponse,
+) -> SteadyMotion:
+    assert case.operation is not None
+    ratio = abs(speed / case.operation.speed)
+    limit = _HARMONICS * ratio * max(mesh_frequencies(case), default=1000.0) if case.gear_pair else 1000.0
+    if housing is not None:
+        limit = housing.trusted_limit_hz
+    samples = 2 ** math.ceil(math.log2(max(_OVERSAMPLING * limit * response.period, _LEAST_SAMPLES)))
+    record = response.record(transient_outputs(machine), samples)
+    return SteadyMotion(speed, response, coupled_histories(machine, record), limit)

@@ -1,0 +1,291 @@
+"""The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+import coupling as room
+import gearwhine
+from coupling import CoupledMachine, SpeedProfile
+from coupling.signals.histories import (
+    Histories,
+    ModalRecord,
+    empty_record,
+    modal_record,
+    transient_outputs,
+    with_modal_rows,
+)
+from coupling.signals.histories import histories as coupled_histories
+from coupling.signals.spectrum import Peak, SignalParts, Spectrum, signal_parts, spectrum_peaks
+from coupling.time.exponential_collocation import integration_method
+from coupling.time.integration import Checkpoint
+from coupling.time.settings import MotionRecord
+from coupling.time.transient import TransientFigures, fingerprint, integrate_blocks, integration_key, transient_figures
+from gearwhine.case import Case, require
+from gearwhine.from_case.driving import driving
+from gearwhine.from_case.machine import ReducedHousing, base_motion
+from gearwhine.output.files import installed, source_digest
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.transient_record import (
+    RECORD_BYTES,
+    Arrays,
+    Blocks,
+    MarchRecord,
+    Sampling,
+    Signals,
+    block_arrays,
+    record_spectra,
+    sampling,
+)
+from housing.storage.netcdf import content_key
+
+FloatArray = npt.NDArray[np.float64]
+
+_HERTZ = 2.0 * np.pi
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
+
+
+@dataclass(frozen=True)
+class SolvedTransient:
+    """The machine in motion.
+
+    Attributes
+    ----------
+    machine : coupling.CoupledMachine
+    speed : float
+        Of the first driver's rotor at operation [rad/s].
+    method : str
+        By which it was marched, "newmark" or "exact".
+    turning : coupling.Turning or None
+        Speed over time; None where it is the nominal one all along.
+    result : coupling.TransientFigures
+    record : MarchRecord
+        Everything recorded, piece by piece.
+    signals : Signals
+        The same at once; of a long record its last stretch.
+    sensor_spectra : dict of str to coupling.Spectrum
+        Acceleration [m/s²]; of a long record averaged over stretches, up to the trusted limit.
+    force_spectra : dict of str to coupling.Spectrum
+        Gear-mesh force [N]; likewise.
+    trusted_limit : float
+        Highest frequency that the housing's modes carry [Hz].
+    """
+
+    machine: CoupledMachine
+    speed: float
+    method: str
+    turning: SpeedProfile | None
+    result: TransientFigures
+    record: MarchRecord
+    signals: Signals
+    sensor_spectra: dict[str, Spectrum]
+    force_spectra: dict[str, Spectrum]
+    trusted_limit: float
+
+    @property
+    def histories(self) -> Histories:
+        """Of the signals."""
+        return self.signals.histories
+
+    @property
+    def modal(self) -> ModalRecord:
+        """Of the signals."""
+        return self.signals.modal
+
+    @property
+    def steps_per_second(self) -> float | None:
+        """Speed of the march; None where it took no time that a clock shows."""
+        return self.result.steps / self.result.seconds if self.result.seconds > 0.0 else None
+
+    @property
+    def revolutions(self) -> float:
+        """Turns of the first driver's rotor over a run; zero at steady speed."""
+        if self.turning is None:
+            return 0.0
+        return float(self.turning.at(self.turning.times[-1])[0][0]) * abs(self.speed) / _HERTZ
+
+    @property
+    def averages(self) -> int:
+        """Number of stretches over which the spectra were averaged."""
+        return next((one.averages for one in [*self.sensor_spectra.values(), *self.force_spectra.values()]), 1)
+
+    def sensor_rms(self, sensor: str) -> float:
+        """RMS acceleration of a sensor up to where the housing's modes are complete: beyond, none is its own [m/s²]."""
+        return float(self.sensor_spectra[sensor].rms(self.trusted_limit))
+
+    def sensor_peaks(self, sensor: str) -> list[Peak]:
+        """The lines of a sensor that are told of, highest first."""
+        return spectrum_peaks(self.sensor_spectra[sensor], count=20, limit=self.trusted_limit, floor=1e-5)
+
+    def force_peaks(self, contact: str) -> list[Peak]:
+        """The lines of a gear-mesh force that are told of, highest first."""
+        return spectrum_peaks(self.force_spectra[contact], count=8)
+
+    def back_flank_peak(self, pair: int) -> float | None:
+        """Largest force on the back flanks of a gear pair [N]; None where they cannot meet."""
+        meshes = self.machine.meshes
+        if meshes[pair].backlash is None:
+            return None
+        before = sum(mesh.backlash is not None for mesh in meshes[:pair])
+        return float(self.result.peak_force[len(meshes) + before])
+
+    def bearing_parts(self) -> list[tuple[str, SignalParts]]:
+        """Mean and alternating part of each bearing's load: forces along x, y, z [N], moments about x, y [N m]."""
+        return [(name, signal_parts(load.T)) for name, load in self.histories.bearing_load.items()]
+
+    def gear_parts(self) -> list[tuple[str, SignalParts]]:
+        """Mean and alternating part of the displacement of each gear's centre along x and y [m]."""
+        return [(name, signal_parts(motion[:, :2].T)) for name, motion in self.histories.gear_motion.items()]
+
+    def modal_spectrum(self) -> tuple[list[str], Spectrum] | None:
+        """Names and spectra of the modal coordinates; None where none is recorded."""
+        named = self.modal.coordinates
+        if not named:
+            return None
+        return list(named), self.record.spectrum(np.array(list(named.values())), self.trusted_limit)
+
+
+def has_traced_lines(case: Case) -> bool:
+    """Whether lines of the sensors are traced to their origin.
+
+    Lines have names, and parts that add up, where speeds are steady and the ground is at rest.
+    """
+    assert case.operation is not None
+    assert case.transient is not None
+    return case.transient.run is None and case.operation.base is None
+
+
+def solve_transient(
+    case: Case,
+    machine: CoupledMachine,
+    mesh_frequencies: tuple[float, ...],
+    progress: Progress = silent,
+    *,
+    housing: SolvedHousing | ReducedHousing | None = None,
+    keep: Callable[[str], Blocks] | None = None,
+    record_bytes: int = RECORD_BYTES,
+    samples_per_block: int | None = None,
+) -> SolvedTransient:
+    """March the machine through the case's revolutions, or its run, and take the spectra of what is not discarded.
+
+    The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
+    the spectra are taken as they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled
+    for its highest speed, and ``discard`` counts revolutions as they are turned. A record that is too long for memory
+    is filtered and kept at fewer samples, see :mod:`gearwhine.solve.transient_record`.
+
+    Parameters
+    ----------
+    keep : callable, optional
+        Gives the blocks kept under a key of all that the march depends on; the march goes on behind them. By default
+        none are kept, and all are held in memory.
+    record_bytes, samples_per_block : int
+        The longest record kept as sampled, and about how many samples are marched from checkpoint to checkpoint.
+
+    Raises
+    ------
+    coupling.TransientError
+        Where the motion cannot be followed or its energies do not balance.
+    """
+    require(case, "operation", "transient", command="run")
+    assert case.transient is not None
+    assert case.operation is not None
+    turning = driving(case, machine.rotors).turning
+    fastest = 1.0 if turning is None else max(1.0, float(turning.rates.max()))
+    limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
+    modal, traced = case.transient.modal_coordinates, has_traced_lines(case)
+    outputs = with_modal_rows(machine, transient_outputs(machine), modal, housing=traced)
+
+    def named(result: MotionRecord) -> Signals:
+        histories = _in_space(case, housing, coupled_histories(machine, result, turning))
+        return Signals(histories, modal_record(machine, result, modal, housing=traced))
+
+    nothing = named(empty_record(machine, outputs))
+    rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
+    rows += 2 * len(machine.system.contacts)
+    signals = nothing.columns.shape[1]
+    chosen = sampling(case, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block)
+    progress("compiling the time stepper (the first time takes longer)")
+    march = (machine.system, chosen.settings, outputs)
+    start = starting_state(case, machine)
+    key = integration_key(*march, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
+    blocks: Blocks = _InMemory()
+    if keep is not None:
+        blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
+    last = blocks[len(blocks) - 1] if len(blocks) else None
+    held = nothing.columns if last is None else last["held"]
+    marched = integrate_blocks(
+        *march,
+        turning=turning,
+        initial=start,
+        after=None if last is None else Checkpoint.from_arrays(last),
+        samples_per_block=chosen.samples_per_block,
+        progress=lambda fraction: progress("marching through the transient", fraction),
+    )
+    for block in marched:
+        columns, held = chosen.decimation.through(held, named(block).columns)
+        blocks.append(block_arrays(columns, held, block.after))
+    record = MarchRecord(chosen, blocks, nothing)
+    figures = transient_figures(chosen.settings, record.end)
+    stretch = record.last_stretch()
+    of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
+    method = integration_method(machine.system, chosen.settings, turning or SpeedProfile.steady())
+    return SolvedTransient(
+        machine, case.operation.speed, method, turning, figures, record, stretch, of_sensors, of_meshes, limit
+    )
+
+
+def _in_space(case: Case, housing: SolvedHousing | ReducedHousing | None, named: Histories) -> Histories:
+    """Histories as accelerometers show them: their motion in space, not beside a base that moves."""
+    base = base_motion(case)
+    if base is None or housing is None:
+        return named
+    absolute = {
+        name: named.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, named.times)
+        for name, port in housing.sensors.items()
+    }
+    return replace(named, sensor_acceleration=absolute)
+
+
+def _with_code(key: str, chosen: Sampling) -> str:
+    """The key of a march with what is kept of it, by which code, and on which processor: no other rounds alike."""
+    from llvmlite import binding
+
+    return content_key(
+        {
+            "march": key,
+            "kept": [chosen.decimation.factor, len(chosen.decimation.taps)],
+            "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+            "source": source_digest(room, gearwhine),
+            "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
+        }
+    )
+
+
+class _InMemory(list[Arrays]):
+    """Blocks that nobody keeps."""
+
+
+def starting_state(case: Case, machine: CoupledMachine) -> tuple[FloatArray, FloatArray] | None:
+    """Coordinates and rates that the case starts from; None: static equilibrium under its load.
+
+    A train that turns unloaded has straight, untwisted shafts and teeth that just touch: all coordinates are zero.
+    """
+    assert case.transient is not None
+    if case.transient.start == "equilibrium":
+        return None
+    return np.zeros(machine.system.size), np.zeros(machine.system.size)
+
+
+def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
+    """Mean force of the shaft on each bearing over the last stretch of the record: x, y, z [N], shape (3,)."""
+    return {name: load[:, :3].mean(axis=0) for name, load in solved.histories.bearing_load.items()}
+
+
+def _trusted_limit(housing: SolvedHousing | ReducedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
+    """Up to where the housing's modes are complete [Hz]; without a housing, what the gears excite."""
+    if housing is not None:
+        return housing.trusted_limit_hz
+    return 4.0 * max(mesh_frequencies, default=1000.0)

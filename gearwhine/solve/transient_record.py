@@ -1,0 +1,478 @@
+"""Record of a time integration in blocks: histories block by block, and their spectra.
+
+Checkpoint files of a time integration: each block of the record with the state after it, for a later restart.
+
+A run keeps its blocks in a hidden folder of the output folder, which bears the key of everything the march depends on
+and goes when the results are written. A block and its checkpoint are one file that appears whole: it is written beside,
+forced to the disk, and renamed. Who is killed, interrupted or fails leaves the blocks it has; the next run with the
+same key goes on behind the last one before any damage. A run of anything else clears them away.
+
+Sampling of a transient: steps, record length, decimation and spectral windows.
+
+Stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times the
+highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record that
+fits in memory is kept like that, and its spectra are those of the whole. A longer one is filtered as it comes and kept
+at four times that frequency: its histories and spectra are right up to there, which is also as far as the model's
+modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
+"""
+
+import math
+import os
+import shutil
+import struct
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import SpeedProfile, TransientSettings, amplitude_spectrum
+from coupling.signals.decimation import Decimation
+from coupling.signals.decimation import decimation as coupled_decimation
+from coupling.signals.histories import Histories, ModalRecord
+from coupling.signals.spectrum import Spectrum, Window, averaged_spectrum
+from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
+from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
+from gearwhine.output.files import exclusive_lock, held_lock, is_locked
+
+_KEPT = ".resume-"
+_KEY_DIGITS = 16  # of the folder's name: no two marches of one folder share them by chance
+
+Arrays = Mapping[str, npt.NDArray[Any]]
+
+
+class Blocks(Protocol):
+    """Blocks in their order, in memory or on file."""
+
+    def __len__(self) -> int: ...
+    def append(self, arrays: Arrays, /) -> None: ...
+    def __getitem__(self, number: int, /) -> Arrays: ...
+
+
+class BlockFiles:
+    """Blocks in a folder, one file each; those behind a damaged or missing one do not count."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._count = 0
+        # All are read: a disk, a copy or another program damages any of them, not only the last one written.
+        while self._is_whole(self._count):
+            self._count += 1
+
+    def __len__(self) -> int:
+        return self._count
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no block is on file, an uncounted one of an interruption included."""
+        return not self._file(0).exists()
+
+    def append(self, arrays: Arrays) -> None:
+        """Write the next block: after this call it is there, whatever happens."""
+        target = self._file(self._count)
+        beside = target.with_suffix(".part")
+        with beside.open("wb") as file:
+            np.savez(file, allow_pickle=False, **arrays)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(beside, target)
+        _force_names(self._folder)
+        self._count += 1
+
+    def __getitem__(self, number: int) -> Arrays:
+        return self._read(range(self._count)[number])
+
+    def _file(self, number: int) -> Path:
+        return self._folder / f"block-{number:08d}.npz"
+
+    def _read(self, number: int) -> Arrays:
+        with self._file(number).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
+
+    def _is_whole(self, number: int) -> bool:
+        """Whether a block is there and every array in it has the checksum that was written with it."""
+        try:
+            with zipfile.ZipFile(self._file(number)) as file:
+                return bool(file.namelist()) and file.testzip() is None
+        # A damaged header claims a compression, an encryption or a length that no block has.
+        except (OSError, ValueError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error, struct.error):
+            return False
+
+
+@contextmanager
+def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
+    """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
+
+    Where a living run is at the same march in the same folder, this one keeps blocks of its own.
+
+    Parameters
+    ----------
+    folder : path
+        The output folder.
+    key : str
+        Of all that the blocks depend on.
+    fresh : bool
+        Clear away what is there, and begin anew.
+    """
+    made = not folder.exists()
+    with ExitStack() as stack:
+        with exclusive_lock(folder):
+            place = _place(folder, f"{_KEPT}{key[:_KEY_DIGITS]}", fresh=fresh)
+            stack.enter_context(held_lock(place))
+        blocks = BlockFiles(place)
+        try:
+            yield blocks
+        except BaseException as error:
+            if blocks.is_empty:
+                _clear(place, folder if made else None)
+            elif isinstance(error, KeyboardInterrupt):
+                error.add_note("what was marched so far is kept: the same command goes on from there, --fresh does not")
+            raise
+        _clear(place, None)
+
+
+def _place(folder: Path, name: str, *, fresh: bool) -> Path:
+    """A folder for the blocks, after those of dead runs of anything else are cleared away."""
+    wanted = folder / name
+    for other in folder.glob(f"{_KEPT}*"):
+        if other.is_dir() and not other.is_symlink() and (fresh or other != wanted) and not is_locked(other):
+            shutil.rmtree(other, ignore_errors=True)
+    if wanted.exists() and is_locked(wanted):
+        return Path(tempfile.mkdtemp(prefix=f"{name}-", dir=folder))
+    wanted.mkdir(exist_ok=True)
+    return wanted
+
+
+def _clear(place: Path, made: Path | None) -> None:
+    shutil.rmtree(place, ignore_errors=True)
+    if made is not None:
+        with suppress(OSError):  # another run is at work in it
+            made.rmdir()
+
+
+def _force_names(folder: Path) -> None:
+    """Force a folder's entries to the disk."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+_HERTZ = 2.0 * math.pi
+_OVERSAMPLING = 100.0  # of the march over the highest frequency of interest
+_FEWEST_SAMPLES = 16  # of a march: fewer show nothing
+_KEPT_SAMPLING = 4.0  # of what is kept of long records: what folds onto that frequency is a wide transition away
+RECORD_BYTES = 128 << 20
+"""The longest record that is kept as it was sampled, all signals together."""
+_STRETCH_BYTES = 64 << 20
+_LONGEST_STRETCH = 1 << 18  # samples
+_BLOCK_BYTES = 32 << 20
+_LARGEST_BLOCK = 1 << 18  # samples
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """Sampling of a transient.
+
+    Attributes
+    ----------
+    settings : coupling.TransientSettings
+        Of the march.
+    samples_per_block : int
+        Of the march, about.
+    decimation : coupling.Decimation
+        From what is recorded to what is kept; by 1 for a record that fits in memory.
+    stretch : int
+        Kept samples over which a spectrum is taken.
+    window : {"uniform", "hann"}
+        Uniform where every shaft turns a whole number of times in a stretch.
+    """
+
+    settings: TransientSettings
+    samples_per_block: int
+    decimation: Decimation
+    stretch: int
+    window: Window
+
+    @property
+    def interval(self) -> float:
+        """Interval between stored samples [s]."""
+        return self.settings.sample_interval * self.decimation.factor
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the record is too long to be stored as sampled."""
+        return self.decimation.factor > 1
+
+
+def sampling(
+    case: Case,
+    turning: SpeedProfile | None,
+    limit: float,
+    signals: int,
+    rows: int,
+    *,
+    largest: int = RECORD_BYTES,
+    block: int | None = None,
+) -> Sampling:
+    """Choose how a case is sampled: for its highest speed, where that varies.
+
+    Parameters
+    ----------
+    case : Case
+        With an operation and a transient.
+    turning : coupling.Turning or None
+        Speed over time; None where it is the nominal one all along.
+    limit : float
+        Highest frequency of interest [Hz].
+    signals, rows : int
+        Numbers in a kept sample, and in one of the march.
+    largest : int
+        The longest record that is kept as it was sampled [bytes].
+    block : int, optional
+        Samples in a block, about; by default as many as suit the length.
+
+    Raises
+    ------
+    CaseError
+        Where more is discarded than a run turns.
+    """
+    assert case.operation is not None
+    assert case.transient is not None
+    given = case.transient
+    nominal = _HERTZ / abs(case.operation.speed)
+    period = nominal / (1.0 if turning is None else float(turning.rates.max()))
+    per_revolution = _power_of_two(max(given.points_per_revolution, _OVERSAMPLING * limit * period))
+    settings = TransientSettings(
+        duration=transient_duration(case),
+        record_from=_record_from(case, nominal, turning),
+        sample_interval=period / per_revolution,
+        largest_step=nominal / given.points_per_revolution,
+        tolerance=given.tolerance,
+        method=given.method,
+    )
+    if settings.samples < _FEWEST_SAMPLES:
+        problem = Problem(
+            "transient", f"a record of {settings.samples} samples", f"{_FEWEST_SAMPLES} or more: a longer run"
+        )
+        raise CaseError([problem])
+    if 8 * signals * settings.samples <= largest:
+        decimation = coupled_decimation(1, 0.25)
+        return Sampling(settings, block or SAMPLES_PER_BLOCK, decimation, settings.samples, _window(case))
+    kept_per_revolution = min(_power_of_two(_KEPT_SAMPLING * limit * period), per_revolution // 2)
+    factor = per_revolution // kept_per_revolution
+    decimation = coupled_decimation(factor, limit * period / kept_per_revolution)
+    kept = decimation.kept(settings.samples)
+    most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), kept_per_revolution)
+    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    repeats = turning is None and whole * kept_per_revolution <= min(most, kept)
+    unit = kept_per_revolution * (whole if repeats else 1)
+    units = max(kept // unit, 1)
+    stretch = unit * (units // math.ceil(units * unit / most)) if unit <= kept else kept
+    if block is None:
+        block = min(max(_BLOCK_BYTES // (8 * rows), SAMPLES_PER_BLOCK), _LARGEST_BLOCK)
+    return Sampling(settings, block, decimation, stretch, "uniform" if repeats else "hann")
+
+
+def transient_duration(case: Case) -> float:
+    """Duration of the transient [s]."""
+    assert case.operation is not None
+    assert case.transient is not None
+    if case.transient.run is not None:
+        return case.transient.run.duration
+    assert case.transient.revolutions is not None
+    return case.transient.revolutions * (_HERTZ / abs(case.operation.speed))
+
+
+def _record_from(case: Case, period: float, turning: SpeedProfile | None) -> float:
+    """When the discarded revolutions are done [s].
+
+    Raises
+    ------
+    CaseError
+        Where a run does not turn so far.
+    """
+    assert case.transient is not None
+    discard = case.transient.discard
+    if turning is None or discard == 0.0:
+        return discard * period
+    time = float(turning.times_of(np.array([discard * period]))[0])
+    duration = transient_duration(case)
+    if not time < duration:
+        turned = float(turning.at(duration)[0][0]) / period
+        expected = f"fewer revolutions than the {turned:g} that the run turns"
+        raise CaseError([Problem("transient.discard", discard, expected)])
+    return time
+
+
+def _power_of_two(least: float) -> int:
+    return int(2 ** np.ceil(np.log2(max(least, 1.0))))
+
+
+def _window(case: Case) -> Window:
+    """Uniform where every shaft turns a whole number of times in the record."""
+    assert case.transient is not None
+    if case.transient.revolutions is None:
+        return "hann"
+    recorded = case.transient.revolutions - case.transient.discard
+    turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
+    return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"
+
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def block_arrays(columns: FloatArray, held: FloatArray, after: Checkpoint) -> Arrays:
+    """Stored arrays of a block: its samples, the filter's state, and the state to restart from."""
+    return {"columns": columns, "held": held, **after.as_arrays()}
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Recorded signals of a transient: histories, and the modal motion behind them."""
+
+    histories: Histories
+    modal: ModalRecord
+
+    @property
+    def times(self) -> FloatArray:
+        """[s], shape (s,)."""
+        return self.histories.times
+
+    @property
+    def columns(self) -> FloatArray:
+        """Every signal beside the others, shape (s, k)."""
+        return np.concatenate([self.histories.columns, self.modal.columns], axis=1)
+
+    def with_columns(self, times: FloatArray, columns: FloatArray) -> "Signals":
+        """Other samples of the same signals, from what :attr:`columns` gives."""
+        modal = self.modal.columns.shape[1]
+        split = columns.shape[1] - modal
+        return Signals(
+            self.histories.with_columns(times, columns[:, :split]), self.modal.with_columns(columns[:, split:])
+        )
+
+
+@dataclass(frozen=True)
+class MarchRecord:
+    """A finished march.
+
+    Attributes
+    ----------
+    sampling : Sampling
+    blocks : Blocks
+        At least one.
+    signals : Signals
+        Names of the signals; samples in it do not count.
+    """
+
+    sampling: Sampling
+    blocks: Blocks
+    signals: Signals
+
+    @property
+    def end(self) -> Checkpoint:
+        """State at the end of the integration."""
+        return Checkpoint.from_arrays(self.blocks[len(self.blocks) - 1])
+
+    @property
+    def samples(self) -> int:
+        """Number of stored samples."""
+        return self.sampling.decimation.kept(self.end.sample)
+
+    def pieces(self) -> Iterator[Signals]:
+        """The histories, block by block."""
+        done = 0
+        for number in range(len(self.blocks)):
+            columns = self.blocks[number]["columns"]
+            yield self._named(columns, done)
+            done += len(columns)
+
+    def stretches(self) -> Iterator[Signals]:
+        """The histories in stretches of equal length, the last of which ends with the record."""
+        length = min(self.sampling.stretch, self.samples)
+        skipped = self.samples % length
+        waiting, done = self.signals.columns[:0], 0
+        for piece in self.pieces():
+            columns = piece.columns
+            if skipped:
+                dropped = min(skipped, len(columns))
+                columns, skipped, done = columns[dropped:], skipped - dropped, done + dropped
+            waiting = np.concatenate([waiting, columns]) if len(waiting) else columns
+            while len(waiting) >= length:
+                yield self._named(waiting[:length], done)
+                waiting, done = waiting[length:], done + length
+
+    def last_stretch(self) -> Signals:
+        """The last of them; of a record that fits in memory, all of it."""
+        length = min(self.sampling.stretch, self.samples)
+        parts: list[FloatArray] = []
+        for number in reversed(range(len(self.blocks))):
+            parts.insert(0, self.blocks[number]["columns"])
+            if sum(map(len, parts)) >= length:
+                break
+        columns = parts[0] if len(parts) == 1 else np.concatenate(parts)
+        return self._named(columns[len(columns) - length :], self.samples - length)
+
+    def _named(self, columns: FloatArray, first: int) -> Signals:
+        """The samples under their names, counted from a first one."""
+        recorded = self.sampling.decimation.delay + self.sampling.decimation.factor * np.arange(
+            first, first + len(columns), dtype=np.float64
+        )
+        settings = self.sampling.settings
+        return self.signals.with_columns(settings.record_from + settings.sample_interval * recorded, columns)
+
+    def spectrum(self, stretch: FloatArray, limit: float) -> Spectrum:
+        """Lines of signals over one stretch, shape (..., s), as far as the record holds them in full.
+
+        Of a long record, that is up to a limit [Hz].
+        """
+        spectrum = amplitude_spectrum(stretch, self.sampling.interval, self.sampling.window)
+        return _below(spectrum, limit) if self.sampling.is_long else spectrum
+
+
+def record_spectra(
+    record: MarchRecord, last: Histories, limit: float
+) -> tuple[dict[str, Spectrum], dict[str, Spectrum]]:
+    """Spectra of the sensors' accelerations and of the mesh forces.
+
+    Of the whole where it fits in memory, and given as ``last``; of a long record averaged over its stretches, up to the
+    limit [Hz] below which all of it was kept.
+    """
+    sensors, meshes = list(last.sensor_acceleration), list(last.mesh_force)
+    if not record.sampling.is_long:
+        of_sensors, of_meshes = (
+            {name: record.spectrum(signal, limit) for name, signal in group.items()}
+            for group in (last.sensor_acceleration, last.mesh_force)
+        )
+        return of_sensors, of_meshes
+    if not sensors and not meshes:
+        return {}, {}
+    rows = (
+        np.array([*stretch.histories.sensor_acceleration.values(), *stretch.histories.mesh_force.values()])
+        for stretch in record.stretches()
+    )
+    together = _below(averaged_spectrum(rows, record.sampling.interval, record.sampling.window), limit)
+    each = [
+        replace(together, amplitude=amplitude, phase=phase)
+        for amplitude, phase in zip(together.amplitude, together.phase, strict=True)
+    ]
+    return dict(zip(sensors, each, strict=False)), dict(zip(meshes, each[len(sensors) :], strict=True))
+
+
+def _below(spectrum: Spectrum, limit: float) -> Spectrum:
+    """The lines up to a limit [Hz], and two more: a line at the limit stands out only beside its neighbours."""
+    kept = int(np.searchsorted(spectrum.frequencies, limit + 2.0 * spectrum.frequencies[1], side="right"))
+    return replace(
+        spectrum,
+        frequencies=spectrum.frequencies[:kept],
+        amplitude=spectrum.amplitude[..., :kept],
+        phase=spectrum.phase[..., :kept],
+    )

@@ -1,0 +1,625 @@
+"""Model updating of a case's housing: the search, and the validation of the fit.
+
+The search is made on a mesh of its own, coarse enough for many solves, that moves with the box, with that mesh's bias
+taken off. The box's own mesh decides: it judges every few solves, and the search ends with a few designs more there,
+each meshed anew.
+
+Targets of an update: measured frequencies, and shapes where a survey holds some.
+
+Cross-validation of an update: modes left out in turn, and random frequency sets as the null hypothesis.
+
+Each is the whole search again. On the housing's own mesh it would take as long as the update itself, so all are made on
+the coarser one, as if that were the housing; the measured set too, with which the random ones are compared.
+
+Parallel work by local processes, for long tasks with small results.
+
+Updated case: the case file with the fitted numbers, their provenance and their prior.
+"""
+
+import tempfile
+import time
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+import tomli_w
+from scipy import sparse
+
+from gearwhine.case import Case, CaseError, Problem, UpdateParameter, require
+from gearwhine.case.checks import without_changed
+from gearwhine.case.errors import UNSAID, Location, key_of
+from gearwhine.from_case.mesh import build_mesh
+from gearwhine.from_case.parametric_housing import (
+    FittedCase,
+    FittedNumber,
+    HousingAtParameters,
+    ParametricHousing,
+    fitted_case,
+    unit_in_si,
+    with_entry,
+)
+from gearwhine.interruption import each_from_thread, in_thread
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.comparison import map_measured, read_measured
+from housing.correlation import dominance_band, real_shapes
+from housing.measured import MeasuredModes, map_survey
+from housing.updating import (
+    UNPAIRED,
+    Each,
+    Effort,
+    LeftOutMode,
+    Meshes,
+    Misfit,
+    ModeCount,
+    MultistartResult,
+    NullFit,
+    Parameter,
+    Posterior,
+    Procedure,
+    Step,
+    Target,
+    leave_one_out,
+    measure,
+    multistart_search,
+    null_fits,
+    polish,
+    posterior,
+    serial_map,
+)
+from meshes import Mesh
+
+_HERTZ = 2.0 * np.pi
+_MARGIN = 1.0 / 3.0  # of the least gap, for the two measures beside the one that decides
+
+Observer = Callable[[Mesh], sparse.csr_array]
+"""From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes)."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Measured modes as the fit uses them.
+
+    Attributes
+    ----------
+    target : Target
+    observer : callable, optional
+        None where no shapes were measured.
+    left_out : int
+        Degrees of freedom that were not measured in every mode, and take no part.
+    """
+
+    target: Target
+    observer: Observer | None = None
+    left_out: int = 0
+
+
+def measurement_of(case: Case, progress: Progress = silent) -> Measurement:
+    """Measured targets of a case's update.
+
+    Shapes pair the modes where there are any, else the dominance between seats and skin does. Complex ones are turned
+    on to the real axis.
+
+    Raises
+    ------
+    CaseError
+        Where the survey does not lie on the housing, shapes share too few degrees of freedom, or neither shapes nor
+        bearing seats tell which modes are which.
+    """
+    given = case.update
+    assert given is not None
+    assert case.housing is not None
+    measured = read_measured(case, progress)
+    known = given.model_modes
+    target = Target(
+        frequencies=measured.frequencies,
+        noise=np.full(len(measured.frequencies), given.frequency_noise),
+        band=dominance_band(measured.frequencies),
+        gap=given.gap,
+        margin=_MARGIN * given.gap if given.gap else -np.inf,
+        count=None if known is None else ModeCount(_HERTZ * known.below, known.least, known.most),
+    )
+    if measured.shapes is not None:
+        return _with_shapes(case, target, measured)
+    if not case.housing.seat:
+        expected = "bearing seats: without measured shapes modes are paired by their strength between seats and skin"
+        raise CaseError([Problem("housing.seat", (), expected)])
+    return Measurement(target)
+
+
+def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measurement:
+    assert case.update is not None
+    assert case.measured is not None
+    assert measured.shapes is not None
+    geometry = measured.geometry
+    assert geometry is not None
+    shared = np.flatnonzero(~np.isnan(measured.shapes).any(axis=0))
+    if len(shared) <= len(measured.shapes):
+        expected = (
+            f"shapes that share more than {len(measured.shapes)} degrees of freedom, as many as there are modes; "
+            f"{len(shared)} were measured in all of them"
+        )
+        raise CaseError([Problem("measured.file", UNSAID, expected)])
+    # Aligned once: an alignment that followed each design would hide its changes of size.
+    alignment = map_measured(case, build_mesh(case), geometry).alignment
+    tolerance = case.measured.tolerance
+
+    def observer(mesh: Mesh) -> sparse.csr_array:
+        mapped = map_survey(mesh, geometry, alignment=alignment, tolerance=tolerance)
+        return sparse.csr_array(mapped.matrix[shared])
+
+    with_shapes = Target(
+        frequencies=target.frequencies,
+        noise=target.noise,
+        band=target.band,
+        shapes=real_shapes(measured.shapes[:, shared]),
+        shape_noise=case.update.shape_noise,
+        count=target.count,
+    )
+    return Measurement(with_shapes, observer, measured.shapes.shape[1] - len(shared))
+
+
+_CLEAR = 0.1  # gap of dominance from which the choice of modes is a clear one
+
+
+@dataclass(frozen=True)
+class NullTest:
+    """Random sets fitted, and the measured one in the same way.
+
+    Attributes
+    ----------
+    measured : NullFit
+    fits : list of NullFit
+    """
+
+    measured: NullFit
+    fits: list[NullFit]
+
+    @property
+    def as_good_in_rms(self) -> float:
+        """Part of the random sets whose root-mean-square error is no larger than that of the measured one."""
+        return self._part(fit.rms_percent <= self.measured.rms_percent for fit in self.fits)
+
+    @property
+    def all_met(self) -> float:
+        """Part of the random sets for which all that is asked for is met."""
+        return self._part(fit.is_met for fit in self.fits)
+
+    @property
+    def median_rms_percent(self) -> float:
+        """Median of the random sets' root-mean-square errors."""
+        return median(fit.rms_percent for fit in self.fits)
+
+    def within(self, percent: float, *, clear: bool = False) -> float:
+        """Part of the random sets fitted within an error, if asked for with a clear choice of modes."""
+        return self._part(
+            fit.max_percent <= percent and (not clear or (fit.gap >= _CLEAR and fit.measures_agree))
+            for fit in self.fits
+        )
+
+    def _part(self, met: Iterable[bool]) -> float:
+        return sum(met) / len(self.fits)
+
+
+def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -> Procedure[HousingAtParameters]:
+    """The update's search as it is made on the mesh of one design alone, by one thread, from there.
+
+    Parameters
+    ----------
+    start : HousingDesign
+    effort : Effort
+        Of the update.
+    count : int
+        Number of starts of the multistart search, this one included.
+    """
+    designs = replace(start.designs, threads=1, draft=True)
+    return Procedure(designs.solve, designs.parameters, start.light(), effort, count)
+
+
+def leave_one_out_modes(
+    procedure: Procedure[HousingAtParameters], target: Target, each: Each, progress: Progress
+) -> list[LeftOutMode]:
+    """Each mode predicted by a fit to the others; see :func:`housing.updating.leave_one_out`."""
+    progress(f"holding back {len(target.noise)} modes, one at a time")
+    return leave_one_out(procedure, target, each, progress)
+
+
+def random_frequency_sets(
+    procedure: Procedure[HousingAtParameters], target: Target, count: int, each: Each, progress: Progress
+) -> NullTest:
+    """Random sets fitted, and the measured one; see :func:`housing.updating.null_fits`."""
+    progress(f"fitting the measured and {count} random sets of {len(target.noise)} frequencies")
+    return NullTest(*null_fits(procedure, target, count, each=each, progress=progress))
+
+
+def default_workers() -> int:
+    """As many as this process may use of the machine's cores."""
+    from gearwhine.sweep.workers import default_workers as of_the_machine
+
+    return of_the_machine()
+
+
+@contextmanager
+def in_parallel(workers: int) -> Iterator[Each]:
+    """Pool of single-thread processes, which end with the block; one worker is this process.
+
+    Raises
+    ------
+    WorkersError
+        Where the processes do not start.
+    """
+    if workers < 2:
+        yield serial_map
+        return
+    from gearwhine.sweep.workers import await_workers, connected
+
+    with tempfile.TemporaryDirectory(prefix="gearwhine-") as place, connected(workers, None, Path(place)) as client:
+        await_workers(client, workers)
+
+        def each(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
+            with warnings.catch_warnings():
+                # Dask would rather have large tasks scattered first; ours are few and long.
+                warnings.filterwarnings("ignore", message="Sending large graph")
+                futures = in_thread(lambda: [client.submit(work, task, pure=False) for task in tasks])
+            return each_from_thread(future.result() for future in futures)
+
+        yield each
+
+
+_AT_END = 1e-3  # part of a range that counts as its end
+_PARTS = 4  # parameters named of each combination
+
+
+@dataclass(frozen=True)
+class FoundNumber:
+    """Parameter of an update and what was found for it.
+
+    Attributes
+    ----------
+    number : FittedNumber
+    value, deviation : float
+        With its standard deviation, in SI.
+    left : float
+        Standard deviation as a part of the prior's.
+    """
+
+    number: FittedNumber
+    value: float
+    deviation: float
+    left: float
+
+    @property
+    def parameter(self) -> Parameter:
+        """The parameter with its range and prior."""
+        return self.number.parameter
+
+    @property
+    def unit_in_si(self) -> float:
+        """The unit that the case gives it in."""
+        return unit_in_si(self.number.given)
+
+    @property
+    def is_at_end(self) -> bool:
+        """Whether the value stands at an end of its range."""
+        low, high = self.parameter.low, self.parameter.high
+        return bool(min(self.value - low, high - self.value) < _AT_END * (high - low))
+
+
+@dataclass(frozen=True)
+class UpdatedPair:
+    """Measured mode, and its partner before and after an update.
+
+    Attributes
+    ----------
+    measured : float
+        Circular frequency [rad/s].
+    before_error, error : float
+        ln(model / measured); NaN where it has no partner.
+    mode : int or None
+        Number of its partner after the update, from 1.
+    before_mac, mac : float or None
+        None without shapes.
+    strength : float or None
+        The partner's lateral acceleration strength [1/kg].
+    uncertainty : float or None
+        Relative standard deviation of the partner's frequency that the parameters leave.
+    """
+
+    measured: float
+    before_error: float
+    error: float
+    mode: int | None
+    before_mac: float | None
+    mac: float | None
+    strength: float | None
+    uncertainty: float | None
+
+    @property
+    def before(self) -> float:
+        """Circular frequency of the model before the update [rad/s]."""
+        return float(self.measured * np.exp(self.before_error))
+
+    @property
+    def after(self) -> float:
+        """Circular frequency of the model after the update [rad/s]."""
+        return float(self.measured * np.exp(self.error))
+
+    @property
+    def before_error_percent(self) -> float:
+        """Model minus measured before the update, in per cent of measured."""
+        return float(100.0 * np.expm1(self.before_error))
+
+    @property
+    def error_percent(self) -> float:
+        """Model minus measured after the update, in per cent of measured."""
+        return float(100.0 * np.expm1(self.error))
+
+
+@dataclass(frozen=True)
+class SolvedUpdate:
+    """A housing updated.
+
+    Attributes
+    ----------
+    fitted : FittedCase
+    before, after : HousingDesign
+        On the box's own mesh.
+    misfit_before, misfit_after : Misfit
+        Theirs.
+    start : HousingDesign
+        Where the search began, on its coarser mesh.
+    target : Target
+    left_out : int
+        Measured degrees of freedom that took no part.
+    posterior : Posterior
+    steps : tuple of Step
+        Every true solve of the search.
+    held_back : list of HeldBack
+        Empty where not asked for.
+    null : NullTest, or None
+        Likewise None.
+    seconds : dict of str to float
+    """
+
+    fitted: FittedCase
+    before: HousingAtParameters
+    after: HousingAtParameters
+    misfit_before: Misfit
+    misfit_after: Misfit
+    start: HousingAtParameters
+    target: Target
+    left_out: int
+    posterior: Posterior
+    steps: tuple[Step, ...]
+    held_back: list[LeftOutMode]
+    null: NullTest | None
+    seconds: dict[str, float]
+
+    @cached_property
+    def found(self) -> tuple[FoundNumber, ...]:
+        """The parameters with their values after the update."""
+        numbers = self.fitted.numbers
+        values = self.posterior.values([number.parameter for number in numbers])
+        return tuple(
+            FoundNumber(number, *value, float(left))
+            for number, value, left in zip(numbers, values, self.posterior.deviations, strict=True)
+        )
+
+    @cached_property
+    def pairs(self) -> tuple[UpdatedPair, ...]:
+        """The measured modes with their partners before and after."""
+        before, after = self.misfit_before, self.misfit_after
+        left = self.posterior.frequency_deviations()
+        strengths = self.after.state.dominance.acceleration
+        return tuple(
+            UpdatedPair(
+                measured=float(measured),
+                before_error=float(before.errors[place]),
+                error=float(after.errors[place]),
+                mode=None if mode == UNPAIRED else int(mode) + 1,
+                before_mac=None if before.mac is None else float(before.mac[place]),
+                mac=None if after.mac is None else float(after.mac[place]),
+                strength=None if mode == UNPAIRED else float(strengths[mode]),
+                uncertainty=None if mode == UNPAIRED else float(left[mode]),
+            )
+            for place, (measured, mode) in enumerate(zip(self.target.frequencies, after.pairs, strict=True))
+        )
+
+    @property
+    def combinations(self) -> list[tuple[float, dict[str, float]]]:
+        """Combinations of parameters by what the data say of them: information, and the leading parts by name."""
+        rows = []
+        for information, direction in zip(self.posterior.information, self.posterior.directions, strict=True):
+            leading = np.argsort(-np.abs(direction))[:_PARTS]
+            sign = np.sign(direction[leading[0]])
+            parts = {self.found[place].parameter.name: float(sign * direction[place]) for place in leading}
+            rows.append((float(information), parts))
+        return rows
+
+
+def update_housing(
+    case: Case, progress: Progress = silent, *, null: int = 0, held_back: bool = False, threads: int = 2
+) -> SolvedUpdate:
+    """Fit the parameters of a case's `[update]` to its measured modes.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+    null : int
+        Number of random frequency sets to fit.
+    held_back : bool
+        Whether to fit again without each measured mode in turn, and to predict it.
+    threads : int
+
+    Raises
+    ------
+    CaseError
+        Where the case has no parameters or nothing measured, a key leads to no number, or random sets are asked for
+        beside measured shapes.
+    housing.HousingError
+        Where the model cannot be solved as it stands.
+    """
+    require(case, "housing", "measured", "update", command="update")
+    given = case.update
+    assert given is not None
+    assert case.housing is not None
+    measured = measurement_of(case, progress)
+    target = measured.target
+    if null and target.shapes is not None:
+        expected = "0 where shapes were measured: random frequencies have none"
+        raise CaseError([Problem("--null", null, expected)])
+    begin = time.perf_counter()
+    fine = ParametricHousing(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
+    coarse = replace(fine, case=fitted_case(case, given.mesh_size))
+    effort, count = Effort(solves=given.solves, seed=given.seed), 1 + given.explore
+    before, start, raced = _raced(fine, coarse, target, effort, count, threads, progress)
+    seconds = {"search": time.perf_counter() - begin}
+    begin = time.perf_counter()
+    progress("going on with the housing's own mesh")
+    found = polish(replace(fine, draft=True).solve, raced, target, fine.parameters, effort, progress)
+    # On the way modes were not counted; those that are reported are certified.
+    after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
+    seconds["own_mesh"] = time.perf_counter() - begin
+    rows: list[LeftOutMode] = []
+    null_test: NullTest | None = None
+    with _sharing(threads, len(target.noise) * held_back + null) as each:
+        procedure = full_update_search(start, effort, count)
+        if held_back:
+            begin = time.perf_counter()
+            rows = leave_one_out_modes(procedure, target, each, progress)
+            seconds["held_back"] = time.perf_counter() - begin
+        if null:
+            begin = time.perf_counter()
+            null_test = random_frequency_sets(procedure, target, null, each, progress)
+            seconds["null"] = time.perf_counter() - begin
+    return SolvedUpdate(
+        fitted=fine.case,
+        before=before,
+        after=after,
+        misfit_before=measure(target, before.state, before.coordinates, strict=True),
+        misfit_after=measure(target, after.state, after.coordinates, strict=True),
+        start=start,
+        target=target,
+        left_out=measured.left_out,
+        posterior=posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates)),
+        steps=raced.steps + found.steps,
+        held_back=rows,
+        null=null_test,
+        seconds=seconds,
+    )
+
+
+def _sharing(threads: int, tasks: int) -> AbstractContextManager[Each]:
+    """Pool for single-thread tasks; one task is done in this process."""
+    return in_parallel(min(threads, tasks, default_workers()))
+
+
+def _raced(
+    fine: ParametricHousing,
+    coarse: ParametricHousing,
+    target: Target,
+    effort: Effort,
+    count: int,
+    threads: int,
+    progress: Progress,
+) -> tuple[HousingAtParameters, HousingAtParameters, MultistartResult[HousingAtParameters]]:
+    """The housing as it stands on both meshes, and the search from there and from other starts.
+
+    Where there are several starts all is done by one thread each, from the first solution on: with other numbers of
+    threads sums are rounded otherwise, and a search that is led by its last digits ends elsewhere.
+    """
+    progress("solving the housing as it stands")
+    each_has = threads if count == 1 else 1
+    fine, coarse = replace(fine, threads=each_has), replace(coarse, threads=each_has)
+    same = coarse.case_at(coarse.start) == fine.case_at(fine.start)
+    with _sharing(threads, count) as each:
+        tasks = [(fine, True)] if same else [(fine, False), (coarse, True)]
+        solved: list[HousingAtParameters] = list(each(_as_it_stands, tasks))
+        before, start = solved[0], solved[-1]
+        own = None if same else replace(fine, draft=True).solve
+        meshes = Meshes(replace(coarse, draft=True).solve, own, HousingAtParameters.light)
+        judged = None if same else before.state
+        raced = multistart_search(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
+    return before, start, raced
+
+
+def _as_it_stands(task: tuple[ParametricHousing, bool]) -> HousingAtParameters:
+    """Solved where the case begins, and with its neighbourhood where that is wanted."""
+    designs, wanted = task
+    design = designs.solve(designs.start)
+    return replace(design, known=design.surrogate()) if wanted else design
+
+
+def updated_case(case: Case, solved: SolvedUpdate) -> str:
+    """The case with what was found, as TOML; what each number was, is and why stands at the top and in [provenance].
+
+    The prior stays where it was: an update of the updated case begins at what was found, and is drawn to what was
+    nominal.
+    """
+    fitted, fine = solved.fitted, solved.misfit_after
+    document, changed = fitted.document, set[Location]()
+    provenance: dict[str, str] = {}
+    old = solved.misfit_before
+    remarks = [
+        f"# Updated to {len(fine.pairs)} measured frequencies by 'gearwhine update'; errors:",
+        f"#   before: rms {old.rms_percent:.2f} %, largest {old.max_percent:.2f} %",
+        f"#   after:  rms {fine.rms_percent:.2f} %, largest {fine.max_percent:.2f} %, {_clear(fine)}",
+        "# Each parameter before and after, with one standard deviation of what prior and measurement leave of it:",
+    ]
+    prior: dict[int, dict[str, Any]] = {}
+    for place, found in enumerate(solved.found):
+        number = found.number
+        was, now, give = (_shown(value, number.given) for value in (number.start, found.value, found.deviation))
+        remarks.append(f"#   {number.parameter.name}: {was} -> {now}, give or take {give}")
+        why = f"found: by updating to the measured frequencies; {was} before, {now} give or take {give} after"
+        for location, value in number.entries(number.as_written(found.value)):
+            text = f"{value:.10g}" if number.given.factor or not number.given.unit else _shown(value, number.given)
+            document = with_entry(document, location, float(text) if _is_number(text) else text)
+            changed.add(location)
+            provenance[key_of(location)] = why
+        prior[place] = _prior(number)
+    before = fitted.document
+    for place, entry in prior.items():
+        document = with_entry(
+            document, ("update", "parameter", place), {**document["update"]["parameter"][place], **entry}
+        )
+    document = without_changed(dict(document), before, changed)
+    document["provenance"] = {**document.get("provenance", {}), **provenance}
+    return "\n".join(remarks) + "\n\n" + tomli_w.dumps(document)
+
+
+def _clear(misfit: Misfit) -> str:
+    if misfit.mac is not None:
+        return f"least MAC {misfit.mac.min():.2f}"
+    return f"gap of dominance {misfit.gap:.2f}"
+
+
+def _prior(number: FittedNumber) -> dict[str, Any]:
+    """The prior as it was, now that the case's own number is another one."""
+    parameter, given = number.parameter, number.given
+    if given.factor:
+        return {}
+    return {"nominal": _exact(parameter.nominal, given), "spread": _exact(parameter.spread, given)}
+
+
+def _exact(value: float, given: UpdateParameter) -> str | float:
+    return f"{value / unit_in_si(given):.12g} {given.unit}" if given.unit else value
+
+
+def _shown(value: float, given: UpdateParameter) -> str:
+    """A value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
+    return f"{value / unit_in_si(given):.5g} {given.unit}".strip()
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,267 @@
+"""Results of a sweep as one labelled dataset, and as a document."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine import __version__
+from gearwhine.case import Case, SweptKey, dump_case
+from gearwhine.sweep.points import axis_name
+from gearwhine.sweep.run import SweptPoint
+from gearwhine.sweep.solution import POINTS, PointFailure, PointResult
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = npt.NDArray[np.float64]
+
+_PEAKS = 10  # of each sensor, the highest
+_SAME_ORDER = 9  # decimals to which two lines are one
+
+
+def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> xr.Dataset:
+    """Every point of a sweep over its swept keys; NaN where a point failed or has no such line.
+
+    Spectra stand over *order*, cycles for each turn of the first driver: records hold a number of its turns, so the
+    lines of all speeds fall on each other without any interpolation. ``frequency`` has each point's in Hz.
+    """
+    import xarray as xr
+
+    names = tuple(axis_name(key.key) for key in keys)
+    grid = _Grid(names, tuple(len(key.texts) for key in keys), swept)
+    coordinates: dict[str, Any] = {
+        name: (name, list(key.values), _unit(key.unit or ("1" if key.is_numeric else ""), key.key))
+        for name, key in zip(names, keys, strict=True)
+    }
+    variables: dict[str, Any] = {}
+    for name, key, unit, what in (
+        ("rotation_speed", "speed_rpm", "rpm", "speed of the first driver"),
+        ("trusted_limit", "trusted_below_hz", "Hz", "frequency up to which the housing's modes are complete"),
+        ("energy_error", "energy_error", "1", "part of the energy that is missing from the balance"),
+        ("steps", "steps", "1", "time steps"),
+    ):
+        variables[name] = grid.rows((), (), _entry(key), _unit(unit, what))
+    variables["done"] = (names, grid.filled(False, lambda outcome: isinstance(outcome, PointResult)), {})
+    variables["failure"] = (names, grid.filled("", _failure), {"long_name": "why there is no result"})
+    orders = _orders(grid.results())
+    if orders.size:
+        coordinates["order"] = ("order", orders, _unit("1", "cycles for each turn of the first driver"))
+        turning = np.asarray(variables["rotation_speed"][1])[..., None] / 60.0
+        coordinates["frequency"] = ((*names, "order"), turning * orders, _unit("Hz", "frequency of each order"))
+    _add_sensors(grid, orders, variables, coordinates)
+    _add_meshes(grid, orders, variables, coordinates)
+    _add_bearings(grid, variables, coordinates)
+    modes = max((result.housing_frequencies_hz.size for result in grid.results()), default=0)
+    if modes:
+        coordinates["housing_mode"] = ("housing_mode", np.arange(1, modes + 1), _unit("1", "number of the mode"))
+        variables["housing_frequency"] = grid.rows(
+            ("housing_mode",),
+            (modes,),
+            lambda result: _padded(result.housing_frequencies_hz, modes),
+            _unit("Hz", "housing natural frequency"),
+        )
+    attributes = {
+        "title": case.title,
+        "source": f"gearwhine {__version__}",
+        "case": dump_case(case),
+        "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
+        "window": ", ".join(sorted({result.window for result in grid.results()})),
+    }
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def sweep_document(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> dict[str, Any]:
+    """A sweep as the command's JSON."""
+    rows = []
+    for one in swept:
+        values = {axis_name(key.key): key.values[place] for key, place in zip(keys, one.point.place, strict=True)}
+        row: dict[str, Any] = {"values": values, "settings": _settings(keys, one), "resumed": one.resumed}
+        row["file"] = f"{POINTS}/{one.point.file}"
+        if isinstance(one.outcome, PointFailure):
+            row |= {"status": "failed", "failure": one.outcome.message}
+            if one.outcome.traceback:
+                row["traceback"] = one.outcome.traceback
+        else:
+            row |= {"status": "done"} | {key: value for key, value in one.outcome.document.items() if key != "warnings"}
+        rows.append(row)
+    return {
+        "axes": [
+            {"key": key.key, "name": axis_name(key.key), "unit": key.unit, "values": list(key.values)} for key in keys
+        ],
+        "done": sum(row["status"] == "done" for row in rows),
+        "failed": sum(row["status"] == "failed" for row in rows),
+        "resumed": sum(row["resumed"] for row in rows),
+        "points": rows,
+        "warnings": _warnings(swept),
+    }
+
+
+class _Grid:
+    """The swept keys' grid, to be filled point by point."""
+
+    def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[SweptPoint]) -> None:
+        self.names, self.shape, self.swept = names, shape, swept
+
+    def results(self) -> list[PointResult]:
+        return [one.outcome for one in self.swept if isinstance(one.outcome, PointResult)]
+
+    def rows(
+        self,
+        dimensions: tuple[str, ...],
+        shape: tuple[int, ...],
+        of: Callable[[PointResult], Any],
+        attributes: dict[str, str],
+    ) -> Any:
+        """A variable with further dimensions, NaN where there is no result."""
+        values = np.full((*self.shape, *shape), np.nan)
+        for one in self.swept:
+            if isinstance(one.outcome, PointResult):
+                values[one.point.place] = of(one.outcome)
+        return ((*self.names, *dimensions), values, attributes)
+
+    def filled(self, start: Any, of: Callable[[PointResult | PointFailure], Any]) -> Any:
+        values = np.full(self.shape, start, dtype=object if isinstance(start, str) else None)
+        for one in self.swept:
+            values[one.point.place] = of(one.outcome)
+        return values.astype(str) if isinstance(start, str) else values
+
+
+def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
+    names = _union(list(result.sensor_spectra) for result in grid.results())
+    if not names:
+        return
+    coordinates["sensor"] = ("sensor", names, {})
+    coordinates["peak"] = ("peak", np.arange(1, _PEAKS + 1), _unit("1", "rank of the line, highest first"))
+
+    def rms(result: PointResult) -> FloatArray:
+        known = {sensor["name"]: sensor["rms_m_per_s2"] for sensor in result.document["sensors"]}
+        return np.array([known.get(name, np.nan) for name in names], dtype=np.float64)
+
+    def peaks(key: str) -> Callable[[PointResult], FloatArray]:
+        def of(result: PointResult) -> FloatArray:
+            known = {sensor["name"]: [peak[key] for peak in sensor["peaks"]] for sensor in result.document["sensors"]}
+            return np.array([_padded(np.array(known.get(name, [])), _PEAKS) for name in names])
+
+        return of
+
+    within = "up to the trusted limit"
+    variables["sensor_rms"] = grid.rows(
+        ("sensor",), (len(names),), rms, _unit("m/s2", f"root mean square of acceleration {within}, without its mean")
+    )
+    variables["sensor_spectrum"] = grid.rows(
+        ("sensor", "order"),
+        (len(names), orders.size),
+        lambda result: _on_orders(orders, result, result.sensor_spectra, names),
+        _unit("m/s2", f"peak amplitude of acceleration {within}"),
+    )
+    for name, key, unit, what in (
+        ("sensor_peak_frequency", "frequency_hz", "Hz", "frequency of the highest lines"),
+        ("sensor_peak_amplitude", "amplitude_m_per_s2", "m/s2", "peak amplitude of the highest lines"),
+    ):
+        variables[name] = grid.rows(("sensor", "peak"), (len(names), _PEAKS), peaks(key), _unit(unit, what))
+
+
+def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
+    names = _union(list(result.force_spectra) for result in grid.results())
+    if not names:
+        return
+    coordinates["contact"] = ("contact", names, {})
+
+    def figures(key: str) -> Callable[[PointResult], FloatArray]:
+        def of(result: PointResult) -> FloatArray:
+            # Pairs and the contacts of their drive flanks stand in one order.
+            pairs = zip(result.force_spectra, result.document["gear_pairs"], strict=True)
+            known = {name: pair[key] for name, pair in pairs}
+            return np.array([known.get(name, np.nan) for name in names], dtype=np.float64)
+
+        return of
+
+    for name, key, unit, what in (
+        ("mesh_force_mean", "mean_force_n", "N", "mean gear-mesh force"),
+        ("mesh_force_peak", "peak_force_n", "N", "largest gear-mesh force"),
+        ("mesh_frequency", "mesh_frequency_hz", "Hz", "tooth-mesh frequency"),
+        ("contact_loss", "contact_loss_fraction", "1", "part of the time in which the flanks are apart"),
+    ):
+        variables[name] = grid.rows(("contact",), (len(names),), figures(key), _unit(unit, what))
+    variables["mesh_force_spectrum"] = grid.rows(
+        ("contact", "order"),
+        (len(names), orders.size),
+        lambda result: _on_orders(orders, result, result.force_spectra, names),
+        _unit("N", "peak amplitude of the gear-mesh force"),
+    )
+
+
+def _add_bearings(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
+    names = _union(list(result.bearing_force_mean) for result in grid.results())
+    if not names:
+        return
+    coordinates["bearing"] = ("bearing", names, {})
+    coordinates["axis"] = ("axis", ["x", "y", "z"], {})
+    coordinates["moment_axis"] = ("moment_axis", ["x", "y"], {})
+    missing = np.full(5, np.nan)
+
+    def loads(group: str, parts: slice) -> Callable[[PointResult], FloatArray]:
+        return lambda result: np.array([getattr(result, group).get(name, missing)[parts] for name in names])
+
+    for kind, axis, unit, parts in (("force", "axis", "N", slice(3)), ("moment", "moment_axis", "N m", slice(3, 5))):
+        size = (len(names), parts.stop - (parts.start or 0))
+        for mean, what in (("mean", "mean {} of the shaft on its bearing"), ("rms", "rms of that {} without its mean")):
+            of = loads(f"bearing_force_{mean}", parts)
+            variables[f"bearing_{kind}_{mean}"] = grid.rows(("bearing", axis), size, of, _unit(unit, what.format(kind)))
+
+
+def _orders(results: Sequence[PointResult]) -> FloatArray:
+    """Every order that some point has a line at."""
+    lines = [np.round(result.orders, _SAME_ORDER) for result in results]
+    return np.unique(np.concatenate(lines)) if lines else np.empty(0)
+
+
+def _on_orders(
+    orders: FloatArray, result: PointResult, spectra: Mapping[str, FloatArray], names: Sequence[str]
+) -> FloatArray:
+    rows = np.full((len(names), orders.size), np.nan)
+    at = np.searchsorted(orders, np.round(result.orders, _SAME_ORDER))
+    for row, name in zip(rows, names, strict=True):
+        if name in spectra:
+            row[at] = spectra[name]
+    return rows
+
+
+def _padded(values: FloatArray, count: int) -> FloatArray:
+    padded = np.full(count, np.nan)
+    padded[: min(count, values.size)] = values[:count]
+    return padded
+
+
+def _union(lists: Any) -> list[str]:
+    return list(dict.fromkeys(name for names in lists for name in names))
+
+
+def _entry(key: str) -> Callable[[PointResult], float]:
+    return lambda result: result.document[key]
+
+
+def _failure(outcome: PointResult | PointFailure) -> str:
+    return outcome.message if isinstance(outcome, PointFailure) else ""
+
+
+def _settings(keys: Sequence[SweptKey], one: SweptPoint) -> dict[str, str]:
+    return {key.key: text for key, text in zip(keys, one.point.texts, strict=True)}
+
+
+def _warnings(swept: Sequence[SweptPoint]) -> list[dict[str, Any]]:
+    """Warnings of the points' housings, each once."""
+    found: dict[str, dict[str, Any]] = {}
+    for one in swept:
+        if isinstance(one.outcome, PointResult):
+            for warning in one.outcome.document.get("warnings", ()):
+                found.setdefault(warning["message"], warning)
+    return list(found.values())
+
+
+def _unit(unit: str, what: str) -> dict[str, str]:
+    return {"units": unit, "long_name": what}

@@ -1,0 +1,198 @@
+"""Running a sweep: points on file are read, the others are solved by the workers."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearwhine.failures import WorkersError
+from gearwhine.from_case.machine import ReducedHousing, reduce_housing
+from gearwhine.interruption import each_from_thread, in_thread
+from gearwhine.output import staging
+from gearwhine.progress import Progress
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing, write_mode_cache
+from gearwhine.sweep.points import Point, code_digest
+from gearwhine.sweep.solution import (
+    PointFailure,
+    PointResult,
+    outdated_points,
+    read_point,
+    solve_point,
+    solve_point_housing,
+    write_point,
+)
+from gearwhine.sweep.workers import await_workers, connected
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+Outcome = PointResult | PointFailure
+
+
+@dataclass(frozen=True)
+class SweptPoint:
+    """A point with what came of it, and whether an earlier run left it."""
+
+    point: Point
+    outcome: Outcome
+    resumed: bool
+
+
+def run_sweep(
+    points: Sequence[Point],
+    folder: Path,
+    progress: Progress,
+    *,
+    workers: int,
+    scheduler: str | None = None,
+    fresh: bool = False,
+) -> tuple[SweptPoint, ...]:
+    """Solve every point that the folder does not hold yet; each is written there as it ends.
+
+    Points that failed before are tried again. The housing's modes are solved here and kept where they are those of all
+    points; where the sweep changes them, by the workers.
+
+    Parameters
+    ----------
+    points
+        From :func:`gearwhine.sweep.sweep_points`.
+    folder
+        For the results.
+    workers, scheduler
+        See :func:`gearwhine.sweep.workers.connected`.
+    fresh
+        Solve also what the folder holds.
+
+    Raises
+    ------
+    CaseError, WorkersError, housing.HousingError, housing.IncompleteModesError, ...
+        Where the housing that all points share cannot be solved, or there are no workers.
+    """
+    outcomes: dict[int, Outcome] = {}
+    if not fresh:
+        held = ((number, read_point(folder, point)) for number, point in enumerate(points))
+        outcomes = {number: outcome for number, outcome in held if isinstance(outcome, PointResult)}
+    resumed = frozenset(outcomes)
+    todo = [number for number in range(len(points)) if number not in resumed]
+    if todo:
+        from gearwhine.sweep.warm_up import WarmUp
+
+        workers = min(workers, len(todo))
+        with staging(folder) as place:
+            progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
+            with connected(workers, scheduler, place, [WarmUp()]) as client:
+                # What takes long goes first, lest all wait for it at the end.
+                todo.sort(key=lambda number: -points[number].duration)
+                shared, unkept = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+                if scheduler is None:
+                    await_workers(client, workers)
+                told = _teller(len(points), len(resumed), progress)
+                told(0)
+                futures = in_thread(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
+                # Now, not before: the points need not wait for this.
+                _keep(unkept, folder)
+                _read_what_writes()
+                for count, (number, outcome) in enumerate(each_from_thread(_as_they_end(client, futures)), start=1):
+                    outcomes[number] = outcome
+                    write_point(folder, place, points[number], outcome)
+                    told(count)
+    for path in outdated_points(folder, tuple(points)):
+        path.unlink(missing_ok=True)
+    return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
+
+
+def _shared_housings(
+    points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
+) -> tuple[dict[str | None, ReducedHousing], SolvedHousing | None]:
+    """By its key, each housing of the points where all have the same modes; nothing where they differ or are none.
+
+    Beside it the solution that is still to be kept.
+    """
+    found: dict[str | None, ReducedHousing] = {}
+    solved = None
+    if len({point.modes_key for point in points}) > 1 or points[0].modes_key is None:
+        return found, solved
+    for point in points:
+        if point.housing_key in found:
+            continue
+        # The next one reads the modes that this one keeps.
+        _keep(solved, folder)
+        solved = solve_housing(point.case, progress, command="sweep", folder=folder, fresh=fresh and not found)
+        found[point.housing_key] = reduce_housing(point.case, solved)
+    return found, solved
+
+
+def _keep(solved: SolvedHousing | None, folder: Path) -> None:
+    if solved is not None:
+        with staging(folder) as place:
+            write_mode_cache(place, solved)
+
+
+def _read_what_writes() -> None:
+    """Import what takes seconds and is used only once there are results."""
+    import xarray  # noqa: F401
+
+    from gearwhine import figures  # noqa: F401
+
+
+def _submitted(
+    client: Client, points: dict[int, Point], shared: dict[str | None, ReducedHousing]
+) -> dict[Future[Any], int]:
+    """Hand every point to the workers, and before it its housing where that is not shared."""
+    code = code_digest()
+    housings: dict[str | None, Any] = dict(shared)
+    futures = {}
+    for number, point in points.items():
+        key = point.housing_key
+        if key is not None and key not in housings:
+            housings[key] = client.submit(solve_point_housing, point.case, code, key=f"housing-{key}", pure=False)
+        housing = None if key is None else housings[key]
+        future = client.submit(solve_point, point.case, housing, code, key=f"point-{number}-{point.key}", pure=False)
+        futures[future] = number
+    return futures
+
+
+def _as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tuple[int, Outcome]]:
+    """Each point's number and outcome as it comes."""
+    from distributed import KilledWorker, as_completed
+
+    for future in as_completed(list(futures), loop=client.loop):
+        number = futures.pop(future)
+        error = future.exception() if future.status == "error" else None
+        if isinstance(error, KilledWorker):
+            yield (
+                number,
+                PointFailure(
+                    "the worker at this point died again and again, perhaps for want of memory; try fewer --workers"
+                ),
+            )
+        elif error is not None:
+            yield number, PointFailure(f"unexpected {type(error).__name__}: {error}")
+        elif future.cancelled():
+            raise WorkersError("the workers were lost; run the sweep again to do the points that are missing")
+        else:
+            yield number, future.result()
+        # What is written need not stay in the workers' memory.
+        future.release()
+
+
+def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None]:
+    """Progress by the number of points done, with an estimate of the time left."""
+    start = time.perf_counter()
+
+    def told(count: int) -> None:
+        done = before + count
+        left = (time.perf_counter() - start) * (total - done) / count if count else None
+        text = "" if left is None or done == total else f", about {_duration(left)} left"
+        progress(f"sweep: {done} of {total} points{text}", done / total)
+
+    return told
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

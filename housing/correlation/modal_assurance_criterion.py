@@ -1,0 +1,286 @@
+"""Modal assurance criterion (MAC) of mode shapes, auto-MAC, pole-weighted MAC, and modal scale factor.
+
+The criterion is the squared cosine of the angle between two vectors (Allemang and Brown 1982),
+
+    MAC(a, b) = |aᴴ b|² / (aᴴ a · bᴴ b),
+
+between 0 and 1, whatever complex number scales either. It weighs degrees of freedom as they come: a survey with most
+points on one wall judges mostly that wall, and one with too few points finds different modes alike (Allemang 2003).
+:func:`auto_mac` shows the second; :mod:`housing.correlation.orthogonality` weighs by mass instead.
+
+Sets of mode shapes as matrices: one row a mode, one column a degree of freedom.
+
+Coordinate assurance criteria (COMAC, enhanced COMAC): differences of paired shapes at each degree of freedom.
+
+Shapes to unknown scales cannot be compared at one place before they are scaled alike. Here both shapes of a pair are
+scaled to unit norm (``comac``) or unit largest entry (``enhanced_comac``) over the degrees of freedom that both have.
+"""
+
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+ComplexArray = npt.NDArray[np.complex128]
+ShapeArray: TypeAlias = npt.NDArray[np.inexact[Any]]
+
+
+def shape_set(shapes: npt.ArrayLike, name: str) -> ShapeArray:
+    """A set of shapes as a matrix, real where it is real.
+
+    Parameters
+    ----------
+    shapes : array_like, shape (n_modes, n_dofs) or (n_dofs,)
+        Real or complex; NaN where a degree of freedom was not measured. One shape alone is a set of one.
+    name : str
+        Whose shapes, for messages.
+
+    Raises
+    ------
+    HousingError
+        Where it is no such matrix, an entry is infinite, or a mode has no entry at all.
+    """
+    given = np.asarray(shapes)
+    kind = np.complex128 if np.iscomplexobj(given) else np.float64
+    array: ShapeArray = np.atleast_2d(given.astype(kind))
+    if array.ndim != 2 or array.shape[1] == 0:
+        raise HousingError(f"{name} shapes have the shape {given.shape}; expected (modes, degrees of freedom)")
+    if np.isinf(array).any():
+        raise HousingError(f"{name} shape {int(np.argwhere(np.isinf(array))[0, 0]) + 1} has an infinite entry")
+    blank = np.flatnonzero(np.isnan(array).all(axis=1))
+    if blank.size:
+        raise HousingError(f"{name} shape {int(blank[0]) + 1} was measured at no degree of freedom")
+    return array
+
+
+def two_sets(
+    first: npt.ArrayLike, second: npt.ArrayLike, names: tuple[str, str] = ("the first set's", "the second set's")
+) -> tuple[ShapeArray, ShapeArray]:
+    """Two sets over the same degrees of freedom; see :func:`shape_set`.
+
+    Raises
+    ------
+    HousingError
+        Also where they have not as many degrees of freedom.
+    """
+    one, other = shape_set(first, names[0]), shape_set(second, names[1])
+    if one.shape[1] != other.shape[1]:
+        raise HousingError(
+            f"{names[0]} shapes have {one.shape[1]} degrees of freedom and {names[1]} {other.shape[1]}; "
+            "expected the same ones in both"
+        )
+    return one, other
+
+
+def filled(shapes: ShapeArray) -> tuple[ShapeArray, BoolArray]:
+    """Each shape over its largest entry, against overflow of squares, zero where not measured; and where it was."""
+    seen = ~np.isnan(shapes)
+    known = np.where(seen, shapes, 0.0)
+    largest = np.abs(known).max(axis=1, keepdims=True)
+    return known / np.where(largest > 0.0, largest, 1.0), seen
+
+
+def alike_measured(seen: BoolArray) -> list[tuple[BoolArray, npt.NDArray[np.int64]]]:
+    """Degrees of freedom measured, and the modes measured at exactly these: most surveys have one such group."""
+    patterns, group = np.unique(seen, axis=0, return_inverse=True)
+    return [(pattern, np.flatnonzero(group.ravel() == number)) for number, pattern in enumerate(patterns)]
+
+
+def modal_assurance_criterion(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
+    """Modal assurance criterion between every shape of one set and every shape of another.
+
+    Parameters
+    ----------
+    first, second : array_like, shapes (a, n_dofs) and (b, n_dofs)
+        Real or complex, each shape to any scale. NaN where not measured: two shapes are compared where both were.
+
+    Returns
+    -------
+    ndarray, shape (a, b)
+        From 0 to 1; NaN where two shapes share no degree of freedom; 0 for a shape that is zero wherever the other was
+        measured.
+
+    Raises
+    ------
+    HousingError
+        Where the sets do not fit together.
+    """
+    one, other = two_sets(first, second)
+    (a, seen_a), (b, seen_b) = filled(one), filled(other)
+    shared = seen_a @ seen_b.T
+    product = np.abs(a.conj() @ b.T) ** 2
+    norms = (np.abs(a) ** 2 @ seen_b.T) * (seen_a @ np.abs(b.T) ** 2)
+    # Rounding may lift a perfect match above one.
+    return np.asarray(np.where(shared, np.minimum(product / np.where(norms > 0.0, norms, 1.0), 1.0), np.nan))
+
+
+def auto_mac(shapes: npt.ArrayLike) -> FloatArray:
+    """MAC of a set with itself, shape (n, n): the survey cannot distinguish modes with large off-diagonal values."""
+    return modal_assurance_criterion(shapes, shapes)
+
+
+def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> ComplexArray:
+    """The factors that bring shapes nearest to those of a reference, pair by pair, by least squares.
+
+    aᴴ b / aᴴ a with a a shape and b its reference (Allemang 1980), over the degrees of freedom that both have.
+
+    Parameters
+    ----------
+    reference, shapes : array_like, shape (n, n_dofs)
+
+    Returns
+    -------
+    ndarray of complex, shape (n,)
+        Zero for a shape that is zero.
+
+    Raises
+    ------
+    HousingError
+        Where the sets do not fit together or are not as large as each other.
+    """
+    target, given = two_sets(reference, shapes, ("the reference's", "the scaled"))
+    if len(target) != len(given):
+        raise HousingError(f"{len(given)} shapes to be scaled to {len(target)} of a reference; expected as many")
+    both = ~(np.isnan(target) | np.isnan(given))
+    b, a = np.where(both, target, 0.0), np.where(both, given, 0.0)
+    norm = (np.abs(a) ** 2).sum(axis=1)
+    return np.asarray((a.conj() * b).sum(axis=1) / np.where(norm > 0.0, norm, 1.0), dtype=np.complex128)
+
+
+def pole_weighted_mac(
+    first: npt.ArrayLike, first_poles: npt.ArrayLike, second: npt.ArrayLike, second_poles: npt.ArrayLike
+) -> FloatArray:
+    """Pole-weighted MAC: likeness of the free motions of two modes, by shape, frequency and damping (Vacher 2010).
+
+    A mode's free motion is y(t) = Re(c v exp(λ t)). The largest of ∫ y₁·y₂ dt over the phases of both, squared and
+    over the largest of ∫ |y₁|² dt and of ∫ |y₂|² dt, is
+
+        (|v₁ᴴ v₂| / |λ₁* + λ₂| + |v₁ᵀ v₂| / |λ₁ + λ₂|)² / (n₁ n₂),    n = vᴴ v / 2|Re λ| + |vᵀ v| / 2|λ|.
+
+    Frequencies that differ by more than the half-power bandwidths make it small, so it judges whether two
+    identifications found the same mode of one machine; a model within a few per cent it condemns. A model and its
+    test are shown in both respects by the MAC over both frequencies instead (the FMAC of Fotsch and Ewins 2000), as
+    ``comparison.png`` does.
+
+    Parameters
+    ----------
+    first, second : array_like, shapes (a, n_dofs) and (b, n_dofs)
+        Without NaN.
+    first_poles, second_poles : array_like of complex, shapes (a,) and (b,)
+        λ = -ζω + iω√(1 - ζ²) [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (a, b)
+
+    Raises
+    ------
+    HousingError
+        Where sets and poles do not fit together, a degree of freedom is missing, or a pole does not decay.
+    """
+    one, other = two_sets(first, second)
+    poles = [np.asarray(given, dtype=np.complex128) for given in (first_poles, second_poles)]
+    for shapes, given in zip((one, other), poles, strict=True):
+        if given.shape != (len(shapes),) or not np.all(given.real < 0.0):
+            raise HousingError(
+                f"poles {given} rad/s for {len(shapes)} shapes; expected as many, each of negative real part"
+            )
+        if np.isnan(shapes).any():
+            raise HousingError(
+                "the pole-weighted MAC needs every degree of freedom of every shape; leave out those unmeasured"
+            )
+    (a, _), (b, _) = filled(one), filled(other)
+    p, q = poles[0][:, None], poles[1]
+    product = np.abs(a.conj() @ b.T) / np.abs(p.conj() + q) + np.abs(a @ b.T) / np.abs(p + q)
+    norms = np.outer(_largest_energy(a, poles[0]), _largest_energy(b, poles[1]))
+    return np.asarray(np.minimum(product**2 / np.where(norms > 0.0, norms, 1.0), 1.0))
+
+
+def _largest_energy(shapes: ShapeArray, poles: ComplexArray) -> FloatArray:
+    hermitian, plain = (np.abs(shapes) ** 2).sum(axis=1), np.abs((shapes**2).sum(axis=1))
+    return np.asarray(hermitian / (2.0 * np.abs(poles.real)) + plain / (2.0 * np.abs(poles)))
+
+
+def largest_off_diagonal(matrix: FloatArray) -> float:
+    """Largest off-diagonal entry of a square matrix without NaN; 0 where there is none."""
+    others = matrix[~np.eye(len(matrix), dtype=bool)]
+    return float(np.max(others[~np.isnan(others)], initial=0.0))
+
+
+def comac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
+    """Coordinate modal assurance criterion of Lieven and Ewins (1988).
+
+        COMAC(q) = (Σ_r |φ_qr ψ_qr|)² / (Σ_r |φ_qr|² Σ_r |ψ_qr|²)
+
+    over the pairs r. It sees amplitudes alone: a sensor mounted the wrong way round keeps 1, and so does one whose gain
+    is wrong alike in every mode. One pair alone gives 1 everywhere.
+
+    Parameters
+    ----------
+    model, measured : array_like, shape (n_pairs, n_dofs)
+        Row by row paired; NaN where not measured.
+
+    Returns
+    -------
+    ndarray, shape (n_dofs,)
+        From 0 to 1; NaN at a degree of freedom that no pair has, or that moves in none.
+
+    Raises
+    ------
+    HousingError
+        Where the sets do not fit together or there is no pair.
+    """
+    phi, psi = _paired(model, measured)
+    phi, psi = _unit_norm(np.where(np.isnan(psi), np.nan, phi)), _unit_norm(psi)
+    product = np.nansum(np.abs(phi * psi), axis=0) ** 2
+    norms = np.nansum(np.abs(phi) ** 2, axis=0) * np.nansum(np.abs(psi) ** 2, axis=0)
+    return np.asarray(np.where(norms > 0.0, np.minimum(product / np.where(norms > 0.0, norms, 1.0), 1.0), np.nan))
+
+
+def enhanced_comac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
+    """Enhanced coordinate criterion of Hunt (1992): half the mean difference of shapes scaled to unit largest entry.
+
+        ECOMAC(q) = Σ_r |φ_qr - ψ_qr| / 2L
+
+    over the L pairs that have the degree of freedom, ψ turned to φ's phase by their modal scale factor. It sees signs
+    and gains, unlike COMAC: 0 where all agree, and as much as a shape's own amplitude where a sensor is turned round.
+
+    Parameters and raises as :func:`comac`.
+
+    Returns
+    -------
+    ndarray, shape (n_dofs,)
+        From 0 to 1; NaN at a degree of freedom that no pair has.
+    """
+    phi, psi = _paired(model, measured)
+    # Model shapes are known everywhere, but both are scaled where both are.
+    phi = np.where(np.isnan(psi), np.nan, phi)
+    factor = modal_scale_factor(phi, psi)
+    size = np.abs(factor)
+    turned = psi * np.where(size > 0.0, factor / np.where(size > 0.0, size, 1.0), 1.0)[:, None]
+    difference = np.abs(_unit(phi) - _unit(turned))
+    pairs = (~np.isnan(difference)).sum(axis=0)
+    return np.asarray(np.where(pairs > 0, np.nansum(difference, axis=0) / np.maximum(2 * pairs, 1), np.nan))
+
+
+def _unit_norm(shapes: ShapeArray) -> ShapeArray:
+    norm = np.sqrt(np.nansum(np.abs(shapes) ** 2, axis=1, keepdims=True))
+    return np.asarray(shapes / np.where(norm > 0.0, norm, 1.0))
+
+
+def _unit(shapes: ShapeArray) -> ShapeArray:
+    largest = np.nanmax(np.abs(shapes), axis=1, keepdims=True)
+    return np.asarray(shapes / np.where(largest > 0.0, largest, 1.0))
+
+
+def _paired(model: npt.ArrayLike, measured: npt.ArrayLike) -> tuple[ShapeArray, ShapeArray]:
+    phi, psi = two_sets(model, measured, ("the model's", "the measured"))
+    if len(phi) != len(psi) or len(phi) == 0:
+        raise HousingError(f"{len(phi)} model and {len(psi)} measured shapes; expected pairs, row by row")
+    if np.isnan(phi).any() or not np.abs(phi).any(axis=1).all():
+        raise HousingError("a model shape in a pair is zero, or unknown at a degree of freedom; expected it everywhere")
+    return phi, psi

@@ -1,0 +1,1 @@
+"""Finite elements of a solid: assembly, sparse matrices, surface integrals, factorisation."""

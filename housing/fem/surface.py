@@ -1,0 +1,401 @@
+"""Surface integration by quadrature, and the nearest point of the surface.
+
+Outer surface of a housing: the facets that are visible from outside, for sensors and hammer.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError
+from meshes import ElementBlock, Mesh
+from meshes.elements import ElementKind, Facets, facet_centers, facet_normals, pick_facets
+from meshes.shape_functions import quadrature, shape_functions
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class SurfaceQuadrature:
+    """Quadrature points on facets of one kind.
+
+    Attributes
+    ----------
+    facets : ndarray of int, shape (n_facets, n_shape)
+        Nodes of each facet.
+    shape_values : ndarray, shape (n_points, n_shape)
+        Shape functions at the points, the same on each facet.
+    points : ndarray, shape (n_facets, n_points, 3)
+        Places [m].
+    areas : ndarray, shape (n_facets, n_points)
+        Area that each point stands for [m²].
+    """
+
+    facets: IntArray
+    shape_values: FloatArray
+    points: FloatArray
+    areas: FloatArray
+
+    @property
+    def area(self) -> float:
+        """Area of all facets [m²]."""
+        return float(self.areas.sum())
+
+
+def surface_quadrature(mesh: Mesh, facets: Facets) -> tuple[SurfaceQuadrature, ...]:
+    """Points and areas on facets, one set for each block of a kind.
+
+    Exact for the product of two fields of the elements' order on flat facets whose opposite sides are parallel.
+    """
+    return tuple(_block_quadrature(mesh, block) for block in facets)
+
+
+def _block_quadrature(mesh: Mesh, block: ElementBlock) -> SurfaceQuadrature:
+    places, weights = quadrature(block.kind, 4)
+    values, gradients = shape_functions(block.kind, places)
+    nodes = mesh.points[block.nodes]
+    tangents = np.einsum("fai,qaj->fqij", nodes, gradients, optimize=True)
+    normal = np.cross(tangents[..., 0], tangents[..., 1])
+    return SurfaceQuadrature(
+        facets=block.nodes,
+        shape_values=values,
+        points=np.einsum("fai,qa->fqi", nodes, values, optimize=True),
+        areas=np.linalg.norm(normal, axis=2) * weights,
+    )
+
+
+@dataclass(frozen=True)
+class SurfacePoint:
+    """A point of the surface, held by the shape functions of its facet.
+
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (n_shape,)
+    weights : ndarray, shape (n_shape,)
+        Shape functions there; they sum to one.
+    position : ndarray, shape (3,)
+        [m].
+    normal : ndarray, shape (3,)
+        Outward unit normal.
+    """
+
+    nodes: IntArray
+    weights: FloatArray
+    position: FloatArray
+    normal: FloatArray
+
+
+class NearestOnSurface:
+    """Finds the point of some boundary facets that is nearest to a place.
+
+    Candidates are the few facets that are nearest by the plane triangles between their corners; among them the true,
+    curved or twisted shape decides.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    facets : tuple of ElementBlock
+        Outward facets to search.
+    along : ndarray, shape (3,), optional
+        A unit vector; distances are then taken across it only, so that places are projected along it.
+
+    Raises
+    ------
+    HousingError
+        Where there are no facets.
+    """
+
+    def __init__(self, mesh: Mesh, facets: Facets, along: FloatArray | None = None) -> None:
+        self._points = mesh.points
+        self._across = np.eye(3) if along is None else np.eye(3) - np.outer(along, along)
+        self._triangles = [
+            _Triangles.of(mesh, block, triangle, self._across)
+            for block in facets
+            for triangle in (_CORNER_TRIANGLES[block.of.n_corners] if len(block) else ())
+        ]
+        if not self._triangles:
+            raise HousingError("there are no facets to find a point on")
+
+    def point(self, place: FloatArray) -> SurfacePoint:
+        """The point nearest to a place [m], shape (3,)."""
+        points, target = self._points, self._across @ place
+        nearest: tuple[float, IntArray, FloatArray, FloatArray] | None = None
+        for distance, block, member, start in self._candidates(target):
+            nodes = block.nodes[member]
+            corners = points[nodes] @ self._across
+            bulge, slack = _bulge(corners, block), _ROUNDING * float(np.ptp(points[nodes], axis=0).max())
+            # Where facets are equally near, as at their common edge, the first is taken, whatever the rounding.
+            if nearest is not None and distance - bulge > nearest[0] - slack:
+                continue
+            coordinates = _closest_on_facet(corners, block, start, target) if bulge > slack else start
+            values, gradients = shape_functions(block.kind, coordinates[:, None])
+            gap = float(np.linalg.norm(values[0] @ corners - target))
+            if nearest is None or gap < nearest[0] - slack:
+                tangents = points[nodes].T @ gradients[0]
+                nearest = (gap, nodes, values[0], np.cross(tangents[:, 0], tangents[:, 1]))
+        assert nearest is not None
+        _, nodes, weights, normal = nearest
+        return SurfacePoint(
+            nodes=nodes,
+            weights=weights,
+            position=weights @ points[nodes],
+            normal=normal / np.linalg.norm(normal),
+        )
+
+    def _candidates(self, target: FloatArray) -> list[tuple[float, ElementBlock, int, FloatArray]]:
+        """The facets nearest to the target by the plane triangles between their corners, nearest first.
+
+        Each with its distance, block, number in the block, and the reference coordinates of the triangle's nearest
+        point.
+        """
+        found: list[tuple[float, int, ElementBlock, int, FloatArray]] = []
+        for triangles in self._triangles:
+            near = triangles.near(target)
+            shares, distance = _closest_on_triangles(triangles.corners[near], target)
+            for place in np.argsort(distance, kind="stable")[:_NEIGHBOURS].tolist():
+                start = shares[place] @ triangles.places
+                found.append((float(distance[place]), len(found), triangles.block, int(near[place]), start))
+        return [(one[0], *one[2:]) for one in sorted(found, key=lambda one: one[:2])[:_NEIGHBOURS]]
+
+
+@dataclass(frozen=True)
+class _Triangles:
+    """One plane triangle of each facet of a block, and the ball around it.
+
+    Attributes
+    ----------
+    block : ElementBlock
+    places : ndarray, shape (3, 2)
+        Reference coordinates of the corners.
+    corners : ndarray, shape (n_facets, 3, 3)
+        [m].
+    centers : ndarray, shape (n_facets, 3)
+    radii : ndarray, shape (n_facets,)
+        [m].
+    """
+
+    block: ElementBlock
+    places: FloatArray
+    corners: FloatArray
+    centers: FloatArray
+    radii: FloatArray
+
+    @classmethod
+    def of(cls, mesh: Mesh, block: ElementBlock, triangle: tuple[int, ...], across: FloatArray) -> "_Triangles":
+        corners = mesh.points[block.nodes[:, triangle]] @ across
+        centers = corners.mean(axis=1)
+        radii = np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+        places = np.array(block.of.places, dtype=np.float64)[list(triangle)]
+        return cls(block, places, corners, centers, radii)
+
+    def near(self, target: FloatArray) -> IntArray:
+        """The triangles that may be among the nearest few: those whose ball comes as near as that many centres lie."""
+        apart = np.linalg.norm(self.centers - target, axis=1)
+        few = min(_NEIGHBOURS, len(apart)) - 1
+        reach = np.partition(apart, few)[few] * (1.0 + _ROUNDING)
+        return np.flatnonzero(apart - self.radii * (1.0 + _ROUNDING) <= reach)
+
+
+def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint:
+    """The point of some boundary facets nearest to a place; see :class:`NearestOnSurface`, which many places share.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    facets : tuple of ElementBlock
+        Outward facets to search.
+    place : ndarray, shape (3,)
+        [m].
+
+    Raises
+    ------
+    HousingError
+        Where there are no facets.
+    """
+    return NearestOnSurface(mesh, facets).point(place)
+
+
+def _bulge(nodes: FloatArray, block: ElementBlock) -> float:
+    """Upper bound on the distance of a facet from the plane triangles between its corners [m]; 0 where it is flat."""
+    first = block.of.n_corners
+    offset = np.linalg.norm(nodes - _corner_shares(block.of) @ nodes[:first], axis=1).max()
+    twist = np.linalg.norm(nodes[0] - nodes[1] + nodes[2] - nodes[3]) if first == 4 else 0.0
+    # The shape functions of middle nodes add up to at most 3 in size, and a twisted facet bends by a quarter.
+    return float(3.0 * offset + twist)
+
+
+@cache
+def _corner_shares(of: ElementKind) -> FloatArray:
+    """The corners' shape functions at each node, shape (n_nodes, n_corners)."""
+    return shape_functions(of.corners, np.array(of.places, dtype=np.float64).T)[0]
+
+
+# Plane triangles between the corners of a facet.
+_CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
+_NEIGHBOURS = 6  # facets looked at: as many as meet in a node of a usual mesh
+_STEPS = 20
+_SHORTENINGS = (1.0, 0.5, 0.25, 0.125)
+_ROUNDING = 1e-12
+
+
+def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray, target: FloatArray) -> FloatArray:
+    """Reference coordinates of the facet's point nearest to the target, by Gauss-Newton steps from a first guess.
+
+    Only steps that come nearer are taken, shortened where they must be, and none that leaves the facet: on a flat
+    facet the first guess is already the answer, and on a curved one no step makes it worse.
+    """
+    here = start
+    gap = np.inf
+    for _ in range(_STEPS):
+        values, gradients = shape_functions(block.kind, here[:, None])
+        gap = min(gap, float(np.linalg.norm(values[0] @ nodes - target)))
+        tangents = nodes.T @ gradients[0]
+        step = np.linalg.lstsq(tangents, target - values[0] @ nodes, rcond=1e-10)[0]
+        trials = np.array([_clipped(here + shortening * step, block) for shortening in _SHORTENINGS])
+        gaps = np.linalg.norm(shape_functions(block.kind, trials.T)[0] @ nodes - target, axis=1)
+        if gaps.min() >= gap * (1.0 - 1e-12):
+            break
+        here, gap = trials[np.argmin(gaps)], float(gaps.min())
+    return here
+
+
+def _clipped(coordinates: FloatArray, block: ElementBlock) -> FloatArray:
+    """The nearest reference coordinates within the facet."""
+    if block.of.n_corners == 4:
+        return np.clip(coordinates, 0.0, 1.0)
+    excess = coordinates.sum() - 1.0
+    if excess > 0.0:
+        coordinates = coordinates - excess / 2.0
+    u = float(np.clip(coordinates[0], 0.0, 1.0))
+    return np.array([u, np.clip(coordinates[1], 0.0, 1.0 - u)])
+
+
+def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Barycentric coordinates of the nearest point of each triangle, and its distance.
+
+    Triangles that a projection made flat (zero area) are measured by their edges.
+    """
+    a, edge_1, edge_2 = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    g11, g12, g22 = (edge_1**2).sum(1), (edge_1 * edge_2).sum(1), (edge_2**2).sum(1)
+    h1, h2 = ((place - a) * edge_1).sum(1), ((place - a) * edge_2).sum(1)
+    determinant = g11 * g22 - g12**2
+    flat = determinant <= 1e-12 * g11 * g22
+    safe = np.where(flat, 1.0, determinant)
+    u, v = (g22 * h1 - g12 * h2) / safe, (g11 * h2 - g12 * h1) / safe
+    best = np.stack([1.0 - u - v, u, v], axis=1)
+    inside = ~flat & (best >= 0.0).all(axis=1)
+    distance = np.where(inside, np.linalg.norm((best[..., None] * corners).sum(1) - place, axis=1), np.inf)
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        edge = corners[:, j] - corners[:, i]
+        length = np.maximum((edge**2).sum(1), 1e-300)
+        t = np.clip(((place - corners[:, i]) * edge).sum(1) / length, 0.0, 1.0)
+        gap = np.linalg.norm(corners[:, i] + t[:, None] * edge - place, axis=1)
+        closer = gap < distance
+        distance = np.where(closer, gap, distance)
+        candidate = np.zeros_like(best)
+        candidate[:, i], candidate[:, j] = 1.0 - t, t
+        best = np.where(closer[:, None], candidate, best)
+    return best, distance
+
+
+_CELLS = 80  # of a view along the housing's diagonal
+_DIRECTIONS = 60  # of view
+_FACING = 0.5  # least cosine between a facet's normal and the direction of a view that counts
+_SEEN = 0.25  # least part of the views of a facet in which it is visible; through a bore it is in few
+_DEPTH = 3.0  # cells that a facet may lie behind the foremost in its own: slanting neighbours share cells
+_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
+
+
+@dataclass(frozen=True)
+class SurfaceSamples:
+    """Points spread over facets.
+
+    Attributes
+    ----------
+    points, normals : ndarray, shape (n, 3)
+        Places on the plane triangles between the facets' corners [m], and their outward unit normals.
+    spacing : float
+        Neighbours are no farther from each other than this [m].
+    """
+
+    points: FloatArray
+    normals: FloatArray
+    spacing: float
+
+
+def sample_surface(mesh: Mesh, facets: Facets) -> SurfaceSamples:
+    """Points on facets, no farther apart than an eightieth of the mesh's diagonal."""
+    spacing = float(np.linalg.norm(np.ptp(mesh.points, axis=0))) / _CELLS
+    points, normals = [], []
+    for block in facets:
+        for corners in _TRIANGLES[block.of.n_corners]:
+            triangles = mesh.points[block.nodes[:, corners]]
+            edges = np.roll(triangles, -1, axis=1) - triangles
+            normal = np.cross(edges[:, 0], edges[:, 1])
+            length = np.linalg.norm(normal, axis=1, keepdims=True)
+            normal = normal / np.where(length > 0.0, length, 1.0)
+            parts = np.ceil(np.linalg.norm(edges, axis=2).max(axis=1) / spacing).astype(np.int64)
+            for count in np.unique(parts):
+                shares = _middles(int(count))
+                chosen = parts == count
+                points.append(np.einsum("sc,tci->tsi", shares, triangles[chosen]).reshape(-1, 3))
+                normals.append(np.repeat(normal[chosen], len(shares), axis=0))
+    return SurfaceSamples(np.concatenate(points), np.concatenate(normals), spacing)
+
+
+def outer_facets(mesh: Mesh) -> Facets:
+    """The boundary facets that are seen from outside, from a good part of the directions that they face.
+
+    Points of the surface are sorted into the cells of views from evenly spread directions: a facet whose middle lies
+    well behind the foremost point of its cell is hidden. Walls inside a closed housing are hidden but for parts visible
+    through bores; those of an open one count as outer.
+    """
+    boundary = mesh.boundary
+    samples = sample_surface(mesh, boundary)
+    middles, normals = facet_centers(mesh.points, boundary), facet_normals(mesh.points, boundary)
+    faced, seen = np.zeros(len(middles)), np.zeros(len(middles))
+    for direction in _even_directions(_DIRECTIONS):
+        towards = samples.points[samples.normals @ direction > 0.0]
+        cells, own = _cells(towards, middles, _across(direction), samples.spacing)
+        foremost = np.full(max(cells.max(), own.max()) + 1, -np.inf)
+        np.maximum.at(foremost, cells, towards @ direction)
+        facing = normals @ direction > _FACING
+        seen += facing & (middles @ direction > foremost[own] - _DEPTH * samples.spacing)
+        faced += facing
+    return pick_facets(boundary, seen >= _SEEN * np.maximum(faced, 1.0))
+
+
+def _cells(points: FloatArray, others: FloatArray, across: FloatArray, size: float) -> tuple[IntArray, IntArray]:
+    """Numbers of the cells of a view that points, and others, fall into."""
+    first, second = (np.floor(places @ across.T / size).astype(np.int64) for places in (points, others))
+    lowest = np.minimum(first.min(axis=0), second.min(axis=0))
+    width = max(first[:, 1].max(), second[:, 1].max()) - lowest[1] + 1
+    strides = np.array([width, 1])
+    return (first - lowest) @ strides, (second - lowest) @ strides
+
+
+def _middles(count: int) -> FloatArray:
+    """Shares of the corners at the middles of the triangles that a triangle is cut into, `count` along each side."""
+    upward = [(i + 1 / 3, j + 1 / 3) for i in range(count) for j in range(count - i)]
+    downward = [(i + 2 / 3, j + 2 / 3) for i in range(count) for j in range(count - i - 1)]
+    u, v = np.array(upward + downward).T / count
+    return np.stack([1.0 - u - v, u, v], axis=1)
+
+
+def _even_directions(count: int) -> FloatArray:
+    """Unit vectors spread evenly over the sphere along a spiral of the golden angle."""
+    height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
+    radius = np.sqrt(1.0 - height**2)
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=1)
+
+
+def _across(direction: FloatArray) -> FloatArray:
+    """Two unit vectors perpendicular to a direction and to each other, as rows."""
+    helper = np.eye(3)[np.argmin(np.abs(direction))]
+    first = np.cross(direction, helper)
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(direction, first)])

@@ -1,0 +1,1 @@
+"""The description of a housing: material, supports and other fixtures, seats and sensors."""

@@ -1,0 +1,408 @@
+"""Housing: mesh, materials, supports and other fixtures, bearing seats and sensors in one description; and its modes.
+
+The description is complete: natural modes are those of the mesh with every fixture on it, so that no support can be
+left out on the way to the eigensolver.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.errors import HousingError
+from housing.fem.assembly import assemble
+from housing.fem.matrices import Matrices
+from housing.model.bolted_joints import bolted_joint
+from housing.model.bushings import Bushing, Joint, Mount
+from housing.model.fixtures import Fixture, attach_fixtures
+from housing.model.lumped_mass import LumpedMass
+from housing.model.material import Material, enclosed_volume, mass_properties
+from housing.model.patches import Patch, rigid_motions
+from housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port
+from housing.model.supports import Support
+from housing.modes.effective_mass import damping_ratios, modal_damping
+from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
+from housing.modes.health import HealthReport, health_report
+from housing.modes.natural_modes import ModeSet, solve_modes
+from meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
+
+FloatArray = npt.NDArray[np.float64]
+
+RESPONSE_ORDERS = 3
+"""Responses of the discarded modes at each motion of a bearing: at rest, at the limit, and its derivative there."""
+
+_HERTZ = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Housing:
+    """A gearbox housing as it is built and held.
+
+    Attributes
+    ----------
+    mesh : meshes.Mesh
+        Of the solid, with a surface for each seat.
+    material : Material
+        Of all elements that are in no volume of ``materials``.
+    materials : mapping of str to Material
+        By the name of a volume of the mesh.
+    fixtures : sequence of Support, Mount, Joint or LumpedMass
+        Supports, mounts, joints between parts, and masses.
+    seats : sequence of Seat
+    sensors : sequence of Sensor
+    damping_ratio : float
+        Fraction of critical damping of every mode, in addition to the dashpots of the fixtures.
+
+    Raises
+    ------
+    HousingError
+        Where a name is given twice, the mesh lacks a volume, or the damping ratio is none.
+    """
+
+    mesh: Mesh
+    material: Material
+    materials: Mapping[str, Material] = field(default_factory=dict)
+    fixtures: Sequence[Fixture] = ()
+    seats: Sequence[Seat] = ()
+    sensors: Sequence[Sensor] = ()
+    damping_ratio: float = 0.0
+
+    def __post_init__(self) -> None:
+        for kind, names in (
+            ("seat", [seat.name for seat in self.seats]),
+            ("sensor", [sensor.name for sensor in self.sensors]),
+            ("fixture", [one.name for one in self.fixtures]),
+        ):
+            twice = sorted({name for name in names if names.count(name) > 1})
+            if twice:
+                raise HousingError(
+                    f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once"
+                )
+        missing = [name for name in self.materials if name not in self.mesh.volumes]
+        if missing:
+            known = ", ".join(map(repr, sorted(self.mesh.volumes))) or "none"
+            raise HousingError(f"no volume {missing[0]!r} in the mesh; expected one of {known}")
+        if not 0.0 <= self.damping_ratio < 1.0:
+            raise HousingError(f"a damping ratio of {self.damping_ratio}; expected at least 0 and below 1")
+
+    @classmethod
+    def from_step(
+        cls,
+        path: str | Path,
+        mesh_size: float,
+        material: Material,
+        *,
+        unit: float | None = None,
+        seats: Sequence[Seat] = (),
+        fixtures: Sequence[Fixture] = (),
+        sensors: Sequence[Sensor] = (),
+        damping_ratio: float = 0.0,
+        order: int = 2,
+    ) -> "Housing":
+        """Mesh a solid from a STEP, IGES or BREP file.
+
+        Parameters
+        ----------
+        path : path
+        mesh_size : float
+            Edge length of the tetrahedra [m].
+        material : Material
+        unit : float, optional
+            Of the lengths in the file [m], where the file does not say.
+        seats, fixtures, sensors, damping_ratio
+            As :class:`Housing`. A seat with a diameter is found as a bore of the solid.
+        order : {1, 2}
+            Of the elements.
+
+        Raises
+        ------
+        meshes.GeometryError
+            Where the file cannot be read or meshed, or has no bore where a seat is said to be.
+        HousingError
+            As :class:`Housing`.
+        """
+        refine = [(seat.center, seat.diameter) for seat in seats if seat.diameter is not None]
+        found = mesh_cad(Path(path), mesh_size, unit=unit, order=order, refine=refine)
+        mesh = _with_bores(found.mesh, seats)
+        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio)
+
+    @classmethod
+    def from_mesh_file(
+        cls,
+        path: str | Path,
+        material: Material,
+        *,
+        unit: float = 1.0,
+        seats: Sequence[Seat] = (),
+        fixtures: Sequence[Fixture] = (),
+        sensors: Sequence[Sensor] = (),
+        damping_ratio: float = 0.0,
+    ) -> "Housing":
+        """Read a mesh of solid elements in any format that meshio, Abaqus, Nastran or gmsh writes.
+
+        Parameters
+        ----------
+        path : path
+        material : Material
+        unit : float
+            Of the lengths in the file [m].
+        seats, fixtures, sensors, damping_ratio
+            As :class:`Housing`. A seat with a diameter is found as a bore, unless a surface has its name.
+
+        Raises
+        ------
+        meshes.GeometryError
+            Where the file cannot be read, or has no bore where a seat is said to be.
+        HousingError
+            As :class:`Housing`.
+        """
+        mesh = _with_bores(read_mesh(path, unit=unit), seats)
+        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio)
+
+    @classmethod
+    def from_box(
+        cls,
+        box: BoxGeometry,
+        mesh_size: float,
+        material: Material,
+        *,
+        fixtures: Sequence[Fixture] = (),
+        sensors: Sequence[Sensor] = (),
+        damping_ratio: float = 0.0,
+        order: int = 2,
+    ) -> "Housing":
+        """Mesh a box-shaped housing, with a seat in each of its bores and a joint at each bolt of its cover.
+
+        Raises
+        ------
+        meshes.GeometryError
+            Where the box cannot be meshed.
+        HousingError
+            As :class:`Housing`.
+        """
+        mesh = mesh_box(box, mesh_size, order=order)
+        seats = [Seat(bore.name, bore.center, bore.diameter) for bore in box.bores]
+        fixtures = [*fixtures, *cover_joints(box, material)]
+        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio)
+
+    def free_matrices(self) -> Matrices:
+        """Stiffness and mass of the solid alone, without its fixtures."""
+        return assemble(self.mesh, self.material, self.materials)
+
+    def matrices(self, free: Matrices | None = None) -> Matrices:
+        """Stiffness, mass and damping with every fixture on the solid.
+
+        Parameters
+        ----------
+        free : Matrices, optional
+            Of :meth:`free_matrices`, where they are at hand.
+
+        Raises
+        ------
+        HousingError, meshes.GeometryError
+            Where a fixture finds no place on the mesh.
+        """
+        return attach_fixtures(self.free_matrices() if free is None else free, self.mesh, self.fixtures)
+
+    def seat_ports(self) -> dict[str, sparse.csr_array]:
+        """Rigid motion of each seat at its centre from the nodes' displacements, shape (6, 3 n_nodes)."""
+        return {seat.name: seat_matrix(self.mesh, seat) for seat in self.seats}
+
+    def sensor_ports(self) -> dict[str, SensorPort]:
+        """Each sensor on its mesh."""
+        return {sensor.name: sensor_port(self.mesh, sensor) for sensor in self.sensors}
+
+    def modes(
+        self,
+        *,
+        below_hz: float | None = None,
+        count: int | None = None,
+        bearings: Mapping[str, tuple[str, float]] | None = None,
+        solver: Solver = DEFAULT_SOLVER,
+        progress: Callable[[str], None] = lambda message: None,
+    ) -> "HousingModes":
+        """Natural modes, certified complete, with residual modes for the bearings.
+
+        Parameters
+        ----------
+        below_hz : float
+            Every mode below it is found [Hz]. Either this or ``count``.
+        count : int
+            Number of the lowest modes.
+        bearings : mapping of str to (str, float), optional
+            Where the machine bears on the housing: by bearing, its seat and its distance along z from the centre of the
+            seat [m]. By default each seat stands for one bearing at its centre.
+        solver : {"lanczos", "eigsh"}
+            Eigensolver, see :func:`housing.solve_modes`.
+        progress : callable
+            Called with a line of text before each step.
+
+        Raises
+        ------
+        HousingError
+            Where the mesh is not sound, a bearing's seat does not exist, or a fixture finds no place.
+        IncompleteModesError, ReductionError, HealthError
+            Where the modes fail their certificate, their static compliance its proof, or the model its checks.
+        """
+        self.require_sound_mesh()
+        seat_ports = self.seat_ports()
+        places = {name: (name, 0.0) for name in seat_ports} if bearings is None else bearings
+        for name, (seat, _) in places.items():
+            if seat not in seat_ports:
+                known = ", ".join(map(repr, seat_ports)) or "none"
+                raise HousingError(f"bearing {name!r}: no seat {seat!r} in the housing; expected one of {known}")
+        loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in places.items()}
+        progress(f"assembling {3 * len(self.mesh.points)} degrees of freedom")
+        free = self.free_matrices()
+        whole = self.matrices(free)
+        found = solve_modes(
+            whole,
+            frequency_limit=None if below_hz is None else _HERTZ * below_hz,
+            count=count,
+            ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
+            port_orders=RESPONSE_ORDERS,
+            solver=solver,
+            progress=progress,
+        )
+        health = self.health(free, whole, found)
+        health.require()
+        damping = modal_damping(found, whole) if whole.damping.nnz else None
+        moved = whole.mass @ rigid_motions(self.mesh.points, np.zeros(3)).reshape(-1, 6)
+        return HousingModes(
+            housing=self,
+            mode_set=found,
+            health=health,
+            seats={name: found.project_all(port) for name, port in seat_ports.items()},
+            sensors={name: found.project_all(port.matrix)[:, 0] for name, port in self.sensor_ports().items()},
+            damping_matrix=damping,
+            participation=found.project_all(sparse.csr_array(moved.T)),
+        )
+
+    def require_sound_mesh(self) -> None:
+        """Refuse a mesh that cannot be computed with, or that falls into bodies which no joint connects.
+
+        Raises
+        ------
+        HousingError
+            With everything that is wrong.
+        """
+        joined = any(isinstance(one, Joint) for one in self.fixtures)
+        wrong = [
+            one
+            for one in diagnose(self.mesh)
+            if (not joined if one.name == "disconnected" else one.severity == "error")
+        ]
+        if wrong:
+            raise HousingError("expected a sound mesh; " + "; ".join(f"{one.name}: {one.message}" for one in wrong))
+
+    def health(self, free: Matrices, whole: Matrices, modes: ModeSet) -> HealthReport:
+        """Check a solved housing from its geometry to its modes.
+
+        Parameters
+        ----------
+        free, whole : Matrices
+            Of :meth:`free_matrices` and :meth:`matrices`.
+        modes : ModeSet
+            Of the latter.
+        """
+        solid = mass_properties(self.mesh, self.material, self.materials)
+        mass, center = solid.mass, solid.center
+        if not self.materials:
+            # With one material the boundary's volume gives the mass, independent of the elements inside.
+            volume, center = enclosed_volume(self.mesh)
+            mass = self.material.density * volume
+        fastened = sum(one.mass for one in self.fixtures if isinstance(one, LumpedMass))
+        return health_report(
+            self.mesh,
+            free,
+            whole,
+            [one for one in self.fixtures if isinstance(one, Support | Mount)],
+            modes,
+            mass=mass + fastened,
+            # The geometry does not know the centres of lumped masses.
+            center=None if fastened else center,
+        )
+
+
+@dataclass(frozen=True)
+class HousingModes:
+    """Natural modes of a housing, with their motions at seats and sensors, damping and participation.
+
+    Attributes
+    ----------
+    housing : Housing
+    mode_set : ModeSet
+        Frequencies, shapes, certificate and residual modes.
+    health : HealthReport
+    seats : mapping of str to ndarray, shape (n, 6)
+        Motions of modes and residual modes at each seat.
+    sensors : mapping of str to ndarray, shape (n,)
+        Motions of modes and residual modes along each sensor.
+    damping_matrix : ndarray, shape (n, n), or None
+        Φᵀ C Φ of the fixtures' dashpots [1/s].
+    participation : ndarray, shape (n, 6)
+        φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m].
+    """
+
+    housing: Housing
+    mode_set: ModeSet
+    health: HealthReport
+    seats: Mapping[str, FloatArray]
+    sensors: Mapping[str, FloatArray]
+    damping_matrix: FloatArray | None
+    participation: FloatArray
+
+    @property
+    def frequencies_hz(self) -> FloatArray:
+        """Natural frequencies [Hz], shape (n_modes,)."""
+        return self.mode_set.frequencies_hz
+
+    @property
+    def damping_ratios(self) -> FloatArray:
+        """Fraction of critical damping of each mode with its own share of the dashpots, shape (n_modes,)."""
+        own = np.full(len(self.mode_set.frequencies), self.housing.damping_ratio)
+        if self.damping_matrix is None:
+            return own
+        return damping_ratios(self.mode_set.frequencies, own, self.damping_matrix)
+
+
+def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
+    """A seat's motions x, y, z and rotations about x and y at a distance from its centre [m], shape (5, 3 n_nodes).
+
+    Any bearing can load these; none loads the rotation about z, in which the shaft turns.
+    """
+    # A rotation about y moves a point above the centre towards +x, one about x towards -y.
+    turned = sparse.diags_array([arm, -arm], dtype=np.float64) @ seat[[4, 3]]
+    return sparse.csr_array(sparse.vstack([seat[[0, 1]] + turned, seat[[2, 3, 4]]]))
+
+
+def cover_joints(box: BoxGeometry, material: Material, bolt_material: Material | None = None) -> list[Joint]:
+    """Preloaded bolts of a box's cover, each a joint between its patches on rim and cover.
+
+    Parameters
+    ----------
+    box : meshes.BoxGeometry
+    material : Material
+        Of the housing and its cover.
+    bolt_material : Material, optional
+        Of the bolts; that of the housing by default.
+    """
+    return [_bolted(bolt, material, bolt_material or material, box.rim_width) for bolt in box.bolts]
+
+
+def _bolted(bolt: Bolt, parts: Material, own: Material, rim: float) -> Joint:
+    outer = max(rim, bolt.patch_diameter)  # a narrow rim leaves the cone of pressure no more than its width
+    springs = bolted_joint(bolt.diameter, bolt.grip, parts, own, outer=outer).stiffness
+    first, second = Patch(bolt.body_surface), Patch(bolt.cover_surface)
+    return Joint(bolt.name, first, second, Bushing.along(bolt.axis, springs), bolt.position)
+
+
+def _with_bores(mesh: Mesh, seats: Sequence[Seat]) -> Mesh:
+    """The mesh with a surface for each seat of a given diameter."""
+    for seat in seats:
+        if seat.diameter is not None:
+            mesh = with_bore(mesh, seat.name, seat.center, seat.diameter)
+    return mesh

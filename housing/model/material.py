@@ -1,0 +1,150 @@
+"""Material: linear elastic and isotropic; Lamé's constants, and the constants of each element of a mesh.
+
+Enclosed volume and centroid of a meshed body from its boundary alone, by the divergence theorem.
+
+Mass properties of a meshed solid: mass and centre of mass from the geometry of the elements.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError
+from meshes import Mesh
+from meshes.shape_functions import element_moments, quadrature, shape_functions
+
+
+@dataclass(frozen=True)
+class Material:
+    """A linear elastic, isotropic material.
+
+    Attributes
+    ----------
+    youngs_modulus : float
+        E [Pa].
+    poisson_ratio : float
+        ν, at least 0 and below 0.5.
+    density : float
+        ρ [kg/m³].
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+
+    def __post_init__(self) -> None:
+        if not (self.youngs_modulus > 0.0 and self.density > 0.0):
+            raise HousingError(f"E = {self.youngs_modulus} Pa and ρ = {self.density} kg/m³ must be positive")
+        if not 0.0 <= self.poisson_ratio < 0.5:
+            raise HousingError(f"Poisson's ratio {self.poisson_ratio} must be at least 0 and below 0.5")
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lamé's constants λ and μ [Pa]."""
+        e, nu = self.youngs_modulus, self.poisson_ratio
+        return e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu))
+
+    @property
+    def elasticity(self) -> npt.NDArray[np.float64]:
+        """The tensor c_ijkl = λ δ_ij δ_kl + μ (δ_ik δ_jl + δ_il δ_jk) [Pa], shape (3, 3, 3, 3)."""
+        lam, mu = self.lame
+        d = np.eye(3)
+        return np.asarray(
+            lam * np.einsum("ij,kl->ijkl", d, d)
+            + mu * (np.einsum("ik,jl->ijkl", d, d) + np.einsum("il,jk->ijkl", d, d))
+        )
+
+
+def element_constants(mesh: Mesh, material: Material, materials: Mapping[str, Material]) -> npt.NDArray[np.float64]:
+    """λ, μ [Pa] and ρ [kg/m³] of each element, shape (3, n_elements).
+
+    ``materials`` has those of named volumes of the mesh, ``material`` is that of all other elements.
+
+    Raises
+    ------
+    HousingError
+        Where the mesh has no volume of a name, or two volumes share elements.
+    """
+    constants = np.tile(np.array([*material.lame, material.density])[:, None], mesh.n_elements)
+    owner: dict[int, str] = {}
+    taken = np.zeros(mesh.n_elements, dtype=np.int64)
+    for number, (name, own) in enumerate(materials.items(), start=1):
+        if name not in mesh.volumes:
+            known = ", ".join(sorted(mesh.volumes)) or "none"
+            raise HousingError(f"the mesh has no volume {name!r} to be of its own material; it has: {known}")
+        members = np.asarray(mesh.volumes[name])
+        both = members[taken[members] > 0]
+        if len(both):
+            other = owner[int(taken[both[0]])]
+            raise HousingError(f"volumes {other!r} and {name!r} share {len(both)} elements; each has one material only")
+        owner[number], taken[members] = name, number
+        constants[:, members] = np.array([*own.lame, own.density])[:, None]
+    return constants
+
+
+FloatArray = npt.NDArray[np.float64]
+
+_DEGREE = 6  # of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
+
+
+def enclosed_volume(mesh: Mesh) -> tuple[float, FloatArray]:
+    """Volume and centroid enclosed by the boundary: V = ∮ p·n dA / 3 and V c = ∮ p (p·n) dA / 4.
+
+    The result is independent of the elements' own quadrature and so checks it. With n dA the cross product of the
+    facet's tangents both integrands are polynomials, integrated exactly on curved facets too.
+
+    Returns
+    -------
+    volume : float
+        [m³].
+    centroid : ndarray, shape (3,)
+        [m].
+    """
+    # About the middle of the body, where the sums cancel least.
+    middle = mesh.bounds.mean(axis=0)
+    volume, moment = 0.0, np.zeros(3)
+    for block in mesh.boundary:
+        places, weights = quadrature(block.kind, _DEGREE)
+        values, gradients = shape_functions(block.kind, places)
+        nodes = mesh.points[block.nodes] - middle
+        points = np.einsum("fai,qa->fqi", nodes, values, optimize=True)
+        tangents = np.einsum("fai,qaj->fqij", nodes, gradients, optimize=True)
+        flux = np.einsum("fqi,fqi,q->fq", points, np.cross(tangents[..., 0], tangents[..., 1]), weights)
+        volume += float(flux.sum() / 3.0)
+        moment += np.einsum("fqi,fq->i", points, flux) / 4.0
+    return volume, np.asarray(middle + moment / volume)
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Mass and centre of mass of a solid.
+
+    Attributes
+    ----------
+    mass : float
+        ∫ ρ dV [kg].
+    center : ndarray, shape (3,)
+        ∫ ρ x dV / mass [m].
+    """
+
+    mass: float
+    center: FloatArray
+
+
+def mass_properties(mesh: Mesh, material: Material, materials: Mapping[str, Material] | None = None) -> MassProperties:
+    """Mass and centre of mass of a meshed solid, curved sides included.
+
+    They need no mass matrix, and serve to check one: its rigid-body mass must be the same.
+
+    Parameters
+    ----------
+    mesh, material, materials
+        As for :func:`housing.assemble`.
+    """
+    density = element_constants(mesh, material, materials or {})[2]
+    moments = [element_moments(mesh.points, block.nodes, block.kind) for block in mesh.blocks]
+    mass = density @ np.concatenate([moment.volume for moment in moments])
+    first = density @ np.concatenate([moment.first for moment in moments])
+    return MassProperties(float(mass), np.asarray(first / mass))

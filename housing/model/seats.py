@@ -1,0 +1,118 @@
+"""Bearing seats and sensors: the ports at which the rest of the machine meets the housing.
+
+A bearing seat moves as the rigid motion nearest to its surface's own, in the mean over the area; a sensor moves
+as the point it is glued to (:mod:`housing.model.patches`). Both are linear in the nodes' displacements u,
+``motion = P u``, and a load on the port acts on the nodes by the transpose, so the work done is the same on both sides.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.errors import HousingError
+from housing.fem.surface import surface_point
+from housing.model.patches import patch_matrix, point_matrix
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A bearing seat: six motions of a named surface about a centre.
+
+    Attributes
+    ----------
+    name : str
+        Its surface in the mesh.
+    center : tuple of float
+        The point whose translations x, y, z come first, followed by the rotations about x, y, z [m].
+    diameter : float, optional
+        Of the bore [m], by which the seat is found in a solid or a mesh that does not name its surface.
+    """
+
+    name: str
+    center: tuple[float, float, float]
+    diameter: float | None = None
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """An accelerometer on the surface.
+
+    Attributes
+    ----------
+    name : str
+    position : tuple of float
+        [m]; the nearest point of the surface is taken.
+    direction : tuple of float, optional
+        Where it points, of any length; the outward normal where not given.
+    """
+
+    name: str
+    position: tuple[float, float, float]
+    direction: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class SensorPort:
+    """A sensor on its mesh.
+
+    Attributes
+    ----------
+    name : str
+    matrix : scipy.sparse.csr_array, shape (1, 3 n_nodes)
+        Motion along the direction from the nodes' displacements.
+    position, direction : ndarray, shape (3,)
+        The place on the surface [m] and the unit vector.
+    distance : float
+        From the place asked for to the place found [m].
+    """
+
+    name: str
+    matrix: sparse.csr_array
+    position: FloatArray
+    direction: FloatArray
+    distance: float
+
+
+def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
+    """The rigid motion of a seat at its centre from the nodes' displacements; see
+    :func:`housing.model.patches.patch_matrix`.
+
+    Returns
+    -------
+    scipy.sparse.csr_array, shape (6, 3 n_nodes)
+
+    Raises
+    ------
+    HousingError
+        Where the seat's surface does not span a rigid motion.
+    """
+    return patch_matrix(mesh, mesh.surface(seat.name), np.array(seat.center), name=f"seat {seat.name!r}")
+
+
+def sensor_port(mesh: Mesh, sensor: Sensor) -> SensorPort:
+    """Put a sensor on the surface of the mesh.
+
+    Raises
+    ------
+    HousingError
+        Where its direction has no length.
+    """
+    place = np.array(sensor.position)
+    point = surface_point(mesh, mesh.boundary, place)
+    direction = point.normal if sensor.direction is None else np.array(sensor.direction, dtype=np.float64)
+    length = float(np.linalg.norm(direction))
+    if length == 0.0:
+        raise HousingError(f"sensor {sensor.name!r}: its direction has no length")
+    direction = direction / length
+    return SensorPort(
+        name=sensor.name,
+        matrix=sparse.csr_array(sparse.csr_array(direction[None, :]) @ point_matrix(mesh, point)),
+        position=point.position,
+        direction=direction,
+        distance=float(np.linalg.norm(point.position - place)),
+    )

@@ -1,0 +1,135 @@
+"""Effective modal mass: share of each mode in the housing's mass under rigid motion of the ground.
+
+For a ground that moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that
+is the participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
+frequency that exerts the same force on the ground. Over all modes of the free degrees of freedom
+
+    Σ_r L_r² = Rᵀ M R,
+
+by completeness, so that the share of the discarded modes is known. A free body's rigid modes carry all of it; elastic
+modes are M-orthogonal to R and carry none. A fixed patch moves with the ground: its own mass is in no mode.
+
+Modal damping: damping of the housing's modes by dashpots, mounts and joints.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.fem.matrices import Matrices
+from housing.model.patches import rigid_body, rigid_motions
+from housing.modes.natural_modes import ModeSet
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
+    """Φᵀ C Φ: dashpots, and mounts and joints that damp, in the coordinates of mass-normalised modes.
+
+    With the modes' own ratios ζ the equation of motion is q'' + (diag(2ζω) + Φᵀ C Φ) q' + diag(ω²) q = f. A dashpot
+    acts at one place and so couples the modes: the matrix is full. Residual modes, where the mode set has them, follow
+    the modes.
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+        n modes and residual modes [1/s], symmetric, positive semidefinite.
+    """
+    shapes = modes.shapes.reshape(len(modes.shapes), -1)
+    if modes.residual_modes is not None:
+        shapes = np.vstack([shapes, modes.residual_modes.shapes.reshape(-1, shapes.shape[1])])
+    full = shapes @ (matrices.damping @ shapes.T)
+    return np.asarray(0.5 * (full + full.T))
+
+
+def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatArray) -> FloatArray:
+    """Each mode's own ratio and its share of the modal damping matrix, ζ + (Φᵀ C Φ)_ii / 2ω.
+
+    Parameters
+    ----------
+    frequencies : ndarray, shape (n_modes,)
+        ω [rad/s]; a rigid-body mode has none, so its ratio stays as it is.
+    ratios : ndarray, shape (n_modes,)
+        ζ, parts of critical.
+    damping : ndarray, shape (n, n)
+        Φᵀ C Φ [1/s], the modes first.
+
+    Returns
+    -------
+    ndarray, shape (n_modes,)
+    """
+    elastic = frequencies > 0.0
+    added = np.zeros_like(ratios)
+    added[elastic] = damping.diagonal()[: len(ratios)][elastic] / (2.0 * frequencies[elastic])
+    return np.asarray(ratios + added)
+
+
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class EffectiveMass:
+    """Effective mass along x, y, z [kg] and about axes along them through the centre of gravity [kg m²].
+
+    Attributes
+    ----------
+    participation : ndarray, shape (n_modes, 6)
+        L [√kg, √(kg m²)].
+    total : ndarray, shape (6,)
+        Of the whole body.
+    free : ndarray, shape (6,)
+        Of the degrees of freedom that no support fixes: the sum over all modes.
+    center : ndarray, shape (3,)
+        Centre of gravity [m].
+    """
+
+    participation: FloatArray
+    total: FloatArray
+    free: FloatArray
+    center: FloatArray
+
+    @property
+    def mass(self) -> FloatArray:
+        """Of each mode, L² [kg, kg m²], shape (n_modes, 6)."""
+        return self.participation**2
+
+    @property
+    def fractions(self) -> FloatArray:
+        """Of each mode as a part of the whole body's, shape (n_modes, 6)."""
+        return np.asarray(self.mass / self.total)
+
+    @property
+    def captured(self) -> FloatArray:
+        """Of the modes together as a part of the whole body's, shape (6,)."""
+        return np.asarray(self.mass.sum(axis=0) / self.total)
+
+    @property
+    def missing(self) -> FloatArray:
+        """Of the modes above the limit, as a part of the whole body's, shape (6,)."""
+        return np.asarray((self.free - self.mass.sum(axis=0)) / self.total)
+
+
+def effective_mass(matrices: Matrices, points: FloatArray, modes: ModeSet) -> EffectiveMass:
+    """Participation factors and effective masses for the six rigid motions of the ground.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        Of n_nodes nodes, with supports.
+    points : ndarray, shape (n_nodes, 3)
+        Their places [m].
+    modes : ModeSet
+        Of these matrices.
+    """
+    center = rigid_body(points, matrices).center
+    fields = rigid_motions(points, center).reshape(-1, 6)
+    total = np.einsum("ij,ij->j", fields, matrices.mass @ fields)
+    fields[matrices.fixed] = 0.0
+    moved = matrices.mass @ fields
+    return EffectiveMass(
+        participation=np.asarray(modes.shapes.reshape(len(modes.shapes), -1) @ moved),
+        total=total,
+        free=np.einsum("ij,ij->j", fields, moved),
+        center=center,
+    )

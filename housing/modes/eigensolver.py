@@ -1,0 +1,267 @@
+"""Eigensolvers of K φ = λ M φ in shift-invert mode: the choice of one, and scipy's ``eigsh`` (ARPACK).
+
+The default is block Lanczos (:mod:`housing.modes.eigensolver`). ARPACK, an implicitly restarted Lanczos method, works
+on A = (K - σM)⁻¹ M, which is self-adjoint in the inner product of M and has the eigenvalues ν = 1/(λ - σ). The factor
+of K - σM stands behind ``OPinv``, so that it is shared with the inertia certificate. Modes below σ have ν < 0 and are
+exactly the smallest algebraic ν; modes above σ have ν > 0 and are the largest.
+
+ARPACK may leave out a copy of a multiple mode without notice; the certificate (:mod:`housing.modes.certificate`)
+detects it.
+
+Block Lanczos eigensolver on the shifted inverse: the lowest modes of K φ = λ M φ from few sweeps over a factor.
+
+With A = (K - σM)⁻¹ M, self-adjoint in the product of M, A φ = ν φ and λ = σ + 1/ν. From an M-orthonormal block V₁ the
+recurrence
+
+    A V_j = V_1 T_1j + … + V_j T_jj + V_{j+1} R_j
+
+builds a basis V and T = Vᵀ M A V. A Ritz pair T s = ν s has the residual |R_j s_j| with s_j the last block's part of
+s, so convergence costs nothing to see, and one step of inverse iteration on a Ritz vector is at hand:
+
+    A V s / ν = V s + V_{j+1} R_j s_j / ν.
+
+The modes wanted have the largest ν where σ lies below them all, and the most negative where σ lies above them, with
+the gap from -1/σ to 0 behind them. Every block is orthogonalised against the whole basis after the recurrence, so that
+no mode is found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood
+1977; Grimes, Lewis and Simon 1994); a multiple mode needs a block at least as wide as it is manifold.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+
+from housing.errors import IncompleteModesError
+from housing.fem.linear_algebra import BlockAlgebra, Operator
+
+FloatArray = npt.NDArray[np.float64]
+
+TOLERANCE = 1e-9
+"""Of a Ritz pair's residual, as a part of ν."""
+
+_BLOCK = 8
+_DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
+_NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
+_ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
+_ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
+
+
+def block_lanczos(
+    solve: Callable[[FloatArray], FloatArray],
+    mass: Operator,
+    shift: float,
+    count: int,
+    *,
+    above: bool = False,
+    seed: int = 0,
+    threads: int = 1,
+    tolerance: float = TOLERANCE,
+) -> tuple[FloatArray, FloatArray]:
+    """The modes nearest to a shift on one side of it.
+
+    Parameters
+    ----------
+    solve : callable
+        X from (K - σM) X = Y, shape (n, m) both.
+    mass : matrix or operator, shape (n, n)
+        M [kg].
+    shift : float
+        σ [rad²/s²].
+    count : int
+        Number of modes.
+    above : bool
+        Whether the shift lies above the modes wanted, which are then all modes below it, rather than below them.
+    seed : int
+        Of the random starting block; each also doubles its width.
+    threads : int
+        Number of threads that orthogonalise; the modes are the same to the last bit for any number.
+    tolerance : float
+        Of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of that.
+
+    Returns
+    -------
+    values : ndarray, shape (count,)
+        λ, ascending [rad²/s²].
+    vectors : ndarray, shape (n, count)
+        φ, with φᵀ M φ = 1.
+
+    Raises
+    ------
+    IncompleteModesError
+        Where the modes do not converge.
+    """
+    n = mass.shape[0]
+    width = min(_BLOCK * 2**seed, n)
+    most = min(n, 8 * count + 40 * width)
+    # The operating system allocates only the pages that are used.
+    basis, inertia = (np.empty((n, most + width), order="F") for _ in range(2))
+    small = np.zeros((most + 2 * width, most + 2 * width))  # also of the block that no longer fits the basis
+    sign = -1.0 if above else 1.0
+
+    algebra = BlockAlgebra(n, threads)
+    start = np.random.default_rng(seed).standard_normal((n, width))
+    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
+    begin, size, checked = 0, 0, 0
+    while found.block.shape[1] and size + found.block.shape[1] <= most + width:
+        previous, begin, size = begin, size, size + found.block.shape[1]
+        basis[:, begin:size], inertia[:, begin:size] = found.block, found.inertia
+        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, algebra)
+        small[:size, begin:size] = found.projections[:size]
+        remainder = found.projections[size:]
+        whole = found.block.shape[1] == 0
+        # Once in a twentieth of the basis: the small eigenproblem must not outgrow the large one.
+        if size >= count and (whole or size - checked >= size // 20 or size + width > most):
+            checked = size
+            nu, mixtures = np.linalg.eigh(0.5 * (small[:size, :size] + small[:size, :size].T))
+            chosen = np.argsort(-sign * nu)[:count]
+            wanted, mixture = nu[chosen], mixtures[:, chosen]
+            outside = remainder @ mixture[begin:]
+            errors = np.linalg.norm(outside, axis=0)
+            if whole or (np.all(sign * wanted > 0.0) and np.all(errors < tolerance * np.abs(wanted))):
+                # Basis and block are orthonormal, so that the norms follow from the coefficients.
+                step = outside / wanted
+                norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
+                order = np.argsort(1.0 / wanted)
+                vectors = algebra.combined(found.block, (step / norms)[:, order])
+                algebra.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
+                return shift + 1.0 / wanted[order], vectors
+        small[size : size + len(remainder), begin:size] = remainder
+        small[begin:size, size : size + len(remainder)] = remainder.T
+    raise IncompleteModesError(
+        f"Lanczos did not converge to {count} modes with a basis of {size}; ask for fewer, move the limit a little or "
+        "refine the mesh"
+    )
+
+
+@dataclass(frozen=True)
+class _Addition:
+    """Extension of a basis of m vectors by a block.
+
+    Attributes
+    ----------
+    block : ndarray, shape (n, r)
+        M-orthonormal columns, orthogonal to the basis; r = 0 where the block lies in it.
+    inertia : ndarray, shape (n, r)
+        M times these, contiguous.
+    projections : ndarray, shape (m + r, width)
+        The block in terms of the basis and the new columns.
+    """
+
+    block: FloatArray
+    inertia: FloatArray
+    projections: FloatArray
+
+
+def _orthonormal(
+    basis: FloatArray,
+    inertia_of_basis: FloatArray,
+    recent: int,
+    block: FloatArray,
+    mass: Operator,
+    algebra: BlockAlgebra,
+) -> _Addition:
+    """Orthonormalise a block against a basis V, given M V.
+
+    First the ``recent`` last vectors of the basis are projected out, which in exact arithmetic is everything; then all
+    of them.
+    """
+    within = np.zeros((basis.shape[1], block.shape[1]))
+    last = slice(basis.shape[1] - recent, None)
+    within[last] = algebra.products(inertia_of_basis[:, last], block)
+    algebra.subtract(block, basis[:, last], within[last])
+    again = algebra.products(inertia_of_basis, block)
+    algebra.subtract(block, basis, again)
+    within += again
+    inertia = mass @ block
+    products = algebra.products(block, inertia)
+    left = np.sqrt(np.maximum(products.diagonal(), 0.0))
+    given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
+    kept = left > _DEPENDENT * given
+    values, turn = np.linalg.eigh(products[np.ix_(kept, kept)] / np.outer(left[kept], left[kept]))
+    mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
+    mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
+    new, new_inertia, shares = (
+        algebra.combined(block, mixture),
+        algebra.combined(inertia, mixture),
+        mixture.T @ products,
+    )
+    if new.shape[1]:
+        # Scaling up the remainder of a block that nearly lay in the basis scales up its rounding: once more.
+        if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
+            algebra.subtract(new, basis, algebra.products(inertia_of_basis, new))
+            new_inertia = mass @ new
+            shares = algebra.products(new, inertia)
+        own = algebra.products(new, new_inertia)
+        if np.abs(own - np.eye(len(own))).max() > _ORTHONORMAL:
+            unit = np.linalg.inv(np.linalg.cholesky(own)).T
+            new, new_inertia = algebra.combined(new, unit), algebra.combined(new_inertia, unit)
+            shares = algebra.products(new, inertia)
+    return _Addition(new, new_inertia, np.vstack([within, shares]))
+
+
+Solver = Literal["lanczos", "eigsh"]
+
+DEFAULT_SOLVER: Solver = "lanczos"
+"""At least 1.3 times faster than eigsh from factor to certificate, see benchmarks/README.md."""
+
+_LEAST_BASIS = 20  # vectors, ARPACK's own least
+_BASIS = 3  # vectors for each mode: with two, the default, restarts cost a third more
+
+
+def arpack_modes(
+    solve: Callable[[FloatArray], FloatArray],
+    mass: Operator,
+    shift: float,
+    count: int,
+    *,
+    above: bool = False,
+    seed: int = 0,
+    tolerance: float = 0.0,
+) -> tuple[FloatArray, FloatArray]:
+    """The modes nearest to a shift on one side of it, by ``scipy.sparse.linalg.eigsh``.
+
+    Parameters
+    ----------
+    solve, mass, shift, count, above
+        As :func:`housing.modes.eigensolver.block_lanczos`.
+    seed : int
+        Of the start vector; each also doubles the basis.
+    tolerance : float
+        Of a Ritz pair's residual as a part of ν; 0 is rounding.
+
+    Returns
+    -------
+    values : ndarray, shape (count,)
+        λ, ascending [rad²/s²].
+    vectors : ndarray, shape (n, count)
+        φ, with φᵀ M φ = 1.
+
+    Raises
+    ------
+    IncompleteModesError
+        Where the modes do not converge.
+    """
+    n = mass.shape[0]
+    start = solve(mass @ np.random.default_rng(seed).standard_normal(n))
+    try:
+        values, vectors = eigsh(
+            LinearOperator((n, n), matvec=lambda x: x, dtype=np.float64),  # K itself is not used: OPinv stands for it
+            k=count,
+            M=LinearOperator((n, n), matvec=lambda x: mass @ x, dtype=np.float64),
+            sigma=shift,
+            which="SA" if above else "LA",
+            v0=start,
+            ncv=min(n, max(_BASIS * count, _LEAST_BASIS) * 2**seed),
+            tol=tolerance,
+            OPinv=LinearOperator((n, n), matvec=solve, dtype=np.float64),
+        )
+    except ArpackError as error:
+        raise IncompleteModesError(
+            f"eigsh did not converge to {count} modes ({error}); ask for fewer, move the limit a little or refine the "
+            "mesh"
+        ) from error
+    order = np.argsort(values)
+    return values[order], np.asfortranarray(vectors[:, order])

@@ -1,0 +1,247 @@
+"""Natural modes of the housing, with the proof that none is missing (:mod:`housing.modes.certificate`).
+
+Residual attachment modes for an existing mode set, read from a file or solved for with other ports.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import get_args
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.errors import HousingError
+from housing.fem.factorization import Backend, Factorization, Factorizer
+from housing.fem.matrices import FreeSystem, Matrices
+from housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
+from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
+from housing.modes.residual_modes import ResidualModes, residual_attachment_modes
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_ALIKE = 1e-6  # part of the largest entry by which another may be smaller and count as large
+
+
+@dataclass(frozen=True)
+class ModeSet:
+    """Natural modes, ascending.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (n_modes,)
+        ω [rad/s]; rigid-body modes are exactly 0.
+    shapes : ndarray, shape (n_modes, n_nodes, 3)
+        Displacement at each node, normalised to φᵀ M φ = 1 [1/√kg].
+    certificate : Certificate
+        Of the modes as they were found; the residual modes then reduce their residuals further.
+    seconds : dict of str to float
+        Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
+    backend : str
+        Which factorisation was used.
+    shift : float
+        The eigenvalue about which the modes were searched [rad²/s²].
+    threads : int
+        Workers of the factorisation.
+    attachments : Attachments or None
+        Residual modes, which complete the static response to loads at the ports, where ports were given.
+    """
+
+    frequencies: FloatArray
+    shapes: FloatArray
+    certificate: Certificate
+    seconds: dict[str, float]
+    backend: str
+    shift: float
+    threads: int
+    residual_modes: ResidualModes | None = None
+
+    @property
+    def frequencies_hz(self) -> FloatArray:
+        """[Hz], shape (n_modes,)."""
+        return self.frequencies / (2.0 * np.pi)
+
+    def project(self, port: sparse.csr_array) -> FloatArray:
+        """The modes' motions at a port, shape (n_modes, n_motions)."""
+        return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
+
+    def project_all(self, port: sparse.csr_array) -> FloatArray:
+        """Motions at a port of the modes, then of the residual modes, shape (n_modes + n_residual, n_motions)."""
+        modes = self.project(port)
+        return modes if self.residual_modes is None else np.vstack([modes, self.residual_modes.project(port)])
+
+
+def solve_modes(
+    matrices: Matrices,
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+    draft: bool = False,
+    ports: sparse.csr_array | None = None,
+    port_orders: int = 1,
+    solver: Solver = DEFAULT_SOLVER,
+    backend: Backend | None = None,
+    threads: int = 2,
+    progress: Callable[[str], None] = lambda message: None,
+) -> ModeSet:
+    """Solve for all natural modes below a frequency, or for a number of the lowest.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        Of n_nodes nodes, with the supports and whatever else is attached to them, see :func:`housing.attach_fixtures`.
+    frequency_limit : float
+        Every mode below it is found [rad/s]. Either this or ``count``.
+    count : int
+        Number of the lowest modes; a multiple mode at the end is completed.
+    draft : bool
+        Of ``count``: skip the inertia count behind the last mode, in two thirds of the time. The last modes are less
+        accurate (their λ to some 1e-8), and the certificate is not complete.
+    ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
+        Motions whose static compliance the mode set is to hold exactly, by residual modes.
+    port_orders : int
+        Responses for each of these motions: 1, the static one; 2, that at the limit too; see
+        :func:`housing.modes.residual_modes.residual_attachment_modes`.
+    solver : {"lanczos", "eigsh"}
+        Own block Lanczos, or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
+    backend, threads
+        See :class:`housing.fem.factorization.Factorizer`.
+    progress : callable
+        Called with a line of text before each step.
+
+    Raises
+    ------
+    HousingError
+        Where neither or both of limit and count are given, they ask for nothing or for everything, or the solver is
+        unknown.
+    IncompleteModesError
+        Where the certificate is not complete after three searches.
+    ReductionError
+        Where the static compliance at the ports fails its proof.
+    """
+    if (frequency_limit is None) == (count is None):
+        raise HousingError("give a frequency limit or a number of modes, one of the two")
+    system = FreeSystem(matrices, threads=threads)
+    most = min(system.size - 2, MOST_MODES)
+    if count is not None and not 1 <= count <= most:
+        raise HousingError(f"{count} modes asked of {system.size} degrees of freedom: give 1 to {most}")
+    if draft and (count is None or ports is not None):
+        raise HousingError("a draft is of a number of modes, without ports")
+    if frequency_limit is not None and frequency_limit <= 0.0:
+        raise HousingError(f"frequency limit {frequency_limit} rad/s must be positive")
+
+    if solver not in get_args(Solver):
+        raise HousingError(f"eigensolver {solver!r}; expected one of {', '.join(map(repr, get_args(Solver)))}")
+    factorizer = Factorizer(backend=backend, threads=threads)
+    factorizer.order_ahead(system.stiffness)
+    search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
+    found = (
+        search.below(frequency_limit, progress)
+        if frequency_limit is not None
+        else search.lowest(count or 0, progress, draft=draft)
+    )
+    values, vectors = found.values, _oriented(found.vectors)
+    values[np.abs(values) < 1e-6 * search.floor] = 0.0
+    if values[0] < -search.floor:
+        raise indefinite_stiffness_error(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
+    residual_modes = None
+    if ports is not None:
+        start = time.perf_counter()
+        progress("attaching the static response at the ports")
+        residual_modes, vectors = residual_attachment_modes(
+            system.stiffness,
+            system.mass,
+            found.factor.solve,
+            values,
+            vectors,
+            ports[:, system.free],
+            shift=found.certificate.limit**2,
+            floor=search.floor,
+            free=system.free,
+            n_nodes=system.n_nodes,
+            orders=port_orders,
+        )
+        search.seconds["reduction"] = time.perf_counter() - start
+    return ModeSet(
+        frequencies=np.sqrt(np.maximum(values, 0.0)),
+        shapes=system.expand(vectors),
+        certificate=found.certificate,
+        seconds=search.seconds,
+        backend=found.factor.backend,
+        shift=found.shift,
+        threads=threads,
+        residual_modes=residual_modes,
+    )
+
+
+def _oriented(vectors: FloatArray) -> FloatArray:
+    """The same vectors with their largest entry positive, so that equal input draws equal pictures.
+
+    Of entries that symmetry makes equally large, the first counts, or rounding would choose.
+    """
+    size = np.abs(vectors)
+    largest = np.argmax(size >= (1.0 - _ALIKE) * size.max(axis=0), axis=0)
+    return np.asarray(vectors * np.sign(vectors[largest, np.arange(vectors.shape[1])]))
+
+
+def add_residual_modes(
+    matrices: Matrices,
+    modes: ModeSet,
+    ports: Sequence[sparse.csr_array] | sparse.csr_array,
+    *,
+    factor: Factorization | None = None,
+    shift: float | None = None,
+    backend: Backend | None = None,
+    threads: int = 2,
+) -> ModeSet:
+    """Add residual modes to a mode set, so that the static compliance at the ports is exact.
+
+    The shapes stay the same to the error of their certificate, which Eq. (3) of :mod:`housing.modes.residual_modes`
+    reduces.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        The matrices of the modes, supports included.
+    modes : ModeSet
+        Complete up to its limit; its own residual modes are replaced.
+    ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
+        Such as those of :func:`housing.seat_matrix`; the static compliance has their order.
+    factor, shift : Factorization and float, optional
+        A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
+        neither.
+    backend, threads
+        See :class:`housing.fem.factorization.Factorizer`; used where no factor is given.
+
+    Raises
+    ------
+    HousingError, ReductionError
+        See :func:`housing.modes.residual_modes.residual_attachment_modes`.
+    """
+    system = FreeSystem(matrices, threads=threads)
+    floor = system.floor(modes.certificate.limit)
+    if factor is None or shift is None:
+        shift = -floor
+        factor = Factorizer(backend=backend, threads=threads).factor(system.shifted(shift))
+    residual_modes, vectors = residual_attachment_modes(
+        system.stiffness,
+        system.mass,
+        factor.solve,
+        modes.frequencies**2,
+        modes.shapes.reshape(len(modes.shapes), -1).T[system.free],
+        stacked(ports)[:, system.free],
+        shift=shift,
+        floor=floor,
+        free=system.free,
+        n_nodes=system.n_nodes,
+    )
+    return replace(modes, shapes=system.expand(vectors), residual_modes=residual_modes)
+
+
+def stacked(ports: Sequence[sparse.csr_array] | sparse.csr_array) -> sparse.csr_array:
+    """Several ports as one, their motions in order."""
+    if isinstance(ports, sparse.csr_array):
+        return ports
+    return sparse.csr_array(sparse.vstack(list(ports), format="csr"))

@@ -1,0 +1,451 @@
+"""Residual attachment modes (MacNeal, Rubin): they complete the static compliance of the kept modes at the ports.
+
+Kept modes Φ (φᵀ M φ = 1, eigenvalues λ) answer a static port load f = Pᵀ with Σ φ φᵀ f / λ. All the discarded ones
+together answer with the *residual vectors*
+
+    X = Σ_discarded φ φᵀ Pᵀ / λ,        K X = F,   F = (I - M Φ Φᵀ) Pᵀ,   Φᵀ M X = 0,                    (1)
+
+which need no discarded mode to be known: on the M-orthogonal complement of Φ the stiffness is positive definite,
+free body or not, since a free body's rigid modes are among Φ. There (1) is solved with the factor of A = K - σM that
+the eigensolution has at hand, σ below all modes or between the kept and the discarded ones, so that A is positive
+definite on the complement too. In the sweep
+
+    X <- X + A⁻¹ (F - K X)                                                                               (2)
+
+the error becomes (I - A⁻¹ K) E. Both matrices are diagonal in the modes, so that each discarded mode's part is
+multiplied by -σ / (λ - σ): small for σ slightly below zero, where the plain sweep settles quickly, and for modes well
+above a positive σ. Conjugate gradients preconditioned by A⁻¹ take the same sweeps, need fewer of them, and converge for
+the modes just above a positive σ too: a handful of eigenvalues λ / (λ - σ) of A⁻¹ K apart from a cluster at one. The
+directions of all loads serve each of them (block conjugate gradients, O'Leary 1980, Linear Algebra and its
+Applications 29), so that with r loads r - 1 of these eigenvalues take no sweeps of their own.
+
+The span of X is then made a set of modes of its own: orthonormal in M to Φ and in itself, with a diagonal stiffness
+(Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2006, chapter 17, on residual attachment modes; after
+MacNeal 1971 and Rubin 1975). By Galerkin's argument its compliance at the ports errs by the square of the error
+of X. Modes and attachments side by side are a component with the unit mass, a diagonal stiffness and the exact static
+compliance at its ports.
+
+*Near the limit* the discarded modes no longer answer statically: their part in a receptance is Σ φ φᵀ / (λ - ω²), from
+which the static response differs by ω² / λ of each mode's part, by all of it at a mode just above the limit. The factor
+of A with σ at the limit gives the response there and its derivatives by ω²,
+
+    X_1 = A⁻¹ F,    X_j = A⁻¹ M X_{j-1},        A = K - σM on the complement.                             (5)
+
+With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any point is exact at rest and at the limit
+(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The attachments of the lowest frequencies then
+come close to the modes just above the limit, as far as the ports drive them.
+
+Computed modes have a residual, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness leaves out:
+an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode beside the
+limit. Rayleigh-Ritz in the space of both removes it. To first order it rotates each pair by
+
+    s = ψᵀ r / (λ - ω²),        φ <- φ + s ψ,   ψ <- ψ - s φ,                                             (3)
+
+which moves φ towards the exact mode, and leaves couplings of second order. The rotation is no more than the error of a
+certified mode; modes with larger errors are left as they are, and the proof refuses them.
+
+*Proof.* Let U be the displacements by modes and residual modes for the loads F of all ports, and R = F - K U the
+unbalanced loads. For any U the exact compliance is
+
+    C = Uᵀ F + Fᵀ U - Uᵀ K U + Rᵀ K⁻¹ R,                                                                 (4)
+
+all of it computable but the last term, of second order, which is bounded by one more solve: the kept modes' part of R
+divided by λ, and for the rest rᵀ K⁻¹ r <= (1 + |min(σ, 0)| / λ_kept) rᵀ A⁻¹ r, since A differs from K by σM. The error
+reported is the difference of this C from the compliance by U, plus the bound.
+
+The compliance is the elastic one: modes with λ <= floor are left out of it, rigid and nearly rigid ones. For
+a free body this is its inertia-relief compliance Sᵀ G S with S = I - M Φ_rigid Φ_rigidᵀ: the load is balanced by the
+inertia of the accelerated body. A body on mounts that are soft beside the limit is held to the same, stricter measure.
+
+Subset of residual modes that spans the responses of lower order to loads at the ports.
+
+A set of residual modes that holds the static response of the discarded modes and their responses at the limit
+(:mod:`housing.modes.residual_modes`, Eq. 5) holds smaller sets too. In its own coordinates, with frequencies ω and
+motions p of the ports, the response to a load is p / ω² at rest, p / (ω² - σ) at ω² = σ, and p / (ω² - σ)^j its
+derivatives there. These span the set of fewer orders; the difference between the two sets shows what the further
+orders contribute.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg, sparse
+
+from housing.errors import HousingError, ReductionError
+from housing.fem.linear_algebra import Operator
+from housing.modes.certificate import RESIDUAL_BOUND
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+Solve = Callable[[FloatArray], FloatArray]
+
+STATIC_BOUND = 1e-10
+OVERLAP_BOUND = 1e-8
+_SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
+_NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
+_ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
+_ALIKE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
+_MOST_SWEEPS = 200
+
+
+@dataclass(frozen=True)
+class StaticProof:
+    """The static compliance at the ports, and the bound of its error; r port motions.
+
+    Attributes
+    ----------
+    compliance : ndarray, shape (r, r)
+        Elastic compliance: motion of one port by a unit load on another [m/N, rad/N, rad/(N m)].
+    missing : ndarray, shape (r, r)
+        Its residual part, which the kept modes alone do not hold.
+    error : float
+        Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and residual modes and C
+        the exact compliance of Eq. (4).
+    overlap : float
+        Largest |φᵀ M ψ| of two different vectors among modes and residual modes, and |ψᵀ M ψ - 1|.
+    sweeps : int
+        Solves with the factor of A for all ports at once, before the last one for the bound.
+    """
+
+    compliance: FloatArray
+    missing: FloatArray
+    error: float
+    overlap: float
+    sweeps: int
+
+    @property
+    def missing_parts(self) -> FloatArray:
+        """Residual part of each port's own compliance, shape (r,): the error of the kept modes alone."""
+        own = self.compliance.diagonal()
+        return np.asarray(self.missing.diagonal() / np.where(own > 0.0, own, 1.0))
+
+
+@dataclass(frozen=True)
+class ResidualModes:
+    """Residual attachment modes: k of them, at most one for each port motion and order of response.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (k,)
+        ω with ψᵀ K ψ = ω² [rad/s], ascending: the Rayleigh quotients of the residual modes, above all kept
+        frequencies; no natural frequencies of the housing.
+    shapes : ndarray, shape (k, n_nodes, 3)
+        ψᵀ M ψ = 1 [1/√kg], and no mass in common with the modes or each other.
+    proof : StaticProof
+    """
+
+    frequencies: FloatArray
+    shapes: FloatArray
+    proof: StaticProof
+
+    def project(self, port: sparse.csr_array) -> FloatArray:
+        """The residual modes' motions at a port, shape (k, n_motions)."""
+        return np.asarray((port @ self.shapes.reshape(len(self.shapes), port.shape[1]).T).T)
+
+
+def residual_attachment_modes(
+    stiffness: Operator,
+    mass: Operator,
+    solve: Solve,
+    values: FloatArray,
+    vectors: FloatArray,
+    ports: sparse.csr_array,
+    *,
+    shift: float,
+    floor: float,
+    free: IntArray,
+    n_nodes: int,
+    orders: int = 1,
+) -> tuple[ResidualModes, FloatArray]:
+    """Compute residual attachment modes, and prove that they make the static compliance at the ports exact.
+
+    Parameters
+    ----------
+    stiffness, mass : matrix or operator, shape (n, n)
+        K [N/m] and M [kg] on the free degrees of freedom.
+    solve : callable
+        X = A⁻¹ B with A = K - shift M, for B of shape (n, m).
+    values : ndarray, shape (p,)
+        λ = ω² of the kept modes [rad²/s²], every one below some limit.
+    vectors : ndarray, shape (n, p)
+        Φ, with Φᵀ M Φ = I.
+    ports : scipy.sparse.csr_array, shape (r, n)
+        P: motions at the ports from the free degrees of freedom; loads act by its transpose.
+    shift : float
+        σ [rad²/s²]: below zero, or above every kept eigenvalue and below every discarded one.
+    floor : float
+        λ up to which a mode counts as rigid [rad²/s²].
+    free : ndarray of int, shape (n,)
+        Where these degrees of freedom stand among the mesh's 3 n_nodes.
+    n_nodes : int
+        Nodes of the mesh.
+    orders : int
+        Responses for each port motion: 1, the static one; 2, that at ω² = shift beside it; more, its derivatives by ω²
+        there too, see Eq. (5).
+
+    Returns
+    -------
+    attachments : Attachments
+    vectors : ndarray, shape (n, p)
+        Φ, turned by Eq. (3).
+
+    Raises
+    ------
+    HousingError
+        Where the shapes of the arrays do not fit, or the shift stands among the kept modes.
+    ReductionError
+        Where the sweeps do not converge or the result fails its proof.
+    """
+    n = stiffness.shape[0]
+    if ports.shape[1] != n or vectors.shape != (n, len(values)) or len(free) != n:
+        raise HousingError(
+            f"ports of shape {ports.shape}, modes of shape {vectors.shape} with {len(values)} values and {len(free)} "
+            f"places for a stiffness of order {n}; expected (r, {n}), ({n}, p) with p values, and {n} places"
+        )
+    if not (shift < 0.0 or shift > values.max(initial=0.0)):
+        raise HousingError(f"a shift of {shift:g} rad²/s²; expected it below zero or above every kept mode")
+    inertia = np.asarray(mass @ vectors)
+    loads = np.asarray(ports.T.toarray(), dtype=np.float64)
+    motions = vectors.T @ loads
+    elastic = values > floor
+    modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
+
+    residual, sweeps = _static_response(stiffness, solve, loads, vectors, inertia, _SETTLED, modal.diagonal())
+    span = _independent(stiffness, residual, modal.diagonal())
+    response = loads
+    for _ in range(orders - 1):
+        response = _complement_solve(solve, response, vectors, inertia)
+        span = _extended(stiffness, span, response)
+        response = np.asarray(mass @ response)
+    squared, shapes = _orthonormal(stiffness, mass, span, vectors, inertia)
+    turn = _turn(stiffness, squared, shapes, values, vectors)
+    inertia += np.asarray(mass @ shapes) @ turn
+    vectors, shapes = vectors + shapes @ turn, shapes - vectors @ turn.T
+    motions = vectors.T @ loads
+    modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
+    found = (ports @ shapes).T
+    missing = (found.T / squared) @ found
+    # Each load without the part that accelerates rigid modes, and the displacements found for it.
+    balanced = loads - inertia[:, ~elastic] @ motions[~elastic]
+    claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (found / squared[:, None])
+    slack = 1.0 + max(-shift, 0.0) / max(float(values.max(initial=0.0)), floor)
+    proof = StaticProof(
+        compliance=modal + missing,
+        missing=missing,
+        error=_static_error(stiffness, solve, balanced, claimed, modal + missing, values, vectors, inertia, slack),
+        overlap=_overlap(mass, shapes, inertia),
+        sweeps=sweeps,
+    )
+    if not (proof.error <= STATIC_BOUND and proof.overlap <= OVERLAP_BOUND):
+        raise ReductionError(
+            f"modes and residual attachments miss the static compliance at the ports by {proof.error:.1e} and overlap "
+            f"by {proof.overlap:.1e}, bounds {STATIC_BOUND:.0e} and {OVERLAP_BOUND:.0e}: the modes are not exact "
+            "ones of this stiffness and mass; solve for them again"
+        )
+    full = np.zeros((len(squared), 3 * n_nodes))
+    full[:, free] = shapes.T
+    return ResidualModes(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof), vectors
+
+
+def _static_response(
+    stiffness: Operator,
+    solve: Solve,
+    loads: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+    settled: float,
+    known: FloatArray | float = 0.0,
+) -> tuple[FloatArray, int]:
+    """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took.
+
+    Block conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹: each sweep minimises the
+    energy of every column over all columns' directions D, with Dᵀ K D = I. The iteration ends where a sweep moves no
+    column by more than a part ``settled`` in the norm of the strain energy. ``known`` [m/N] is the compliance held
+    already, added to the columns' own as the measure where little is left.
+    """
+    x = np.zeros_like(loads)
+    left = loads - inertia @ (vectors.T @ loads)
+    directions = held = np.zeros((len(loads), 0))
+    scale = np.ones(0)
+    for sweep in range(1, _MOST_SWEEPS + 1):
+        step = solve(left)
+        step -= vectors @ (inertia.T @ step)
+        product = np.asarray(stiffness @ step)
+        if sweep > 1:
+            before = held.T @ step
+            step -= directions @ before
+            product -= held @ before
+        energy = step.T @ product
+        if sweep == 1:
+            # Loads are scaled by their response, so that forces and moments count alike.
+            scale = _ratio(np.ones(len(energy)), np.sqrt(np.maximum(energy.diagonal(), 0.0)))
+        shares, mixture = np.linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
+        # A direction that the others have already waits until it is no longer rounding beside them.
+        new = shares > _ALIKE * max(shares.max(initial=0.0), 0.0)
+        mixture = scale[:, None] * mixture[:, new] / np.sqrt(shares[new])
+        directions, held = step @ mixture, product @ mixture
+        length = directions.T @ left
+        x += directions @ length
+        left -= held @ length
+        moved = np.einsum("ij,ij->j", length, length)
+        if np.all(moved <= settled**2 * (known + np.einsum("ij,ij->j", loads, x))):
+            return x - vectors @ (inertia.T @ x), sweep
+    raise ReductionError(
+        f"the static response to the ports' loads has not settled after {_MOST_SWEEPS} sweeps: the stiffness is not "
+        "positive semidefinite, or the modes are not its own"
+    )
+
+
+def _complement_solve(solve: Solve, right: FloatArray, vectors: FloatArray, inertia: FloatArray) -> FloatArray:
+    """A⁻¹ of loads in the M-orthogonal complement of the modes: the response of the discarded modes at ω² = σ."""
+    found = solve(right - inertia @ (vectors.T @ right))
+    return np.asarray(found - vectors @ (inertia.T @ found))
+
+
+def _independent(stiffness: Operator, residual: FloatArray, known: FloatArray) -> FloatArray:
+    """Residual vectors orthonormal in K that span the given ones.
+
+    Loads are measured by the response that they find, so that a port of rotations counts like one of translations;
+    combinations of them whose response adds less than a part of 1e-12 to the ports' compliance are dropped.
+    """
+    energy = residual.T @ (stiffness @ residual)
+    whole = known + energy.diagonal()
+    scale = 1.0 / np.sqrt(np.where(whole > 0.0, whole, 1.0))
+    shares, mixture = linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
+    new = shares > _NOTHING_NEW
+    return np.asarray((residual * scale) @ (mixture[:, new] / np.sqrt(shares[new])))
+
+
+def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> FloatArray:
+    """Extend vectors orthonormal in K by the part of further ones outside their span.
+
+    A combination that adds less than a part of 1e-10 of its own strain energy is dropped.
+    """
+    held = np.asarray(stiffness @ further)
+    own = np.einsum("ij,ij->j", further, held)
+    scale = _ratio(np.ones(len(own)), np.sqrt(np.maximum(own, 0.0)))
+    further, held = further * scale, held * scale
+    for _ in range(2):
+        # Twice, for the rounding that the first time leaves.
+        further = further - span @ (span.T @ held)
+        held = np.asarray(stiffness @ further)
+    energy = further.T @ held
+    shares, mixture = linalg.eigh(0.5 * (energy + energy.T))
+    new = shares > _ADDS_NOTHING
+    return np.hstack([span, further @ (mixture[:, new] / np.sqrt(shares[new]))])
+
+
+def _orthonormal(
+    stiffness: Operator, mass: Operator, shapes: FloatArray, vectors: FloatArray, inertia: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """ω² and M-orthonormal shapes with the span of the given ones, less the modes', that diagonalise K, ascending."""
+    # Twice: the first pass mixes vectors of very different mass, whose rounding the second takes off.
+    squared = np.zeros(shapes.shape[1])
+    for _ in range(2):
+        shapes = shapes - vectors @ (inertia.T @ shapes)
+        squared, mixture = linalg.eigh(shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes))
+        shapes = shapes @ mixture
+    largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
+    return squared, np.asarray(shapes * np.sign(largest))
+
+
+def _turn(
+    stiffness: Operator, squared: FloatArray, shapes: FloatArray, values: FloatArray, vectors: FloatArray
+) -> FloatArray:
+    """The s of Eq. (3) for each attachment and mode, shape (k, p); 0 where they are farther off than modes may be."""
+    coupling = np.asarray(stiffness @ shapes).T @ vectors
+    apart = values - squared[:, None]
+    small = np.abs(coupling) <= RESIDUAL_BOUND * np.abs(apart)
+    return np.asarray(np.divide(coupling, apart, out=np.zeros_like(coupling), where=small & (apart != 0.0)))
+
+
+def _overlap(mass: Operator, shapes: FloatArray, inertia: FloatArray) -> float:
+    own = shapes.T @ (mass @ shapes) - np.eye(shapes.shape[1])
+    return float(max(np.abs(own).max(initial=0.0), np.abs(inertia.T @ shapes).max(initial=0.0)))
+
+
+def _static_error(
+    stiffness: Operator,
+    solve: Solve,
+    loads: FloatArray,
+    claimed: FloatArray,
+    compliance: FloatArray,
+    values: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+    slack: float,
+) -> float:
+    """The bound of :class:`StaticProof` by Eq. (4), from the displacements claimed for the balanced loads."""
+    held = np.asarray(stiffness @ claimed)
+    left = loads - held
+    cross = claimed.T @ loads
+    exact = cross + cross.T - claimed.T @ held
+    along = vectors.T @ left
+    beyond = left - inertia @ along
+    solved = solve(beyond)
+    unknown = slack * np.maximum(np.einsum("ij,ij->j", beyond, solved - vectors @ (inertia.T @ solved)), 0.0)
+    elastic = values > 0.0
+    unknown += (along[elastic] ** 2 / values[elastic][:, None]).sum(axis=0)
+    own = compliance.diagonal()
+    size = np.sqrt(np.where(own > 0.0, own, 1.0))
+    rest = np.sqrt(unknown)
+    return float(((np.abs(exact - compliance) + np.outer(rest, rest)) / np.outer(size, size)).max(initial=0.0))
+
+
+def _ratio(top: FloatArray, bottom: FloatArray) -> FloatArray:
+    """top / bottom, and 0 where a column has settled to nothing."""
+    return np.asarray(np.divide(top, bottom, out=np.zeros_like(top), where=bottom > 0.0))
+
+
+_SAME = 1e-6  # part of a response's strain energy, in its root, below which it adds nothing to others
+
+
+def leading_residual_modes(
+    residual_modes: ResidualModes, ports: sparse.csr_array, shift: float, orders: int
+) -> tuple[ResidualModes, FloatArray]:
+    """The residual modes of fewer orders that a set of more orders holds.
+
+    Parameters
+    ----------
+    attachments : Attachments
+        k of them.
+    ports : scipy.sparse.csr_array, shape (r, 3 n_nodes)
+        Motions of the ports that they belong to.
+    shift : float
+        σ [rad²/s²] of their dynamic responses: the square of the limit of the modes that they join.
+    orders : int
+        Responses kept for each port motion: 1, the static one; 2, that at the limit too; and so on.
+
+    Returns
+    -------
+    attachments : Attachments
+        l <= k of them, with the proof of the whole set, whose static compliance they share.
+    mixture : ndarray, shape (k, l)
+        Their coefficients in terms of the given ones.
+
+    Raises
+    ------
+    HousingError
+        For less than one order.
+    """
+    if orders < 1:
+        raise HousingError(f"{orders} orders of response; expected 1 or more")
+    squared = residual_modes.frequencies**2
+    if not squared.size:
+        return residual_modes, np.zeros((0, 0))
+    response = residual_modes.project(ports)
+    parts = [response / squared[:, None]]
+    for _ in range(orders - 1):
+        response = response / (squared - shift)[:, None]
+        parts.append(response)
+    # In coordinates of unit strain energy, each response of unit length.
+    strained = np.hstack(parts) * residual_modes.frequencies[:, None]
+    length = np.linalg.norm(strained, axis=0)
+    directions, sizes, _ = np.linalg.svd(strained[:, length > 0.0] / length[length > 0.0], full_matrices=False)
+    span = directions[:, sizes > _SAME * sizes.max(initial=0.0)] / residual_modes.frequencies[:, None]
+    found, turned = linalg.eigh(span.T @ (squared[:, None] * span), span.T @ span)
+    mixture = span @ turned
+    shapes = (mixture.T @ residual_modes.shapes.reshape(len(squared), -1)).reshape(-1, *residual_modes.shapes.shape[1:])
+    return ResidualModes(np.sqrt(found), shapes, residual_modes.proof), mixture

@@ -1,0 +1,1 @@
+"""Pictures, films and 3D models of mode shapes."""

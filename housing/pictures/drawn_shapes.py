@@ -1,0 +1,202 @@
+"""Drawn shapes: a housing's skin at rest, and its mode shapes or harmonic motions with captions.
+
+Outer skin of a mesh as triangles for pictures and 3D models; scale and file names of drawn modes.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError
+from housing.modes.natural_modes import ModeSet
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+DRAWN_SCALE = 0.07
+"""Largest displacement drawn, as a part of the housing's diagonal."""
+
+# Facets by their number of nodes, cut so that middle nodes bend too; each triangle turns the way its facet does.
+_CUTS = {
+    3: [[0, 1, 2]],
+    6: [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
+    4: [[0, 1, 2], [0, 2, 3]],
+    8: [[0, 4, 7], [4, 1, 5], [5, 2, 6], [6, 3, 7], [4, 5, 6], [4, 6, 7]],
+    9: [[0, 4, 8], [4, 1, 8], [1, 5, 8], [5, 2, 8], [2, 6, 8], [6, 3, 8], [3, 7, 8], [7, 0, 8]],
+}
+
+
+@dataclass(frozen=True)
+class Skin:
+    """The outer surface of a mesh as flat triangles between neighbouring nodes.
+
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (n_points,)
+        The mesh's nodes on the surface.
+    triangles : ndarray of int, shape (n_triangles, 3)
+        Places in ``nodes``, anticlockwise as seen from outside.
+    """
+
+    nodes: IntArray
+    triangles: IntArray
+
+    def normals(self, points: FloatArray) -> FloatArray:
+        """Outward unit normals at places of the nodes of shape (n_points, 3): means of the triangles, by area."""
+        a, b, c = np.moveaxis(points[self.triangles], 1, 0)
+        doubled_areas = np.cross(b - a, c - a)
+        sums = np.stack(
+            [
+                np.bincount(self.triangles.ravel(), np.repeat(doubled_areas[:, axis], 3), len(points))
+                for axis in range(3)
+            ],
+            axis=1,
+        )
+        lengths = np.linalg.norm(sums, axis=1, keepdims=True)
+        # Where two sheets cancel there is no outside; any unit vector will do.
+        return np.where(lengths > 0.0, sums / np.where(lengths > 0.0, lengths, 1.0), [0.0, 0.0, 1.0])
+
+
+def outer_skin(mesh: Mesh) -> Skin:
+    """The boundary of a mesh; four triangles for each quadratic triangle, so that its middle nodes bend too."""
+    cut = [block.nodes[:, _CUTS[block.nodes.shape[1]]].reshape(-1, 3) for block in mesh.boundary]
+    nodes, places = np.unique(np.concatenate(cut), return_inverse=True)
+    return Skin(nodes, places.reshape(-1, 3))
+
+
+def drawn_name(modes: ModeSet, number: int) -> str:
+    """The name of a mode's picture or model, without ending: ``mode-03-1007Hz``."""
+    return f"mode-{number:02d}-{modes.frequencies_hz[number - 1]:.0f}Hz"
+
+
+def check_numbers(modes: ModeSet, numbers: Sequence[int]) -> None:
+    """Refuse numbers, from 1, of modes that are not there.
+
+    Raises
+    ------
+    HousingError
+        Where there is no mode of a number, or no number.
+    """
+    missing = [number for number in numbers if not 1 <= number <= len(modes.shapes)]
+    if missing or not numbers:
+        raise HousingError(f"modes {missing or 'none'} asked for; give numbers from 1 to {len(modes.shapes)}")
+
+
+ComplexArray = npt.NDArray[np.complex128]
+
+MODE_QUANTITY = "Displacement / largest"
+
+
+@dataclass(frozen=True)
+class DrawnHousing:
+    """The outer surface at rest.
+
+    Attributes
+    ----------
+    rest : ndarray, shape (n_points, 3)
+        [m].
+    triangles : ndarray of int, shape (n_triangles, 3)
+        Places in ``rest``.
+    nodes : ndarray of int, shape (n_points,)
+        Their node numbers in the mesh.
+    """
+
+    rest: FloatArray
+    triangles: IntArray
+    nodes: IntArray
+
+    @property
+    def diagonal(self) -> float:
+        """Of the box around it [m]."""
+        return float(np.linalg.norm(np.ptp(self.rest, axis=0)))
+
+
+@dataclass(frozen=True)
+class DrawnShape:
+    """A harmonic motion u(t) = Re U e^{iωt} of the surface, with its captions.
+
+    Attributes
+    ----------
+    name : str
+        Of its file, without ending.
+    title, note : str
+        The line above the picture and those below that; the note may be empty.
+    motion : ndarray of float or complex, shape (n_points, 3)
+        U, to any scale. A real one moves in one phase; a complex one may run around.
+    quantity : str
+        Quantity shown by the colours, with its unit.
+    largest : float
+        That quantity where the motion is largest.
+
+    Raises
+    ------
+    HousingError
+        Where nothing moves, or a number of the motion is none.
+    """
+
+    name: str
+    title: str
+    note: str
+    motion: FloatArray | ComplexArray
+    quantity: str = MODE_QUANTITY
+    largest: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not np.all(np.isfinite(self.motion)) or not np.any(self.motion):
+            raise HousingError(f"{self.title or self.name}: a shape to draw needs finite displacements, some not zero")
+
+    @property
+    def amplitude(self) -> FloatArray:
+        """Largest displacement of each point over a period, as part of the largest of all, shape (n_points,)."""
+        swing = peak_displacement(self.motion)
+        return np.asarray(swing / swing.max())
+
+    def at(self, angle: float) -> FloatArray:
+        """Displacement at a phase angle [rad] after that of the widest, the largest amplitude being 1."""
+        turned = self.motion * np.exp(1j * (angle - widest_angle(self.motion)))
+        return np.asarray(turned.real / peak_displacement(self.motion).max())
+
+
+def peak_displacement(motion: FloatArray | ComplexArray) -> FloatArray:
+    """Largest |Re U e^{iθ}| over θ for each row of U, shape (n_points,).
+
+    With U = a + ib, |Re U e^{iθ}|² = ½ (|U|² + Re (U·U) e^{2iθ}): the largest is half the major axis of the ellipse
+    that the point runs along, √(½ (|U|² + |U·U|)).
+    """
+    return np.asarray(np.sqrt(0.5 * ((np.abs(motion) ** 2).sum(axis=1) + np.abs((motion**2).sum(axis=1)))))
+
+
+def widest_angle(motion: FloatArray | ComplexArray) -> float:
+    """The θ at which Σ |Re U e^{−iθ}|² over all points is largest [rad]; 0 where all move in phase with a real U."""
+    return 0.5 * float(np.angle((motion**2).sum()))
+
+
+def drawn_housing(mesh: Mesh) -> DrawnHousing:
+    """The surface of a mesh to draw shapes on."""
+    skin = outer_skin(mesh)
+    return DrawnHousing(mesh.points[skin.nodes], skin.triangles, skin.nodes)
+
+
+def drawn_modes(
+    housing: DrawnHousing, modes: ModeSet, numbers: Sequence[int], notes: Mapping[int, str] | None = None
+) -> list[DrawnShape]:
+    """Modes by their numbers, from 1, named ``mode-03-1007Hz``; ``notes`` stand below their titles.
+
+    Raises
+    ------
+    HousingError
+        Where there is no mode of such a number.
+    """
+    check_numbers(modes, numbers)
+    return [
+        DrawnShape(
+            drawn_name(modes, number),
+            f"Mode {number}   {modes.frequencies_hz[number - 1]:.0f} Hz",
+            (notes or {}).get(number, ""),
+            modes.shapes[number - 1][housing.nodes],
+        )
+        for number in numbers
+    ]

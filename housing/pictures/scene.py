@@ -1,0 +1,271 @@
+"""Scene: one housing before one camera, drawn off-screen shape by shape for pictures and films.
+
+Off-screen renderer: search for EGL or OSMesa, and PyVista set up for it.
+"""
+
+import ctypes
+import os
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.errors import HousingError, RendererUnavailableError
+from housing.pictures.drawn_shapes import DRAWN_SCALE, MODE_QUANTITY, DrawnHousing, DrawnShape, Skin
+
+_LIBRARIES = (
+    ("libEGL.so.1", "vtkEGLRenderWindow"),
+    ("libOSMesa.so.8", "vtkOSOpenGLRenderWindow"),
+)
+
+
+def find_renderer() -> str:
+    """Name VTK's window for the first library here that draws without a screen; imports nothing.
+
+    Raises
+    ------
+    RendererUnavailableError
+        Where neither EGL nor OSMesa can be loaded. (VTK itself would end the process.)
+    """
+    for library, window in _LIBRARIES:
+        try:
+            ctypes.CDLL(library)
+        except OSError:
+            continue
+        return window
+    raise RendererUnavailableError(
+        "pictures need EGL or OSMesa, and neither library is here. On Debian or Ubuntu install one with\n"
+        "    sudo apt-get install libegl1 libegl-mesa0 libgl1"
+    )
+
+
+def load_pyvista() -> Any:
+    """Import PyVista, set up to draw without a screen.
+
+    Raises
+    ------
+    RendererUnavailableError
+        As :func:`find_renderer`.
+    """
+    # Naming the window keeps VTK from asking an X server first.
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", find_renderer())
+    import pyvista
+
+    pyvista.OFF_SCREEN = True
+    return pyvista
+
+
+FloatArray = npt.NDArray[np.float64]
+Image = npt.NDArray[np.uint8]
+
+_VIEWS = {
+    "iso": (1.0, 0.75, 1.25),
+    "front": (0.0, 0.0, 1.0),
+    "back": (0.0, 0.0, -1.0),
+    "left": (-1.0, 0.0, 0.0),
+    "right": (1.0, 0.0, 0.0),
+    "top": (0.0, 1.0, 0.001),
+}
+VIEWS = tuple(_VIEWS)
+"""Directions of view."""
+
+STRIP = 34
+"""Height of the colour bar's strip under a sheet [pixels]."""
+
+_COLOURS = "viridis"
+_INK = "#202428"
+_FINER = 1.5  # times larger than shown are pictures drawn
+_LOWER = 0.06  # how far below the middle the housing stands, as a part of half the height: captions are above it
+_FULL, _GROWTH = 1000.0, 0.6  # letters have their full size at this width [pixels], and grow slower than the picture
+_SHARP = 30.0  # angle between faces from which an edge is drawn as one [degrees]
+
+
+class Scene:
+    """The housing, its outline at rest, captions and colours; a context manager, since it holds a window.
+
+    Everything is built once: a shape moves points, colours and letters. Scale, camera and colours are therefore the
+    same for all shapes: the largest displacement is drawn as 7 % of the housing's diagonal.
+
+    Parameters
+    ----------
+    housing : DrawnHousing
+    view : str
+        One of :data:`VIEWS`.
+    size : tuple of int
+        Width and height [pixels].
+    tile : bool
+        Whether the picture is one of a sheet: smaller letters, no colour bar and no axes.
+    quantity : str
+        Title of the colour bar.
+    """
+
+    def __init__(
+        self,
+        housing: DrawnHousing,
+        view: str,
+        size: tuple[int, int],
+        *,
+        tile: bool = False,
+        quantity: str = MODE_QUANTITY,
+    ) -> None:
+        check_view(view)
+        pyvista = load_pyvista()
+        self._housing = housing
+        faces = np.hstack([np.full((len(housing.triangles), 1), 3), housing.triangles])
+        rest = pyvista.PolyData(housing.rest, faces)
+        outline = rest.extract_feature_edges(feature_angle=_SHARP, boundary_edges=False, manifold_edges=False)
+        # Points on sharp edges stand once for each side, so that shading is smooth on faces and not across edges.
+        rest["origin"] = np.arange(len(housing.rest))
+        self._solid = rest.compute_normals(
+            cell_normals=False, split_vertices=True, feature_angle=_SHARP, consistent_normals=False
+        )
+        self._origin = np.array(self._solid["origin"])
+        self._skin = Skin(self._origin, self._solid.regular_faces.astype(np.int64))
+        self._solid["shown"] = np.zeros(len(self._origin))
+        self._size, self._finer = size, _FINER
+        finer = [round(self._finer * length) for length in size]
+        self._plotter = pyvista.Plotter(off_screen=True, window_size=finer)
+        try:
+            self._furnish(outline, tile, quantity)
+            self._aim(view, rest.bounds)
+        except BaseException:
+            self._plotter.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._plotter.close()
+
+    def show(self, shape: DrawnShape) -> None:
+        """Put a shape's captions and colours in place."""
+        self._title.input, self._note.input = shape.title, shape.note
+        self._solid["shown"] = (shape.largest * shape.amplitude)[self._origin]
+        self._actor.mapper.scalar_range = (0.0, shape.largest)
+
+    def picture(self, shape: DrawnShape, angle: float = 0.0) -> Image:
+        """The shape that is shown at a phase angle [rad], as pixels of shape (height, width, 3)."""
+        return self.shrunk(self.drawn(shape, angle))
+
+    def drawn(self, shape: DrawnShape, angle: float = 0.0) -> Image:
+        """The same in the larger size in which it is rendered."""
+        reach = DRAWN_SCALE * self._housing.diagonal
+        points = (self._housing.rest + reach * shape.at(angle))[self._origin]
+        self._solid.points = points
+        self._solid.point_data.active_normals = self._skin.normals(points)
+        self._plotter.render_window.Render()  # a screenshot alone shows the previous image
+        return np.asarray(self._plotter.screenshot(None, return_img=True))
+
+    def shrunk(self, drawn: Image) -> Image:
+        """The rendered image, reduced to the picture's own size."""
+        from PIL import Image as Pillow
+
+        return np.array(Pillow.fromarray(drawn).resize(self._size, Pillow.Resampling.HAMMING))
+
+    def _furnish(self, outline: Any, tile: bool, quantity: str) -> None:
+        plotter = self._plotter
+        plotter.set_background("white")
+        # Drawn larger and shrunk: without a GPU VTK's own samples at each pixel take twice as long.
+        plotter.render_window.SetMultiSamples(0)
+        self._actor = plotter.add_mesh(
+            self._solid,
+            scalars="shown",
+            cmap=_COLOURS,
+            clim=(0.0, 1.0),
+            smooth_shading=True,
+            ambient=0.35,
+            diffuse=0.75,
+            show_scalar_bar=False,
+        )
+        # The far side of a closed skin is never seen, and costs a third of the drawing.
+        self._actor.prop.culling = "back"
+        plotter.add_mesh(outline, color="#707070", line_width=self._finer)
+        grown = self._finer * (self._size[0] / _FULL) ** _GROWTH
+        letters = 15.0 * grown, 10.0 * grown
+        self._title, self._note = (
+            plotter.add_text(" ", position=(0.03, up), viewport=True, font_size=round(size), color=_INK)
+            for up, size in zip((0.97, 0.915), letters, strict=True)
+        )
+        for text in (self._title, self._note):
+            text.prop.justification_vertical = "top"
+        if tile:
+            return
+        # The bar has its part of the width, and so must its letters.
+        letter = round(max(9.0, 18.0 * self._size[0] / _FULL) * self._finer)
+        plotter.add_scalar_bar(
+            title=quantity.replace(" ", "\n", 1) + "\n",
+            mapper=self._actor.mapper,
+            vertical=True,
+            color=_INK,
+            n_labels=5,
+            fmt="%.3g",
+            title_font_size=letter,
+            label_font_size=letter,
+            position_x=0.885,
+            position_y=0.22,
+            width=0.06,
+            height=0.5,
+        )
+        plotter.add_axes(color=_INK, xlabel="x", ylabel="y", zlabel="z")
+
+    def _aim(self, view: str, bounds: Sequence[float]) -> None:
+        self._plotter.view_vector(_VIEWS[view], viewup=(0.0, 1.0, 0.0))
+        self._plotter.enable_parallel_projection()
+        self._plotter.reset_camera(bounds=_frame(bounds))
+        self._plotter.camera.zoom(1.2)
+        self._plotter.camera.SetWindowCenter(0.0, _LOWER)
+
+
+def check_view(view: str) -> None:
+    """Refuse a view that is not there.
+
+    Raises
+    ------
+    HousingError
+        For any name but those of :data:`VIEWS`.
+    """
+    if view not in _VIEWS:
+        raise HousingError(f"no view {view!r}; there are {', '.join(VIEWS)}")
+
+
+def viewing_direction(view: str) -> FloatArray:
+    """From the housing towards the eye, a unit vector."""
+    check_view(view)
+    towards = np.array(_VIEWS[view])
+    return np.asarray(towards / np.linalg.norm(towards))
+
+
+def colour_strip(width: int) -> Image:
+    """A thin colour bar with its ends named, of shape (STRIP, width, 3)."""
+    pyvista = load_pyvista()
+    # One unit is the strip's height.
+    bar = pyvista.ImageData(dimensions=(256, 2, 1), spacing=(5.0 / 255, 0.3, 1.0), origin=(0.5, -0.15, 0.0))
+    bar["displacement"] = bar.points[:, 0]
+    plotter = pyvista.Plotter(off_screen=True, window_size=(width, STRIP))
+    try:
+        plotter.set_background("white")
+        plotter.add_mesh(bar, scalars="displacement", cmap=_COLOURS, lighting=False, show_scalar_bar=False)
+        for text, edge, side in (("displacement / largest   0 ", 0.5, "right"), (" 1", 5.5, "left")):
+            position = (0.5 + edge * STRIP / width, 0.5)
+            actor = plotter.add_text(text, position=position, viewport=True, font_size=9, color=_INK)
+            actor.prop.justification_horizontal = side
+            actor.prop.justification_vertical = "center"
+        plotter.view_xy()
+        plotter.enable_parallel_projection()
+        plotter.camera.focal_point, plotter.camera.position = (0.0, 0.0, 0.0), (0.0, 0.0, 10.0)
+        plotter.camera.parallel_scale = 0.5
+        return np.array(plotter.screenshot(None, return_img=True))
+    finally:
+        plotter.close()
+
+
+def _frame(bounds: Sequence[float]) -> list[float]:
+    """The bounds at rest with room for the largest displacement, so that every shape has the same scale."""
+    low, high = np.array(bounds[::2]), np.array(bounds[1::2])
+    room = DRAWN_SCALE * float(np.linalg.norm(high - low))
+    return [float(value) for pair in zip(low - room, high + room, strict=True) for value in pair]

@@ -1,0 +1,1 @@
+"""Labelled arrays and solved housings on file."""

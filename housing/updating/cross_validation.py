@@ -1,0 +1,224 @@
+"""Cross-validation of a fit: leave-one-out prediction of measured modes, and fits to random frequencies.
+
+Many parameters fit few frequencies, so that a small error proves little. A mode that took no part in the fit tests it;
+and where random frequencies are fitted as well as the measured ones, the fit alone proves nothing about the housing.
+Each of these repeats the whole procedure, from the same start with as many solves; only the mesh is a coarser one.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Generic
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.updating.misfit import UNPAIRED, Misfit, Target, is_met, measure
+from housing.updating.multistart import Each, Meshes, multistart_search, polish, serial_map
+from housing.updating.parameters import Parameter
+from housing.updating.posterior import Posterior, posterior
+from housing.updating.trust_region import AnyDesign, Effort, Solve
+
+FloatArray = npt.NDArray[np.float64]
+
+_APART = 0.01  # least relative distance of two random frequencies, which a survey could still separate
+
+
+@dataclass(frozen=True)
+class LeftOutMode:
+    """A mode that was left out of the fit, and predicted by it.
+
+    Attributes
+    ----------
+    mode : int
+        Its index among the measured ones, from 0.
+    measured, predicted : float
+        Circular frequencies [rad/s].
+    deviation : float
+        Relative standard deviation of the prediction, by the posterior of the others and the mode's own noise.
+    prior_deviation : float
+        The same before the fit, at the start design.
+    start : float
+        Frequency of the start design [rad/s].
+    rms_percent : float
+        Of the modes that were fitted.
+    """
+
+    mode: int
+    measured: float
+    predicted: float
+    deviation: float
+    prior_deviation: float
+    start: float
+    rms_percent: float
+
+    @property
+    def error_percent(self) -> float:
+        """Predicted minus measured, in per cent of measured."""
+        return 100.0 * (self.predicted / self.measured - 1.0)
+
+    @property
+    def start_error_percent(self) -> float:
+        """The same of the start design."""
+        return 100.0 * (self.start / self.measured - 1.0)
+
+
+@dataclass(frozen=True)
+class NullFit:
+    """A set of frequencies and the quality of the model's fit to it.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (n,)
+        Circular [rad/s], ascending.
+    rms_percent, max_percent : float
+        Errors of the dominant modes.
+    gap : float
+    measures_agree : bool
+    count : int
+        See :class:`Misfit`.
+    is_met : bool
+        See :func:`is_met`.
+    """
+
+    frequencies: FloatArray
+    rms_percent: float
+    max_percent: float
+    gap: float
+    measures_agree: bool
+    count: int
+    is_met: bool
+
+
+@dataclass(frozen=True)
+class Procedure(Generic[AnyDesign]):
+    """The whole search on one mesh: multistart search, and the final steps where it has not met the target.
+
+    Attributes
+    ----------
+    solve : callable
+        See :data:`housing.updating.Solve`.
+    parameters : sequence of Parameter
+    start : Design
+        Solved.
+    effort : Effort
+    count : int
+        Number of starts, the given one among them.
+    """
+
+    solve: Solve[AnyDesign]
+    parameters: Sequence[Parameter]
+    start: AnyDesign
+    effort: Effort
+    count: int
+
+    def __call__(self, target: Target) -> tuple[Misfit, Posterior]:
+        """Misfit of the result, by dominant modes, and posterior of the parameters."""
+        meshes = Meshes(self.solve, None)
+        raced = multistart_search(meshes, target, self.parameters, self.start, None, self.effort, self.count)
+        found = polish(self.solve, raced, target, self.parameters, self.effort)
+        design, coordinates = found.design, found.design.coordinates
+        near = design.surrogate().at(coordinates)
+        judged = measure(target, design.state, coordinates, strict=True)
+        return judged, posterior(target, found.misfit, coordinates, near)
+
+
+def leave_one_out(
+    procedure: Procedure[AnyDesign],
+    target: Target,
+    each: Each = serial_map,
+    progress: Callable[[str], None] = lambda message: None,
+) -> list[LeftOutMode]:
+    """Leave-one-out: fit to all measured modes but one, from the start, and predict that one; for each of them.
+
+    The number of dominant modes stays known, so that the pairing is the same as when all are fitted.
+
+    Parameters
+    ----------
+    procedure : Procedure
+    target : Target
+    each : callable
+        See :class:`Each`: the result does not depend on the number of workers.
+    progress : callable
+    """
+    start = procedure.start
+    first = measure(target, start.state, start.coordinates, strict=True)
+    before = start.surrogate().at(start.coordinates)
+    modes = range(len(target.noise))
+    held = [replace(target, noise=np.where(np.arange(len(modes)) == mode, np.inf, target.noise)) for mode in modes]
+    rows = []
+    for mode, (misfit, after) in enumerate(each(procedure, held)):
+        rows.append(
+            LeftOutMode(
+                mode=mode,
+                measured=float(target.frequencies[mode]),
+                predicted=float(target.frequencies[mode] * np.exp(misfit.errors[mode])),
+                deviation=_deviation(after.frequency_deviations(), misfit, mode, target),
+                prior_deviation=_deviation(np.linalg.norm(before.slopes, axis=0), first, mode, target),
+                start=float(target.frequencies[mode] * np.exp(first.errors[mode])),
+                rms_percent=float(100.0 * np.sqrt(np.mean(np.expm1(np.delete(misfit.errors, mode)) ** 2))),
+            )
+        )
+        progress(f"mode {mode + 1} predicted within {rows[-1].error_percent:+.2f} % by the others")
+    return rows
+
+
+def _deviation(left: FloatArray, misfit: Misfit, mode: int, target: Target) -> float:
+    """Of the model's partner of a measured mode, and of its measurement; NaN where it has none."""
+    pair = misfit.pairs[mode]
+    return float("nan") if pair == UNPAIRED else float(np.hypot(left[pair], target.noise[mode]))
+
+
+def null_fits(
+    procedure: Procedure[AnyDesign],
+    target: Target,
+    count: int,
+    seed: int = 0,
+    each: Each = serial_map,
+    progress: Callable[[str], None] = lambda message: None,
+) -> tuple[NullFit, list[NullFit]]:
+    """Fit the measured frequencies, and random sets of as many between the first and the last measured one.
+
+    Parameters
+    ----------
+    procedure : Procedure
+    target : Target
+    count : int
+        Number of random sets.
+    seed : int
+        Of their frequencies.
+    each, progress
+        See :func:`leave_one_out`.
+
+    Returns
+    -------
+    measured : NullFit
+    random : list of NullFit
+    """
+    generator = np.random.default_rng(seed)
+    drawn = [random_frequencies(target.frequencies, generator) for _ in range(count)]
+    sets = [target, *(replace(target, frequencies=frequencies) for frequencies in drawn)]
+    fits = []
+    for number, (misfit, _) in enumerate(each(procedure, sets)):
+        fits.append(
+            NullFit(
+                frequencies=sets[number].frequencies,
+                rms_percent=misfit.rms_percent,
+                max_percent=misfit.max_percent,
+                gap=misfit.gap,
+                measures_agree=misfit.measures_agree,
+                count=misfit.count,
+                is_met=is_met(sets[number], misfit),
+            )
+        )
+        which = f"random set {number} of {count}" if number else "the measured set"
+        progress(f"{which}: rms {misfit.rms_percent:.2f} %, max {misfit.max_percent:.2f} %")
+    return fits[0], fits[1:]
+
+
+def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> FloatArray:
+    """Random frequencies, as many as measured, uniform between the first and the last, none too close for a survey."""
+    low, high = float(measured[0]), float(measured[-1])
+    while True:
+        drawn = np.sort(generator.uniform(low, high, len(measured)))
+        if len(drawn) == 1 or (np.diff(np.log(drawn)) > _APART).all():
+            return np.asarray(drawn)

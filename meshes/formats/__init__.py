@@ -1,0 +1,1 @@
+"""Mesh files: Abaqus and CalculiX, Nastran, and the formats that meshio knows."""

@@ -1,0 +1,347 @@
+"""Input decks of Abaqus and CalculiX: nodes, solid elements, sets and surfaces.
+
+meshio reads these files too, but gives an element set to the wrong block of elements where some blocks have none, and
+knows no ``*SURFACE``. Read here are flat decks, and those of one
+part and one instance.
+
+Keyword cards of an Abaqus or CalculiX input deck.
+
+Writer of input decks of Abaqus and CalculiX.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from meshes.elements import KINDS, NO_NODE, ElementBlock, IntArray, count
+from meshes.errors import GeometryError
+from meshes.formats.content import MeshContent, corner_rows, find_faces
+from meshes.mesh import Mesh
+
+_DEPTH = 20  # of files that include files
+_COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
+
+
+@dataclass(frozen=True)
+class Card:
+    """A keyword with its parameters, both upper case, and its lines of data.
+
+    Attributes
+    ----------
+    keyword : str
+        Such as ``ELSET``.
+    parameters : dict of str to str
+        Values without quotes; empty where a parameter has none.
+    lines : list of list of str
+        Items of each line; a comma at its end makes no item.
+    """
+
+    keyword: str
+    parameters: dict[str, str]
+    lines: list[list[str]]
+
+
+def read_cards(path: Path) -> Iterator[Card]:
+    """Yield the keyword cards of a file and of those it includes, without comments.
+
+    Raises
+    ------
+    GeometryError
+        Where an included file is missing, or a file includes itself.
+    """
+    yield from _cards(path, 0)
+
+
+def _cards(path: Path, depth: int) -> Iterator[Card]:
+    if depth > _DEPTH:
+        raise GeometryError(f"mesh file {path} is included {_DEPTH} files deep; does it include itself?")
+    card: Card | None = None
+    pending = ""
+    for raw in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        line = raw.strip()
+        if not line or line.startswith("**"):
+            continue
+        if line.startswith("*") or pending:
+            pending += line
+            if pending.endswith(","):  # the keyword goes on in the next line
+                continue
+            if card is not None:
+                yield from _resolved(card, path, depth)
+            card, pending = _card(pending), ""
+        elif card is not None:
+            card.lines.append(_items(line))
+    if card is not None:
+        yield from _resolved(card, path, depth)
+
+
+def _resolved(card: Card, path: Path, depth: int) -> Iterator[Card]:
+    """Yield the card itself, or the cards of the file that it includes."""
+    if card.keyword != "INCLUDE":
+        yield card
+        return
+    name = card.parameters.get("INPUT", "")
+    other = path.parent / name
+    if not name or not other.is_file():
+        raise GeometryError(f"mesh file {path} includes {name!r}: no such file")
+    yield from _cards(other, depth + 1)
+
+
+def _card(line: str) -> Card:
+    word, *rest = _items(line[1:])
+    pairs = [part.partition("=") for part in rest]
+    return Card(word.upper(), {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}, [])
+
+
+def _items(line: str) -> list[str]:
+    return [item.strip().strip('"') for item in _COMMA.split(line.rstrip().removesuffix(","))]
+
+
+# Solid elements by the number in their type, whatever letters follow (C3D10M, C3D8R, C3D20RH).
+SOLID_TYPES = {
+    "4": "tetra",
+    "10": "tetra10",
+    "8": "hexahedron",
+    "20": "hexahedron20",
+    "27": "hexahedron27",
+    "6": "wedge",
+    "15": "wedge15",
+}
+_SOLID_TYPE = re.compile(r"(?:C3D|DC3D|F3D)(\d+)[A-Z]*$")
+# Of the 27-node brick the centre comes before the middles of the faces bottom, top, front, right, back, left.
+BRICK_27 = [*range(20), 26, 24, 25, 22, 21, 23, 20]
+_TO_VTK = {"hexahedron27": [BRICK_27.index(place) for place in range(27)]}
+# The faces S1, S2, ... by corners counted from one.
+FACE_LABELS = {
+    "tetra": ("123", "142", "243", "341"),
+    "hexahedron": ("1234", "5678", "1562", "2673", "3784", "4851"),
+    "wedge": ("123", "456", "1452", "2563", "3641"),
+}
+
+
+@dataclass
+class _Deck:
+    """Content of the deck read so far, by the deck's own numbers."""
+
+    points: dict[int, list[float]] = field(default_factory=dict)
+    elements: dict[str, dict[int, list[int]]] = field(default_factory=dict)
+    shells: dict[int, list[int]] = field(default_factory=dict)
+    element_sets: dict[str, list[int]] = field(default_factory=dict)
+    node_sets: dict[str, list[int]] = field(default_factory=dict)
+    faces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    internal: set[str] = field(default_factory=set)
+    instances: int = 0
+
+
+def read_abaqus(path: Path) -> MeshContent:
+    """Read an input deck.
+
+    Element sets become volumes, their shells sets of facets; surfaces of elements become sets of facets, and those of
+    nodes node sets, as ``*NSET``. Elements that are no solids, facets aside, are passed over.
+
+    Raises
+    ------
+    GeometryError
+        Where the deck holds pyramids or other unknown solids, several instances, or references to missing numbers.
+    """
+    deck = _Deck()
+    for card in read_cards(path):
+        _take(deck, card)
+    if deck.instances > 1:
+        raise GeometryError(f"mesh file {path} assembles {deck.instances} instances; write one flat deck of them")
+    return _content(deck, path)
+
+
+def _take(deck: _Deck, card: Card) -> None:
+    if card.keyword == "NODE":
+        numbers = []
+        for number, *place in card.lines:
+            deck.points[int(number)] = [float(value.upper().replace("D", "E") or 0.0) for value in (*place, "", "")[:3]]
+            numbers.append(int(number))
+        _add(deck.node_sets, card.parameters.get("NSET"), numbers)
+    elif card.keyword == "ELEMENT":
+        _take_elements(deck, card)
+    elif card.keyword == "NSET":
+        _add(deck.node_sets, card.parameters.get("NSET"), _members(card, deck.node_sets))
+    elif card.keyword == "ELSET":
+        _add(deck.element_sets, card.parameters.get("ELSET"), _members(card, deck.element_sets))
+        if "INTERNAL" in card.parameters:  # of a surface, not meant to be seen
+            deck.internal.add(card.parameters.get("ELSET", ""))
+    elif card.keyword == "SURFACE":
+        name = card.parameters.get("NAME")
+        if (card.parameters.get("TYPE") or "ELEMENT").upper() == "NODE":
+            for first, *_ in card.lines:
+                _add(deck.node_sets, name, _numbers(first, deck.node_sets))
+        elif name is not None:
+            deck.faces.setdefault(name, []).extend((line[0], (line + [""])[1].upper()) for line in card.lines)
+    elif card.keyword == "INSTANCE":
+        deck.instances += 1
+        if card.lines:
+            raise GeometryError("an instance is moved; write a flat deck, where it stands in its place")
+
+
+def _take_elements(deck: _Deck, card: Card) -> None:
+    name = card.parameters.get("TYPE", "")
+    kind = _kind(name)
+    if kind is None:
+        return
+    rows = [[int(part) for part in line] for line in card.lines]
+    if kind != "shell":
+        # The nodes of one element may go on over several lines.
+        items, width = [number for row in rows for number in row], 1 + KINDS[kind].n_nodes
+        if len(items) % width:
+            raise GeometryError(f"elements of type {name} have {width - 1} nodes each; some here have not")
+        rows = [items[start : start + width] for start in range(0, len(items), width)]
+    target = deck.shells if kind == "shell" else deck.elements.setdefault(kind, {})
+    for number, *nodes in rows:
+        target[number] = nodes
+    _add(deck.element_sets, card.parameters.get("ELSET"), [row[0] for row in rows])
+
+
+def _kind(name: str) -> str | None:
+    """Map an element type of the deck to a solid kind, ``shell`` for plane elements of a surface, None for the rest."""
+    name = name.upper()
+    solid = _SOLID_TYPE.match(name)
+    if solid:
+        if solid[1] not in SOLID_TYPES:
+            raise GeometryError(f"the file holds elements of type {name}, which are not known here")
+        return SOLID_TYPES[solid[1]]
+    return "shell" if re.match(r"(S|STRI|M3D|SFM3D|CPS|CPE|R3D|DS)\d", name) else None
+
+
+def _add(sets: dict[str, list[int]], name: str | None, members: list[int]) -> None:
+    if name:
+        sets.setdefault(name, []).extend(members)
+
+
+def _members(card: Card, sets: dict[str, list[int]]) -> list[int]:
+    if "GENERATE" in card.parameters:
+        members: list[int] = []
+        for line in card.lines:
+            first, last, *step = (int(part) for part in line)
+            members += range(first, last + 1, step[0] if step else 1)
+        return members
+    return [number for line in card.lines for part in line for number in _numbers(part, sets)]
+
+
+def _numbers(part: str, sets: dict[str, list[int]]) -> list[int]:
+    """Return a number, or the members of a named set; the instance before a point is ignored."""
+    part = part if part.isdecimal() else part.rpartition(".")[2]
+    if part.isdecimal():
+        return [int(part)]
+    if not part:
+        return []
+    known = {name.upper(): members for name, members in sets.items()}
+    if part.upper() not in known:
+        raise GeometryError(f"the file names a set {part!r} that is not in it")
+    return known[part.upper()]
+
+
+def _content(deck: _Deck, path: Path) -> MeshContent:
+    try:
+        place = {number: position for position, number in enumerate(deck.points)}
+        solids: list[ElementBlock] = []
+        where: dict[int, tuple[str, int]] = {}
+        for kind, elements in deck.elements.items():
+            nodes = np.array([[place[node] for node in nodes] for nodes in elements.values()], dtype=np.int64)
+            where.update({number: (kind, count(solids) + member) for member, number in enumerate(elements)})
+            solids.append(ElementBlock(kind, nodes[:, _TO_VTK.get(kind, slice(None))]))
+        facets: dict[str, list[list[int]]] = {}
+        volumes: dict[str, list[int]] = {}
+        for name, members in deck.element_sets.items():
+            for number in members if name not in deck.internal else ():
+                if number in where:
+                    volumes.setdefault(name, []).append(where[number][1])
+                elif number in deck.shells:
+                    facets.setdefault(name, []).append(_shell_corners(deck.shells[number], place))
+        for name, faces in deck.faces.items():
+            for part, label in faces:
+                facets.setdefault(name, []).extend(_face_corners(deck, part, label, where, place, name))
+        node_sets = {name: [place[number] for number in members] for name, members in deck.node_sets.items()}
+    except KeyError as error:
+        raise GeometryError(f"mesh file {path} names node {error.args[0]}, which is not in it") from error
+    return MeshContent(
+        points=np.array(list(deck.points.values()), dtype=np.float64).reshape(-1, 3),
+        solids=tuple(solids),
+        volumes={name: _sorted(members) for name, members in volumes.items()},
+        facets={name: np.array(rows, dtype=np.int64) for name, rows in facets.items()},
+        node_sets={name: _sorted(members) for name, members in node_sets.items()},
+    )
+
+
+def _sorted(members: list[int]) -> IntArray:
+    return np.unique(np.array(members, dtype=np.int64))
+
+
+def _shell_corners(nodes: list[int], place: dict[int, int]) -> list[int]:
+    corners = 3 if len(nodes) in (3, 6) else 4
+    return [*(place[node] for node in nodes[:corners]), *[NO_NODE] * (4 - corners)]
+
+
+def _face_corners(
+    deck: _Deck, part: str, label: str, where: dict[int, tuple[str, int]], place: dict[int, int], name: str
+) -> Iterator[list[int]]:
+    """Corners of face S1, S2, ... of an element or of those of a set."""
+    for number in _numbers(part, deck.element_sets):
+        if number in deck.shells:
+            yield _shell_corners(deck.shells[number], place)
+            continue
+        if number not in where:
+            raise GeometryError(f"surface {name!r} names element {number}, which is no solid of the file")
+        kind = where[number][0]
+        faces = FACE_LABELS[KINDS[kind].corners]
+        if not re.fullmatch(r"S\d", label) or not 1 <= int(label[1]) <= len(faces):
+            raise GeometryError(f"surface {name!r} names face {label!r} of a {kind}; expected S1 to S{len(faces)}")
+        nodes = deck.elements[kind][number]
+        corners = [place[nodes[int(corner) - 1]] for corner in faces[int(label[1]) - 1]]
+        yield [*corners, *[NO_NODE] * (4 - len(corners))]
+
+
+def write_abaqus(mesh: Mesh, path: Path) -> None:
+    """Write an input deck: elements of full integration, volumes as element sets, surfaces of element faces.
+
+    Raises
+    ------
+    GeometryError
+        Where a facet of a named surface is no face of an element, or a name cannot stand in a deck.
+    """
+    names = {kind: f"C3D{number}" for number, kind in SOLID_TYPES.items()}
+    with path.open("w", encoding="utf-8") as file:
+        file.write("*NODE\n")
+        for number, place in enumerate(mesh.points.tolist(), start=1):
+            file.write(f"{number}, " + ", ".join(map(repr, place)) + "\n")
+        first = 1
+        for block in mesh.blocks:
+            file.write(f"*ELEMENT, TYPE={names[block.kind]}\n")
+            order = BRICK_27 if block.kind == "hexahedron27" else slice(None)
+            for number, nodes in enumerate((block.nodes[:, order] + 1).tolist(), start=first):
+                # At most 16 numbers in a line.
+                lines = [[number, *nodes[:15]], nodes[15:]] if len(nodes) > 15 else [[number, *nodes]]
+                file.write(",\n".join(", ".join(map(str, line)) for line in lines) + "\n")
+            first += len(block)
+        for name, members in mesh.volumes.items():
+            file.write(f"*ELSET, ELSET={_quoted(name)}\n")
+            file.writelines(f"{number}\n" for number in (np.sort(members) + 1).tolist())
+        for name, facets in mesh.surfaces.items():
+            file.write(f"*SURFACE, TYPE=ELEMENT, NAME={_quoted(name)}\n")
+            for block in facets:
+                found = find_faces(mesh, corner_rows(block))
+                if (found < 0).any():
+                    raise GeometryError(f"surface {name!r} has facets that are no faces of elements")
+                for number, place in zip(mesh.faces.element[found] + 1, mesh.faces.source[found], strict=True):
+                    file.write(f"{number}, {_label(mesh.blocks[place[0]], int(place[2]))}\n")
+
+
+def _quoted(name: str) -> str:
+    if '"' in name or "\n" in name:
+        raise GeometryError(f"the name {name!r} cannot stand in an input deck: it has a quotation mark or a line break")
+    return name if re.fullmatch(r"\w+", name) else f'"{name}"'
+
+
+def _label(block: ElementBlock, face: int) -> str:
+    """S1, S2, ... of a face in our order."""
+    corners = {corner + 1 for corner in block.of.corner_faces[face]}
+    labels = [{int(corner) for corner in label} for label in FACE_LABELS[block.of.corners]]
+    return f"S{labels.index(corners) + 1}"

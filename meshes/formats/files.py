@@ -1,0 +1,171 @@
+"""Mesh files: read and write every format that meshio knows, and input decks of Abaqus and CalculiX.
+
+Nastran decks completed for meshio: framed bulk data, and every continuation marked.
+"""
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from meshes.errors import GeometryError
+from meshes.formats.abaqus import read_abaqus, write_abaqus
+from meshes.formats.content import MeshContent
+from meshes.formats.meshio_formats import content_from_meshio, load_meshio, meshio_from_mesh
+from meshes.mesh import Mesh
+
+ENDINGS = (".bdf", ".fem", ".nas")
+
+_BEGIN, _END = "BEGIN BULK", "ENDDATA"
+_FIELD = 8 * " "
+
+
+def framed_deck(text: str) -> str:
+    """Frame the bulk data of a deck by BEGIN BULK and ENDDATA, with a plus sign before each continuation.
+
+    gmsh and others write bulk data alone, as for an INCLUDE; and a continuation may begin with a blank field, which
+    meshio takes for one only where the line before it is filled up to 80 letters.
+    """
+    lines = [f"+{line[1:]}" if line.startswith(_FIELD) and line.strip() else line for line in text.splitlines()]
+    if not any(line.strip().startswith(_BEGIN) for line in lines):
+        lines.insert(0, _BEGIN)
+    if not any(line.startswith(_END) for line in lines):
+        lines.append(_END)
+    return "\n".join([*lines, ""])
+
+
+@contextmanager
+def framed_file(path: Path) -> Iterator[Path]:
+    """Write a temporary copy of a deck in this form; files of other formats are given as they are."""
+    if path.suffix.lower() not in ENDINGS:
+        yield path
+        return
+    with TemporaryDirectory(prefix="gearwhine-nastran-") as folder:
+        copy = Path(folder) / path.name
+        copy.write_text(framed_deck(path.read_text(encoding="utf-8", errors="replace")), encoding="utf-8")
+        yield copy
+
+
+# Every kind of element comes back whole under these endings; under others some are lost or changed in silence.
+WRITABLE = (".inp", ".med", ".msh", ".vtk", ".vtu", ".xdmf")
+"""Endings of the files that a mesh can be written to."""
+
+
+def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
+    """Read a mesh of solid elements, with the file's named groups and sets as regions.
+
+    Parameters
+    ----------
+    path : path
+        A file of any format that meshio reads, or an input deck of Abaqus or CalculiX (``.inp``).
+    unit : float
+        The file's unit of length [m], such as 1e-3 for millimetres.
+
+    Returns
+    -------
+    Mesh
+        Groups of solids are volumes. Groups of facets are surfaces, and so are sets of nodes: of all the boundary
+        facets whose nodes are in the set. Nodes without a solid, shells, beams and the like are left out.
+
+    Raises
+    ------
+    GeometryError
+        Where the file is missing or cannot be read, or holds no solid elements, or elements of an unknown type.
+    """
+    if not unit > 0.0:
+        raise GeometryError(f"unit of length {unit} m must be positive")
+    path = Path(path)
+    if not path.is_file():
+        raise GeometryError(f"mesh file {path}: no such file")
+    try:
+        content = read_abaqus(path) if path.suffix.lower() == ".inp" else _through_meshio(path)
+    except GeometryError:
+        raise
+    except SystemExit as error:  # meshio leaves through sys.exit where no reader takes the file
+        raise GeometryError(f"mesh file {path} is broken, or of a format that meshio does not read") from error
+    except Exception as error:  # readers raise exceptions of many kinds on a broken file
+        raise GeometryError(
+            f"mesh file {path} cannot be read: {type(error).__name__}: {error}; it is broken, cut short, or of another "
+            "format than its ending says"
+        ) from error
+    if not content.solids:
+        raise GeometryError(f"mesh file {path} holds no solid elements")
+    return content.mesh(unit)
+
+
+def write_mesh(mesh: Mesh, path: str | Path) -> None:
+    """Write a mesh with its named surfaces and volumes; the file appears whole or not at all.
+
+    The format follows the file's ending, one of :data:`WRITABLE`. Regions become physical groups in ``.msh``, sets and
+    surfaces in ``.inp``, families in ``.med``. In ``.vtu`` and ``.vtk`` they are cell arrays ``surface:NAME`` and
+    ``volume:NAME``, 1 in the region and 0 elsewhere, with blanks and the like as in a web address. In ``.xdmf`` (with
+    its ``.h5`` beside it) volumes are such arrays too, and ``faces:NAME`` has a bit for each face of an element that is
+    in the surface. :func:`read_mesh` takes all of them back.
+
+    Raises
+    ------
+    GeometryError
+        Where the ending is another one, the format cannot hold the mesh, or the file cannot be written.
+    """
+    path = Path(path)
+    if path.suffix not in WRITABLE:
+        raise GeometryError(f"a mesh is not written to {path.suffix!r}; known endings: {' '.join(WRITABLE)}")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # Written under its own name in a folder beside, because XDMF names its companion after itself.
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
+        try:
+            _write(mesh, Path(folder) / path.name)
+            for part in sorted(Path(folder).iterdir(), key=lambda part: part.name == path.name):
+                os.replace(part, path.parent / part.name)
+        except GeometryError:
+            raise
+        except Exception as error:  # writers refuse in many ways, some by a bare assertion
+            raise GeometryError(f"mesh file {path} cannot be written: {type(error).__name__} {error}") from error
+
+
+def _write(mesh: Mesh, path: Path) -> None:
+    if path.suffix == ".inp":
+        write_abaqus(mesh, path)
+        return
+    meshio = load_meshio()
+    # Version 2.2 of gmsh's format is the one that every reader knows.
+    format_name = "gmsh22" if path.suffix == ".msh" else None
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        meshio.write(path, meshio_from_mesh(mesh, path.suffix), file_format=format_name)
+
+
+def _through_meshio(path: Path) -> MeshContent:
+    meshio = load_meshio()
+    _check_ending(path, meshio.extension_to_filetypes)
+    _check_tetgen(path)
+    if not path.stat().st_size:
+        raise GeometryError(f"mesh file {path} is empty")
+    # meshio prints warnings to standard output, which belongs to the caller.
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()), framed_file(path) as readable:
+        content = meshio.read(readable)
+    return content_from_meshio(content, path)
+
+
+def _check_ending(path: Path, known: Mapping[str, list[str]]) -> None:
+    """Refuse a file that no reader is chosen for."""
+    endings = ["".join(path.suffixes[first:]).lower() for first in range(len(path.suffixes))]
+    if not any(ending in known for ending in endings):
+        raise GeometryError(
+            f"mesh file {path}: no format of meshes has the ending {path.suffix!r}; "
+            f"such as {' '.join(WRITABLE)} .bdf .nas .e do"
+        )
+
+
+def _check_tetgen(path: Path) -> None:
+    """Refuse an empty TetGen file, for which meshio's reader would wait without end."""
+    if path.suffix not in (".node", ".ele"):
+        return
+    for part in (path.with_suffix(".node"), path.with_suffix(".ele")):
+        lines = part.read_text(errors="replace").splitlines() if part.is_file() else []
+        if not any(line.strip() and not line.strip().startswith("#") for line in lines):
+            raise GeometryError(
+                f"mesh file {path}: TetGen's .node and .ele belong together, and {part.name} is missing or empty"
+            )

@@ -1,0 +1,462 @@
+"""Campbell diagram: whirl over a range of speeds, followed through its crossings.
+
+Starting values at every speed come from one projection on planar modes, reduced once; the roots are then refined
+on the exact equations, all speeds in one batch. Branches are followed from speed to speed by the eigenvalue that
+continues them and the likeness of shapes. Motions that the bearings do not couple, such as forward and backward whirl
+in isotropic ones, are followed separately, so that they cannot be confused where they cross.
+
+Without damping the number of roots is proved at every speed (`rotors.whirl.completeness`). With damping a proof costs a
+contour integral at each speed: it is made at a few speeds, or at all on request.
+
+Branches of a Campbell diagram: whirl modes followed from speed to speed, through the places where they cross.
+
+Whirl eigenvalues of a Campbell diagram: exact roots at many speeds at once, and their proof.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.analyses.harmonic_response import finite_values
+from rotors.certificate import ACCEPTED
+from rotors.errors import IncompleteModesError, require, require_finite
+from rotors.model.bearing import Bearing
+from rotors.model.shaft import Rotor
+from rotors.modes.lateral import LateralModes
+from rotors.numerics.branch_following import BranchPoint, extended_branches, paired_modes, refined_crossing
+from rotors.whirl.circular_coordinates import coupled_motions
+from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, negative_count, oscillating
+from rotors.whirl.eigenvalues import NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each, refine_roots
+from rotors.whirl.equations import WhirlEquations, retied, whirl_reach
+from rotors.whirl.modal_projection import ModalProjection
+from rotors.whirl.motion import ShaftMotion
+from rotors.whirl.planar_basis import DEFAULT_COUNT
+from rotors.whirl.whirl_modes import NEUTRAL, START_REACH, WhirlSolver
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+# A jump by this part of the eigenvalue weighs as much as no likeness at all; no jump weighs more than so many of these.
+JUMP_SCALE = 0.1
+MOST_JUMPS = 100.0
+# A branch that would have to jump further than this part of its frequency has ended.
+LONGEST_JUMP = 0.5
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One mode over the speeds; NaN where it is not among the roots.
+
+    Attributes
+    ----------
+    eigenvalues, direction, axial_share
+        (s,): rad/s, and as in `rotors.WhirlModes`.
+    """
+
+    eigenvalues: ComplexArray
+    direction: FloatArray
+    axial_share: FloatArray
+
+    @property
+    def first_frequency(self) -> float:
+        """|λ| where the branch begins, rad/s."""
+        return float(np.abs(self.eigenvalues[np.isfinite(self.eigenvalues)][0]))
+
+
+def followed(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[Branch]:
+    """Branches through the roots (one set a speed) of one chain.
+
+    A root's jump is its distance from the linear continuation of the branch; shapes are compared by the modal assurance
+    criterion of the nodes' displacements.
+    """
+    inside = chain.layout.displacements.ravel()
+    shapes = [one.solutions[:, inside] for one in roots]
+    shapes = [one / np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-300) for one in shapes]
+    table = np.zeros((0, 0), dtype=np.intp)
+    for k, one in enumerate(roots):
+        partner = np.zeros(0, dtype=np.intp)
+        if k:
+            expected = _continued(roots[max(k - 2, 0) : k], table, speeds[max(k - 2, 0) : k + 1])
+            jump = np.abs(expected[:, None] - one.eigenvalues) / np.abs(one.eigenvalues)
+            likeness = np.abs(shapes[k - 1].conj() @ shapes[k].T) ** 2
+            partner = paired_modes(
+                jump, likeness, jump_scale=JUMP_SCALE, most_jumps=MOST_JUMPS, longest_jump=LONGEST_JUMP
+            )
+        table = extended_branches(table, partner, one.eigenvalues.size)
+    ways = _characters_of_all(chain, roots, speeds)
+    branches = []
+    for column in table.T:
+        values, way = np.full(speeds.size, complex(np.nan, np.nan)), np.full((speeds.size, 2), np.nan)
+        for k in np.flatnonzero(column >= 0).tolist():
+            values[k], way[k] = roots[k].eigenvalues[column[k]], ways[k][column[k]]
+        branches.append(Branch(values, way[:, 0], way[:, 1]))
+    return branches
+
+
+def characters(chain: WhirlEquations, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
+    """Whirl direction and axial share of roots at speeds, as in `rotors.WhirlModes`, (w, 2)."""
+    if len(chain.blocks) == 1:
+        return np.tile([float(chain.blocks[0]), 0.0 if chain.blocks[0] else 1.0], (roots.eigenvalues.size, 1))
+    motion = ShaftMotion.of(chain, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
+    return np.stack([motion.direction, motion.axial_share], axis=-1)
+
+
+def _characters_of_all(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:
+    sizes = [one.eigenvalues.size for one in roots]
+    together = ExactRoots(
+        np.concatenate([one.eigenvalues for one in roots]),
+        np.concatenate([one.solutions for one in roots]),
+        np.concatenate([one.residuals for one in roots]),
+        np.concatenate([one.scales for one in roots]),
+    )
+    every = characters(chain, together, np.repeat(speeds, sizes))
+    return np.split(every, np.cumsum(sizes)[:-1])
+
+
+def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray) -> ComplexArray:
+    """Linear continuation of the last speed's roots to the next speed, along the branches of a table, (w,).
+
+    ``roots`` are those of the last two speeds, or of the first alone; ``speeds`` are theirs and the next.
+    """
+    expected = roots[-1].eigenvalues.copy()
+    if len(roots) > 1:
+        part = (speeds[2] - speeds[1]) / (speeds[1] - speeds[0])
+        before, last = table[-2:, (table[-2] >= 0) & (table[-1] >= 0)]
+        values = roots[1].eigenvalues[last]
+        expected[last] = values + part * (values - roots[0].eigenvalues[before])
+    return expected
+
+
+BoolArray = npt.NDArray[np.bool_]
+
+# Damped sets are proved at this many speeds, spread over the range.
+PROOFS = 3
+# Branches are followed this far beyond the limit at every speed.
+WINDOW = 1.1
+# Narrower gaps between starting values may vanish between the roots.
+WIDE_GAP = 1e-3
+
+
+def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None, count: int | None) -> FloatArray:
+    """At every speed a frequency in a gap above the wanted branches, (s,)."""
+    sizes = np.sort(np.abs(np.concatenate(starts, axis=1)), axis=1)
+    if count is None:
+        assert frequency_limit is not None
+        return np.full(sizes.shape[0], frequency_limit)
+    limits = np.empty(sizes.shape[0])
+    for k, row in enumerate(sizes):
+        ascending = row[np.isfinite(row)]
+        last = min(count, ascending.size)
+        # Starting values are not exact: a gap must be wide enough to be one.
+        while last < ascending.size and ascending[last] < ascending[last - 1] * (1.0 + WIDE_GAP):
+            last += 1
+        beyond = ascending[last] if last < ascending.size else 1.01 * ascending[-1]
+        limits[k] = np.sqrt(ascending[last - 1] * beyond)
+    return limits
+
+
+def roots_at_speeds(
+    chains: Sequence[WhirlEquations], values: ComplexArray, speeds: FloatArray, limits: FloatArray
+) -> list[ExactRoots]:
+    """Exact roots at every speed: separated ones of all speeds in one batch, clusters at their own speed."""
+    chosen = [row[np.abs(row) < WINDOW * limit] for row, limit in zip(values, limits, strict=True)]
+    same = all(chain is chains[0] for chain in chains)
+    near = [not same or not apart(row, NEAR) for row in chosen]
+    owner = np.concatenate([np.full(row.size, k) for k, row in enumerate(chosen)])
+    alone = ~np.array(near)[owner]
+    batch = refine_each(chains[0], np.concatenate(chosen)[alone], speeds[owner[alone]])
+    batch_owner = owner[alone]
+    roots = []
+    for k, row in enumerate(chosen):
+        if near[k]:
+            roots.append(refine_roots(chains[k], row, constant_speed(float(speeds[k]))))
+        else:
+            own = batch.take(batch_owner == k)
+            good = own.residuals <= ACCEPTED
+            if not good.all():
+                own = refine_roots(chains[k], own.eigenvalues, constant_speed(float(speeds[k])))
+            roots.append(distinct(own))
+    return roots
+
+
+def proved_at(
+    chains: Sequence[WhirlEquations],
+    roots: list[ExactRoots],
+    speeds: FloatArray,
+    least: float,
+    limits: FloatArray,
+    undriven: bool,
+    prove_all: bool,
+) -> BoolArray:
+    """Prove the number of roots at every speed, or at a few; where one is missing it is searched for."""
+    if undriven:
+        chosen = np.arange(speeds.size)
+        expected = _expected(chains, speeds, least, limits)
+        found = [
+            int(oscillating(least, float(limit)).holds(one.eigenvalues).sum())
+            for one, limit in zip(roots, limits, strict=True)
+        ]
+        doubtful = np.flatnonzero(expected != np.array(found))
+    else:
+        chosen = np.arange(speeds.size) if prove_all else np.linspace(0, speeds.size - 1, PROOFS).round().astype(int)
+        doubtful = np.unique(chosen)
+    for k in doubtful.tolist():
+        sector = oscillating(least, float(limits[k]))
+        inside, _ = certified_roots(chains[k], roots[k], constant_speed(float(speeds[k])), sector, undriven)
+        beyond = roots[k].take(~sector.holds(roots[k].eigenvalues))
+        roots[k] = inside.joined(beyond)
+    proved = np.zeros(speeds.size, dtype=np.bool_)
+    proved[chosen] = True
+    return proved
+
+
+def _expected(
+    chains: Sequence[WhirlEquations], speeds: FloatArray, least: float, limits: FloatArray
+) -> npt.NDArray[np.intp]:
+    """Roots below the limits by inertia, (s,)."""
+    if all(chain is chains[0] for chain in chains):
+        twice = np.tile(speeds, 2).astype(np.complex128)
+        counts = negative_count(chains[0], np.concatenate([limits, np.full(speeds.size, least)]), Speed(twice))
+        return np.asarray(counts[: speeds.size] - counts[speeds.size :])
+    rows = [
+        negative_count(chain, np.array([limit, least]), constant_speed(float(speed)))
+        for chain, limit, speed in zip(chains, limits, speeds, strict=True)
+    ]
+    return np.array([row[0] - row[1] for row in rows])
+
+
+# With whirl direction and axial share in place of the shape.
+Point = BranchPoint[tuple[float, float]]
+
+# A root further from its starting value than this part of it belongs to another branch.
+CROSSING_JUMP = 0.1
+CROSSING_STEPS = 30
+CROSSING_TOLERANCE = 1e-11
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A speed at which a damped whirl frequency is a multiple of the speed of rotation.
+
+    Attributes
+    ----------
+    speed
+        Ω, rad/s.
+    eigenvalue
+        λ there, with Im λ = order · Ω; exact.
+    order
+        The multiple.
+    direction
+        Of the whirl, as in `rotors.WhirlModes`.
+    branch
+        Index in the diagram.
+    axial_share
+        Of the motion, as in `rotors.WhirlModes`.
+    """
+
+    speed: float
+    eigenvalue: complex
+    order: float
+    direction: float
+    branch: int
+    axial_share: float = 0.0
+
+    @property
+    def log_decrement(self) -> float:
+        """−2π Re λ / Im λ."""
+        return float(-2.0 * np.pi * self.eigenvalue.real / self.eigenvalue.imag)
+
+
+@dataclass(frozen=True)
+class Campbell:
+    """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is outside the range.
+
+    Attributes
+    ----------
+    speeds
+        (s,): Ω, rad/s.
+    eigenvalues
+        (s, m) complex, rad/s.
+    direction
+        (s, m), as in `rotors.WhirlModes`.
+    axial_share
+        (s, m), as in `rotors.WhirlModes`.
+    proved
+        (s,): speeds at which the number of roots was proved.
+    """
+
+    speeds: FloatArray
+    eigenvalues: ComplexArray
+    direction: FloatArray
+    axial_share: FloatArray
+    proved: BoolArray
+    solver: WhirlSolver = field(repr=False)
+    blocks: tuple[tuple[int, ...], ...] = field(repr=False)
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Natural frequency |λ|, rad/s, (s, m)."""
+        return np.asarray(np.abs(self.eigenvalues))
+
+    @property
+    def damped_frequencies(self) -> FloatArray:
+        """Im λ, rad/s, (s, m)."""
+        return np.asarray(self.eigenvalues.imag)
+
+    @property
+    def log_decrements(self) -> FloatArray:
+        """−2π Re λ / Im λ, (s, m)."""
+        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
+    @property
+    def unstable_from(self) -> float | None:
+        """Lowest speed of the diagram, without its sense, at which a mode grows, rad/s; None where none does."""
+        # Branches that do not oscillate at a speed are NaN there, which compares as stable.
+        grows = (self.log_decrements < -2.0 * np.pi * NEUTRAL).any(axis=1)
+        return float(np.abs(self.speeds[grows]).min()) if grows.any() else None
+
+    def crossings(self, order: float = 1.0) -> tuple[Crossing, ...]:
+        """Where branches cross Im λ = order · |Ω| within the range, each refined on the exact equations.
+
+        Raises
+        ------
+        IncompleteModesError
+            A crossing seen between two speeds cannot be refined; more speeds would separate it.
+        """
+        require_finite("order", order, positive=True)
+        found = []
+        for branch in range(self.eigenvalues.shape[1]):
+            gap = self.eigenvalues[:, branch].imag - order * np.abs(self.speeds)
+            for left in np.flatnonzero((gap[:-1] > 0.0) != (gap[1:] > 0.0)):
+                if np.isfinite(gap[left]) and np.isfinite(gap[left + 1]) and gap[left] != gap[left + 1]:
+                    found.append(self._crossing(branch, int(left), order))
+        return tuple(sorted(found, key=lambda crossing: abs(crossing.speed)))
+
+    def _crossing(self, branch: int, left: int, order: float) -> Crossing:
+        """The crossing between two neighbouring speeds, each λ on the way refined from between its neighbours."""
+        speeds, ends = self.speeds[left : left + 2].tolist(), self.eigenvalues[left : left + 2, branch]
+        chain = self._chain(branch, float(np.abs(ends).max()), max(abs(speeds[0]), abs(speeds[1])))
+
+        def solve(part: float, low: Point, high: Point) -> Point | None:
+            speed = low.speed + part * (high.speed - low.speed)
+            tied = retied(chain, self.solver.bearings, speed)
+            start = np.array([low.eigenvalue + part * (high.eigenvalue - low.eigenvalue)])
+            root = refine_each(tied, start, np.array([speed]))
+            value = complex(root.eigenvalues[0])
+            if root.residuals[0] > ACCEPTED or abs(value - start[0]) > CROSSING_JUMP * abs(value):
+                return None
+            direction, along = characters(tied, root, np.array([speed]))[0].tolist()
+            return BranchPoint(speed, value, value.imag - order * abs(speed), (direction, along))
+
+        points = [
+            BranchPoint(speed, complex(value), float(value.imag - order * abs(speed)), (np.nan, np.nan))
+            for speed, value in zip(speeds, ends, strict=True)
+        ]
+        found = refined_crossing(points[0], points[1], solve, tolerance=CROSSING_TOLERANCE, steps=CROSSING_STEPS)
+        if found is None:
+            raise IncompleteModesError(
+                f"the crossing of order {order:g} between {speeds[0]:g} and {speeds[1]:g} rad/s does "
+                "not settle; ask for more speeds about there"
+            )
+        return Crossing(found.speed, found.eigenvalue, order, found.shape[0], branch, found.shape[1])
+
+    def _chain(self, branch: int, highest: float, speed: float) -> WhirlEquations:
+        sets = self.blocks[branch]
+        constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.solver.bearings]
+        return self.solver.equations(constant, sets, whirl_reach(START_REACH * highest, speed))
+
+
+def campbell(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    speeds: npt.ArrayLike,
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+    basis: LateralModes | None = None,
+    prove_all: bool = False,
+    solver: WhirlSolver | None = None,
+) -> Campbell:
+    """Exact whirl modes over a range of speeds.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings; tables over speed are read at each speed.
+    speeds
+        (s,): Ω, rad/s, ascending.
+    frequency_limit
+        rad/s: branches below it at some speed.
+    count
+        Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
+    basis
+        From `rotors.whirl_basis`, to avoid building it.
+    prove_all
+        Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
+    solver
+        A `rotors.WhirlSolver` of the same rotor and bearings, whose basis and equations are used.
+
+    Raises
+    ------
+    RotorError
+        Wrong arguments, or a speed beyond a table.
+    IncompleteModesError
+        A proof fails.
+    """
+    turning = finite_values("speeds", speeds)
+    require(bool((np.diff(turning) > 0.0).all()), "speeds", turning.tolist(), "ascending speeds")
+    shared = WhirlSolver(rotor, bearings, basis) if solver is None else solver
+    same = shared.rotor is rotor and shared.bearings == tuple(bearings)
+    require(same, "rotor of the solver", shared.rotor.name, f"{rotor.name}, on the same bearings")
+    chosen = shared.planar_basis(frequency_limit, count)
+    tabled = any(bearing.speeds is not None for bearing in bearings)
+    at_speeds = [[b.at_speed(float(s)) for b in bearings] for s in turning] if tabled else [list(bearings)]
+    sets = coupled_motions([bearing for row in at_speeds for bearing in row])
+    wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
+    starts = []
+    for blocks in sets:
+        one = ModalProjection.of(rotor, at_speeds[0], blocks, chosen)
+        if tabled:
+            rows = [one.pencil(b).eigenvalues(turning[k : k + 1]) for k, b in enumerate(at_speeds)]
+            values = np.concatenate(rows)
+        else:
+            values = one.pencil(at_speeds[0]).eigenvalues(turning)
+        oscillates = (values.imag > NO_OSCILLATION * np.abs(values)) & (np.abs(values) > NO_OSCILLATION * one.floor)
+        starts.append(np.where(oscillates, values, np.nan))
+    limits = limits_behind(starts, frequency_limit, wanted)
+    least = NO_OSCILLATION * chosen.floor
+    undriven = shared.is_conservative_rotor([bearing for row in at_speeds for bearing in row])
+    highest = max(whirl_reach(START_REACH * r, float(s)) for r, s in zip(limits, turning, strict=True))
+    branches: list[Branch] = []
+    owners: list[tuple[int, ...]] = []
+    proved = np.ones(turning.size, dtype=np.bool_)
+    for blocks, values in zip(sets, starts, strict=True):
+        chain = shared.equations(at_speeds[0], blocks, highest)
+        chains = [retied(chain, row, 0.0) for row in at_speeds] if tabled else [chain] * turning.size
+        roots = roots_at_speeds(chains, values, turning, limits)
+        proved &= proved_at(chains, roots, turning, least, limits, undriven, prove_all)
+        for branch in followed(chain, roots, turning):
+            if bool((np.abs(branch.eigenvalues) < limits).any()):
+                branches.append(branch)
+                owners.append(blocks)
+    order = sorted(range(len(branches)), key=lambda k: branches[k].first_frequency)
+    empty = np.zeros((turning.size, 0))
+    return Campbell(
+        speeds=turning,
+        eigenvalues=np.stack([branches[k].eigenvalues for k in order], axis=1) if order else empty.astype(complex),
+        direction=np.stack([branches[k].direction for k in order], axis=1) if order else empty,
+        axial_share=np.stack([branches[k].axial_share for k in order], axis=1) if order else empty,
+        proved=proved,
+        solver=shared,
+        blocks=tuple(owners[k] for k in order),
+    )
+
+
+def _inside(bearing: Bearing, speed: float) -> float:
+    """The speed, or the nearest one in a bearing's table."""
+    if bearing.speeds is None:
+        return speed
+    return float(np.clip(abs(speed), bearing.speeds[0], bearing.speeds[-1]))

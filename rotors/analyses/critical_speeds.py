@@ -1,0 +1,221 @@
+"""Critical speeds of a rotor: speeds of rotation equal to a whirl frequency.
+
+Undamped critical-speed map: forward critical speeds of a rotor over the stiffness of its bearings.
+
+In isotropic bearings forward synchronous whirl is a planar problem: with Ω = ω the rotary inertia enters as
+(I_d − I_p) ω², here a circular block of `rotors.whirl.equations` at λ = iω and Ω = ω. Every curve is exact, and at
+every stiffness the number of its points is proved by the count of `rotors.whirl.completeness`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.analyses.campbell import campbell
+from rotors.certificate import ACCEPTED, ModeCertificate
+from rotors.errors import RotorError, require, require_count
+from rotors.model.bearing import Bearing, undamped
+from rotors.model.shaft import Rotor
+from rotors.modes.lateral import LateralModes
+from rotors.whirl.circular_coordinates import coupled_motions
+from rotors.whirl.completeness import NO_OSCILLATION
+from rotors.whirl.eigenvalues import SYNCHRONOUS
+from rotors.whirl.modal_projection import ModalProjection, basis_for
+from rotors.whirl.planar_basis import DEFAULT_COUNT, planar_basis
+from rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
+
+# Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
+TABLE_SPEEDS = 60
+TABLE_REACH = 1.2
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CriticalSpeeds:
+    """Speeds at which the rotor whirls once per turn.
+
+    Attributes
+    ----------
+    speeds
+        (c,): ascending, rad/s.
+    direction
+        (c,): 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+    axial_share
+        (c,): part of the kinetic energy along the axis, as in `rotors.WhirlModes`.
+    certificate
+        Proof that none is missing.
+    """
+
+    speeds: FloatArray
+    direction: FloatArray
+    axial_share: FloatArray
+    certificate: ModeCertificate
+
+    @property
+    def lateral(self) -> "CriticalSpeeds":
+        """The critical speeds of lateral motion, without mostly axial ones, which no unbalance drives."""
+        kept = self.axial_share <= MOSTLY_AXIAL
+        return replace(
+            self, speeds=self.speeds[kept], direction=self.direction[kept], axial_share=self.axial_share[kept]
+        )
+
+    @property
+    def forward(self) -> FloatArray:
+        """The speeds that unbalance excites: those whose whirl is not purely backward, nor mostly along the axis."""
+        return np.asarray(self.speeds[(self.direction > -1.0 + 1e-6) & (self.axial_share <= MOSTLY_AXIAL)])
+
+
+def critical_speeds(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    *,
+    speed_limit: float | None = None,
+    count: int | None = None,
+    basis: LateralModes | None = None,
+) -> CriticalSpeeds:
+    """Undamped critical speeds: where a whirl frequency equals the speed of rotation.
+
+    With Ω = ω the gyroscopic term joins the mass, and all of them are roots of one eigenproblem,
+
+        K q = ω² [[M, −i G], [i G, M]] q
+
+    over both planes; a disc whose polar inertia exceeds its diametral one takes its forward root away.
+    Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
+    tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying
+    whirl), and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
+    frequency crosses a little elsewhere, where `rotors.Campbell.crossings` has it.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings.
+    speed_limit
+        rad/s: all critical speeds strictly below.
+    count
+        Number of critical speeds, instead of a limit; with neither, 12.
+    basis
+        From `rotors.whirl_basis`, to avoid building it.
+
+    Raises
+    ------
+    RotorError, IncompleteModesError
+        As `rotors.solve_whirl`.
+    """
+    free = [undamped(bearing) for bearing in bearings]
+    chosen = basis_for(rotor, free, speed_limit, count, basis)
+    if any(bearing.speeds is not None for bearing in free):
+        return _tabled_critical_speeds(rotor, free, speed_limit, count, basis)
+    sets = [ModalProjection.of(rotor, free, blocks, chosen) for blocks in coupled_motions(free)]
+    roots, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
+    speeds = roots.eigenvalues.imag
+    order = np.argsort(speeds)
+    motion = roots.motion
+    return CriticalSpeeds(speeds[order], motion.direction[order], motion.axial_share[order], certificate)
+
+
+def _tabled_critical_speeds(
+    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None, basis: LateralModes | None
+) -> CriticalSpeeds:
+    """Crossings of a Campbell diagram whose stiffness follows the speed, within all tables."""
+    tables = [bearing.speeds for bearing in bearings if bearing.speeds is not None]
+    low, high = max(float(table[0]) for table in tables), min(float(table[-1]) for table in tables)
+    high = min(high, limit or np.inf)
+    require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
+    diagram = campbell(
+        rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high, basis=basis
+    )
+    found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
+    speeds = np.array([crossing.speed for crossing in found])
+    proof = ModeCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
+    direction = np.array([crossing.direction for crossing in found])
+    return CriticalSpeeds(speeds, direction, np.array([crossing.axial_share for crossing in found]), proof)
+
+
+def certified_criticals(
+    rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[ModalProjection], limit: float | None, count: int | None
+) -> tuple[WhirlRoots, ModeCertificate]:
+    """Synchronous whirl in undamped bearings below a limit, or the lowest roots, for some sets of coupled motions."""
+    return certified_whirl(
+        WhirlSolver(rotor, bearings),
+        bearings,
+        [(one.blocks, one.critical(bearings)) for one in sets],
+        SYNCHRONOUS,
+        None,
+        NO_OSCILLATION * sets[0].floor,
+        limit,
+        None if limit is not None else count or DEFAULT_COUNT,
+    )
+
+
+DEFAULT_CRITICALS = 4
+
+
+@dataclass(frozen=True)
+class CriticalSpeedMap:
+    """Critical speeds over bearing stiffness.
+
+    Attributes
+    ----------
+    stiffnesses
+        (s,): of every bearing, N/m.
+    speeds
+        (s, c): ascending, rad/s; NaN where a disc's polar inertia leaves fewer.
+    direction
+        1 of forward whirl, −1 of backward.
+    """
+
+    stiffnesses: FloatArray
+    speeds: FloatArray
+    direction: int = 1
+
+
+def critical_speed_map(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    stiffnesses: npt.ArrayLike,
+    *,
+    count: int = DEFAULT_CRITICALS,
+    direction: int = 1,
+) -> CriticalSpeedMap:
+    """Undamped critical speeds with every bearing's stiffness replaced by each of some.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor, and where its bearings are; a bearing's own stiffness and damping do not matter.
+    stiffnesses
+        (s,): N/m, alike in all directions.
+    count
+        Number of critical speeds.
+    direction
+        1 for forward whirl, −1 for backward.
+
+    Raises
+    ------
+    RotorError
+        A stiffness that is not positive, no bearings, or another direction.
+    IncompleteModesError
+        A count and its roots do not agree.
+    """
+    values = np.atleast_1d(np.asarray(stiffnesses, dtype=np.float64))
+    good = values.ndim == 1 and bool(np.isfinite(values).all() and (values > 0.0).all())
+    require(good, "stiffnesses", values.tolist(), "positive numbers, N/m")
+    require_count("count of critical speeds", count)
+    require(direction in (1, -1), "direction", direction, "1 (forward) or -1 (backward)")
+    if not bearings:
+        raise RotorError(f"rotor {rotor.name!r} has no bearings; expected at least one to vary")
+    rows = np.full((values.size, count), np.nan)
+    for k, stiffness in enumerate(values.tolist()):
+        held = [
+            replace(b, stiffness=stiffness * np.eye(2), damping=np.zeros((2, 2)), speeds=None, pedestal=None)
+            for b in bearings
+        ]
+        basis = planar_basis(rotor, held, None, 2 * count)
+        one = ModalProjection.of(rotor, held, (direction,), basis)
+        roots, _ = certified_criticals(rotor, held, [one], None, count)
+        speeds = np.sort(roots.eigenvalues.imag)
+        rows[k, : speeds.size] = speeds
+    return CriticalSpeedMap(values, rows, direction)

@@ -1,0 +1,235 @@
+"""Harmonic response of a turning rotor, by the exact equations of both planes.
+
+A load Re[F e^{iωt}] at a node stands on the right of the equations of `rotors.whirl.equations` at λ = iω, with a
+negative sign in the node's force balance. No modes are summed, so nothing is truncated.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import require, require_finite
+from rotors.model.bearing import Bearing
+from rotors.model.loads import HarmonicForce
+from rotors.model.shaft import Rotor
+from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
+from rotors.whirl.equations import WhirlEquations, retied, whirl_equations, whirl_reach
+from rotors.whirl.motion import ShaftMotion
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+# Circular loads over r+, β+, r−, β−, z at some places and frequencies, (b, places, 5), N and N·m.
+Loads = ComplexArray
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """Elliptic orbits of points of the shaft.
+
+    Attributes
+    ----------
+    major, minor
+        Half axes, m; the minor one is positive where the orbit runs counter-clockwise, negative where clockwise.
+    inclination
+        Of the major axis from x, rad, between −π/2 and π/2.
+    """
+
+    major: FloatArray
+    minor: FloatArray
+    inclination: FloatArray
+
+
+@dataclass(frozen=True)
+class HarmonicResponse:
+    """Steady motion Re[X e^{iωt}] of a rotor, one for each frequency.
+
+    Attributes
+    ----------
+    frequencies, speeds
+        (b,): ω and the speed of rotation Ω, rad/s.
+    motion
+        The shaft's exact motion.
+    bearings
+        Their names.
+    bearing_forces
+        (b, bearings, 5) complex: on what carries each bearing, over x, y, z (N) and about x and about y (N·m).
+    """
+
+    frequencies: FloatArray
+    speeds: FloatArray
+    motion: ShaftMotion = field(repr=False)
+    bearings: tuple[str, ...]
+    bearing_forces: ComplexArray = field(repr=False)
+
+    def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Complex x and y at positions z (m), both (b, len(z)), m."""
+        return self.motion.evaluate(z)
+
+    def probe(self, z: float, angle: float) -> ComplexArray:
+        """Complex amplitude along a direction at ``angle`` (rad) from x, (b,), m: abs is it, −angle its phase lag."""
+        x, y = self.motion.evaluate([z])
+        return np.asarray(x[:, 0] * np.cos(angle) + y[:, 0] * np.sin(angle))
+
+    def orbit(self, z: npt.ArrayLike) -> Orbit:
+        """Orbits at positions z (m), axes (b, len(z))."""
+        x, y = self.motion.evaluate(z)
+        return orbit_of(x, y, self.frequencies[:, None])
+
+
+def orbit_of(x: ComplexArray, y: ComplexArray, frequencies: FloatArray) -> Orbit:
+    """Ellipse of Re[X e^{iωt}], Re[Y e^{iωt}]: r = x + i y = R₊e^{iωt} + conj(R₋)e^{−iωt}, axes |R₊| ± |R₋|."""
+    plus, minus = 0.5 * (x + 1j * y), 0.5 * (x - 1j * y)
+    sense = np.where(frequencies < 0.0, -1.0, 1.0)
+    inclination = 0.5 * (np.angle(plus) - np.angle(minus))
+    turns = np.round(inclination / np.pi)
+    return Orbit(
+        np.abs(plus) + np.abs(minus), sense * (np.abs(plus) - np.abs(minus)), np.asarray(inclination - np.pi * turns)
+    )
+
+
+def harmonic_response(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    forces: Sequence[HarmonicForce],
+    frequencies: npt.ArrayLike,
+    speed: float = 0.0,
+) -> HarmonicResponse:
+    """Response to harmonic forces that do not turn with the rotor.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings; tables over speed are read at ``speed``.
+    forces
+        Their places and complex amplitudes.
+    frequencies
+        (b,): ω, rad/s.
+    speed
+        Ω, rad/s.
+
+    Raises
+    ------
+    RotorError
+        A place off the shaft, or a number that is not finite.
+    """
+    omega = finite_values("frequencies", frequencies)
+    loads = np.broadcast_to(
+        np.array([force.circular for force in forces]).reshape(1, -1, 5), (omega.size, len(forces), 5)
+    )
+    return solve_harmonic(rotor, bearings, [f.at for f in forces], loads, omega, np.full(omega.size, float(speed)))
+
+
+def frequency_response(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    loaded: Sequence[tuple[float, str]],
+    read: Sequence[tuple[float, str]],
+    frequencies: npt.ArrayLike,
+    speed: float = 0.0,
+) -> ComplexArray:
+    """Receptance between places: displacement at each read place per unit force at each loaded one.
+
+    Parameters
+    ----------
+    loaded, read
+        Place in m and direction, "x" or "y".
+    frequencies, speed
+        ω (b,) and Ω, rad/s.
+
+    Returns
+    -------
+    (b, read, loaded) complex, m/N.
+
+    Raises
+    ------
+    RotorError
+        As `harmonic_response`, or another direction.
+    """
+    for _, direction in (*loaded, *read):
+        require(direction in ("x", "y"), "direction", direction, "'x' or 'y'")
+    columns = []
+    for at, direction in loaded:
+        force = HarmonicForce(at, x=1.0) if direction == "x" else HarmonicForce(at, y=1.0)
+        x, y = harmonic_response(rotor, bearings, [force], frequencies, speed).evaluate([place for place, _ in read])
+        chosen = [x[:, k] if way == "x" else y[:, k] for k, (_, way) in enumerate(read)]
+        columns.append(np.stack(chosen, axis=1))
+    return np.stack(columns, axis=2)
+
+
+def solve_harmonic(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    places: Sequence[float],
+    loads: Loads,
+    frequencies: FloatArray,
+    speeds: FloatArray,
+) -> HarmonicResponse:
+    """Response to loads (b, places, 5) over the circular coordinates, at every ω and Ω, (b,) each."""
+    for bearing in bearings:
+        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
+    for place in places:
+        rotor.require_on_shaft("load", place)
+    tabled = any(bearing.speeds is not None for bearing in bearings)
+    constant = [bearing.at_speed(float(speeds[0])) if tabled else bearing for bearing in bearings]
+    # Tables may couple motions at one speed and not at another: then all are solved together.
+    sets = coupled_motions([b.at_speed(float(s)) for s in speeds for b in bearings] if tabled else constant)
+    highest = max(
+        (whirl_reach(float(w), float(s)) for w, s in zip(np.abs(frequencies), speeds, strict=True)), default=0.0
+    )
+    eigenvalues = (1j * frequencies).astype(np.complex128)
+    forces = np.zeros((frequencies.size, len(constant), 5), dtype=np.complex128)
+    motion: ShaftMotion | None = None
+    for blocks in sets:
+        chain = whirl_equations(rotor, constant, blocks, max(highest, 1e-6), places)
+        scale = chain.response_scale(eigenvalues)
+        sides = _sides(chain, places, loads) / scale[:, None]
+        solutions = np.empty((frequencies.size, chain.pattern.order), dtype=np.complex128)
+        runs = (
+            [(slice(k, k + 1), retied(chain, bearings, float(s))) for k, s in enumerate(speeds)]
+            if tabled
+            else [(slice(None), chain)]
+        )
+        for run, tied in runs:
+            values = tied.values(eigenvalues[run], speeds[run].astype(np.complex128), scale[run])
+            solutions[run] = tied.pattern.solve(values, sides[run, None])[:, 0]
+            forces[run] += bearing_forces(tied, solutions[run], scale[run])
+        part = ShaftMotion.of(chain, eigenvalues, speeds.astype(np.complex128), solutions, scale)
+        motion = part if motion is None else motion.plus(part)
+    assert motion is not None
+    return HarmonicResponse(frequencies, speeds, motion, tuple(bearing.name for bearing in bearings), forces)
+
+
+def bearing_forces(chain: WhirlEquations, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
+    """Forces on the bearings' carriers (b, ties, 5) over x, y, z and about x and y, in SI."""
+    length, angle = chain.bending.displacement_unit
+    forces = np.zeros((solutions.shape[0], len(chain.ties), 5), dtype=np.complex128)
+    for index, (tie, places) in enumerate(zip(chain.ties, chain.layout.ties, strict=True)):
+        own = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
+        own[:, list(tie.directions)] = solutions[:, places.forces] * scale[:, None]
+        if tie.circular:
+            # The change of coordinates is unitary: its inverse is its adjoint.
+            own = (own / np.array([length, angle, length, angle, length])) @ CIRCULAR.conj()
+        else:
+            own = own / np.array([length, length, length, angle, angle])
+        forces[:, index] = own
+    return forces
+
+
+def _sides(chain: WhirlEquations, places: Sequence[float], loads: Loads) -> ComplexArray:
+    """Right-hand sides (b, order) of loads, before the scale of forces."""
+    members = [member for block in chain.blocks for member in BLOCK_COORDINATES[block]]
+    sides = np.zeros((loads.shape[0], chain.pattern.order), dtype=np.complex128)
+    for index, place in enumerate(places):
+        row = chain.layout.balances[chain.bending.node_at(place)]
+        sides[:, row] -= loads[:, index][:, members] * chain.units
+    return sides
+
+
+def finite_values(what: str, values: npt.ArrayLike) -> FloatArray:
+    array = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    require(array.ndim == 1 and array.size > 0, f"{what} shape", array.shape, "one dimension and at least one value")
+    for value in array.tolist():
+        require_finite(what, value)
+    return array

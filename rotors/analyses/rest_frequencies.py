@@ -1,0 +1,155 @@
+"""Natural frequencies of a rotor at rest, in both planes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.certificate import ModeCertificate, combined_certificate
+from rotors.errors import require, require_count, require_finite
+from rotors.model.bearing import Bearing, undamped
+from rotors.model.shaft import Rotor
+from rotors.modes.lateral import require_unbuckled
+from rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft, discretise_together
+from rotors.transfer_matrix.mode_shapes import limit_above, proved_modes, shaft_with_modes
+from rotors.transfer_matrix.rotor_shafts import bending_shafts
+from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, wittrick_williams_counts
+from rotors.whirl.modal_projection import slowest
+from rotors.whirl.planar_basis import DEFAULT_COUNT
+from rotors.whirl.whirl_modes import solve_whirl
+
+FloatArray = npt.NDArray[np.float64]
+
+# Bisections after which roots of both planes that are not separated count as one.
+MOST_HALVINGS = 50
+
+
+@dataclass(frozen=True)
+class RestFrequencies:
+    """Undamped natural frequencies of both planes at rest.
+
+    Attributes
+    ----------
+    frequencies
+        (m,): ascending, rad/s; an isotropic root stands twice.
+    axial_share
+        (m,): share of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not couple
+        axial and lateral motion.
+    certificate
+        Proof of completeness over both planes, and over axial motion where it is coupled to them.
+    """
+
+    frequencies: FloatArray
+    axial_share: FloatArray
+    certificate: ModeCertificate
+
+
+def rest_frequencies(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+) -> RestFrequencies:
+    """Undamped natural frequencies of both planes of a rotor that does not turn.
+
+    Where bearings do not couple the planes, each is solved with its own k_xx or k_yy; otherwise both are solved
+    together, as in `rotors.solve_whirl` at zero speed.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings, none for a free rotor. Tables over speed are read at their lowest speed.
+    frequency_limit
+        rad/s: all frequencies strictly below.
+    count
+        Number of frequencies over both planes, instead of a limit; with neither, 12. Multiple roots stay whole.
+
+    Raises
+    ------
+    RotorError, IncompleteModesError
+        As `rotors.solve_lateral_modes`.
+    """
+    held = [undamped(bearing.at_speed(slowest(bearing))) for bearing in bearings]
+    if not all(_is_planar(bearing) for bearing in held):
+        modes = solve_whirl(rotor, held, 0.0, frequency_limit=frequency_limit, count=count)
+        return RestFrequencies(modes.damped_frequencies, modes.axial_share, modes.certificate)
+
+    wanted = count
+    if frequency_limit is None and count is None:
+        wanted = DEFAULT_COUNT
+    require_count("count of frequencies", wanted)
+    planes = [tuple(bearing.plane_support(direction) for bearing in held) for direction in (0, 1)]
+    for supports in planes:
+        require_unbuckled(rotor, supports)
+    lines = bending_shafts(rotor, planes)
+    alike = planes[0] == planes[1]
+    if frequency_limit is not None:
+        require(count is None, "frequency_limit and count", (frequency_limit, count), "one of the two")
+        require_finite("frequency_limit", frequency_limit, positive=True)
+        limit, chains = frequency_limit, discretise_together(lines[:1] if alike else lines, frequency_limit)
+        expected = wittrick_williams_counts(chains, limit)
+        found = [
+            lowest_natural_frequencies(chain, number, limit) for chain, number in zip(chains, expected, strict=True)
+        ]
+    else:
+        chains, shares = _shares(lines, wanted or DEFAULT_COUNT)
+        if alike:
+            chains, shares = chains[:1], shares[:1]
+        found = [
+            lowest_natural_frequencies(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)
+        ]
+        both = np.sort(np.concatenate(found * 2 if alike else found))
+        if count is not None:
+            most = f"at most {both.size}, all this lumped rotor has"
+            require(count <= both.size, "count of frequencies", count, most)
+        limit = limit_above(float(both[min(wanted or DEFAULT_COUNT, both.size) - 1]), chains[0])
+        expected = wittrick_williams_counts(chains, limit)
+        found = [one[:number] for one, number in zip(found, expected, strict=True)]
+    solved = [
+        proved_modes(chain, frequencies, number, limit)
+        for chain, frequencies, number in zip(chains, found, expected, strict=True)
+        if number
+    ]
+    if alike:
+        solved = solved * 2
+    frequencies = np.sort(np.concatenate([modes.frequencies for modes in solved] or [np.zeros(0)]))
+    certificate = combined_certificate([modes.certificate for modes in solved], limit, "wittrick-williams")
+    return RestFrequencies(frequencies, np.zeros(frequencies.size), certificate)
+
+
+def _is_planar(bearing: Bearing) -> bool:
+    """Whether the bearing is rigidly mounted and its stiffness is diagonal."""
+    stiffness = bearing.stiffness
+    return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
+
+
+def _shares(lines: list[ContinuousShaft], count: int) -> tuple[list[DiscretisedShaft], list[int]]:
+    """Discretised shafts of the planes, and the number of modes of each among the lowest ``count`` of both.
+
+    A lumped rotor with fewer modes gives all of them.
+    """
+    # Distributed mass has no end of modes; of lumped ones, constraints take some in one plane or the other.
+    available = [line.available_modes for line in lines] if lines[0].available_modes < np.inf else [np.inf]
+    if sum(available) <= count:
+        most = [int(number) for number in available]
+        return [shaft_with_modes(line, number) for line, number in zip(lines, most, strict=True)], most
+    low, high = 0.0, lines[0].likely_frequency((count + 1) // 2)
+    while True:
+        chains = discretise_together(lines, high)
+        shares = wittrick_williams_counts(chains, high)
+        if sum(shares) >= count:
+            break
+        low, high = high, 2.0 * high
+    for _ in range(MOST_HALVINGS):
+        # A superfluous mode costs less than the search for the gap between the last two.
+        if sum(shares) <= count + 1:
+            break
+        middle = 0.5 * (low + high)
+        fewer = wittrick_williams_counts(chains, middle)
+        if sum(fewer) >= count:
+            high, shares = middle, fewer
+        else:
+            low = middle
+    return chains, shares

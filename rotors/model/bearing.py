@@ -1,0 +1,260 @@
+"""Bearings by their stiffness and damping matrices, pedestals, and supports of one plane.
+
+Axial and torsional springs from the shaft to ground.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import PchipInterpolator
+
+from rotors.errors import RotorError, require, require_finite
+
+
+@dataclass(frozen=True)
+class AxisSpring:
+    """A spring from the shaft to ground: along its axis in axial motion, about it in torsion.
+
+    Parameters
+    ----------
+    at
+        Position from the rotor's left end, m.
+    stiffness
+        N/m, or N·m/rad in torsion; zero is allowed, and ``math.inf`` holds the shaft there exactly.
+    """
+
+    at: float
+    stiffness: float
+
+    def __post_init__(self) -> None:
+        require_finite("axis spring position", self.at, minimum=0.0)
+        require(self.stiffness >= 0.0, "axis spring stiffness", self.stiffness, "zero, a positive number or infinity")
+
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RadialSupport:
+    """A spring from the shaft to ground in one plane.
+
+    Parameters
+    ----------
+    at
+        Position from the rotor's left end, m.
+    stiffness
+        N/m; zero is allowed, and ``math.inf`` pins the shaft there exactly.
+    tilt_stiffness
+        Against the slope of the section, N·m/rad; ``math.inf`` with an infinite stiffness is a clamp.
+    """
+
+    at: float
+    stiffness: float
+    tilt_stiffness: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite("support position", self.at, minimum=0.0)
+        for what, value in (("stiffness", self.stiffness), ("tilt_stiffness", self.tilt_stiffness)):
+            require(value >= 0.0, f"support {what}", value, "zero, a positive number or infinity")
+
+
+@dataclass(frozen=True, eq=False)
+class Pedestal:
+    """A bearing's pedestal: a mass on springs and dashpots, free to move in x and y.
+
+    Parameters
+    ----------
+    stiffness, damping
+        (2, 2) over x, y: to the ground, N/m and N·s/m.
+    mass
+        Moving mass, kg.
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    mass: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite("pedestal mass", self.mass, minimum=0.0)
+        for what in ("stiffness", "damping"):
+            matrix = _frozen(f"pedestal {what}", getattr(self, what))
+            require(matrix.shape == (2, 2), f"pedestal {what} shape", matrix.shape, "(2, 2), rows and columns x, y")
+            object.__setattr__(self, what, matrix)
+        held = bool(np.linalg.det(self.stiffness) != 0.0)
+        require(held, "pedestal stiffness", self.stiffness.tolist(), "a matrix that holds it in x and y")
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing:
+    """A linear bearing between the shaft and its carrier: a pedestal, the housing or the ground.
+
+    Parameters
+    ----------
+    name
+        Name in messages.
+    at
+        Position from the rotor's left end, m.
+    stiffness, damping
+        Force on the carrier per displacement or velocity of the shaft, which need not be symmetric: (2, 2) over x, y
+        in N/m and N·s/m; or (5, 5) over x, y, z and the rotations about x and about y, also in N/rad, N·m/rad
+        and their like; or (s, 2, 2) or (s, 5, 5), one for each of some speeds. Both need not be of one form.
+    speeds
+        (s,): ascending speeds of rotation of the tables, rad/s; between them the coefficients follow a monotone
+        cubic (Fritsch and Carlson 1980).
+    pedestal
+        The pedestal, if it is not rigid.
+
+    Raises
+    ------
+    RotorError
+        A matrix of another shape or not finite, a direct stiffness that is negative, or speeds that do not fit the
+        tables or do not ascend.
+    """
+
+    name: str
+    at: float
+    stiffness: FloatArray
+    damping: FloatArray
+    speeds: FloatArray | None = None
+    pedestal: Pedestal | None = None
+
+    def __post_init__(self) -> None:
+        label = f"bearing {self.name!r}"
+        require_finite(f"{label} position", self.at, minimum=0.0)
+        if self.speeds is not None:
+            speeds = _frozen(f"{label} speeds", self.speeds)
+            fits = speeds.ndim == 1 and speeds.size >= 2 and bool((np.diff(speeds) > 0.0).all())
+            require(fits, f"{label} speeds", speeds.tolist(), "two or more speeds in rad/s, ascending")
+            object.__setattr__(self, "speeds", speeds)
+        for what in ("stiffness", "damping"):
+            matrix = _frozen(f"{label} {what}", getattr(self, what))
+            shapes: list[tuple[int, ...]] = [(2, 2), (5, 5)]
+            if self.speeds is not None:
+                shapes += [(self.speeds.size, 2, 2), (self.speeds.size, 5, 5)]
+            require(matrix.shape in shapes, f"{label} {what} shape", matrix.shape, f"one of {shapes}")
+            object.__setattr__(self, what, matrix)
+        tabled = self.stiffness.ndim == 3 or self.damping.ndim == 3
+        require(
+            tabled or self.speeds is None, f"{label} speeds", self.speeds, "a table of stiffness or damping with them"
+        )
+        direct = np.diagonal(self.stiffness, axis1=-2, axis2=-1)
+        require(bool((direct >= 0.0).all()), f"{label} stiffness", direct.tolist(), "no negative direct stiffness")
+
+    def __eq__(self, other: object) -> bool:
+        """Equal in name, place and every coefficient."""
+        return isinstance(other, Bearing) and self._identity == other._identity
+
+    def __hash__(self) -> int:
+        """Hash that agrees with equality."""
+        return self._hash
+
+    @classmethod
+    def isotropic(cls, name: str, at: float, stiffness: float, damping: float = 0.0) -> "Bearing":
+        """Bearing alike in every direction: one stiffness (N/m) and one damping (N·s/m)."""
+        return cls(name, at, stiffness * np.eye(2), damping * np.eye(2))
+
+    def at_speed(self, speed: float) -> "Bearing":
+        """The bearing with the constant coefficients of its tables at a speed of rotation (rad/s) of either sense.
+
+        Raises
+        ------
+        RotorError
+            The speed is beyond the tables.
+        """
+        if self.speeds is None:
+            return self
+        low, high = float(self.speeds[0]), float(self.speeds[-1])
+        turning = abs(speed)
+        inside = low * (1.0 - 1e-12) <= turning <= high * (1.0 + 1e-12)
+        require(inside, f"speed of bearing {self.name!r}", speed, f"a speed in its table, {low:g} to {high:g} rad/s")
+        turning = min(max(turning, low), high)
+        stiffness, damping = (
+            np.asarray(PchipInterpolator(self.speeds, table)(turning)) if table.ndim == 3 else table
+            for table in (self.stiffness, self.damping)
+        )
+        return replace(self, stiffness=stiffness, damping=damping, speeds=None)
+
+    @property
+    def radial_stiffness(self) -> FloatArray:
+        """(2, 2) over x, y, N/m."""
+        return self._constant(self.stiffness)[:2, :2]
+
+    @property
+    def radial_damping(self) -> FloatArray:
+        """(2, 2) over x, y, N·s/m."""
+        return self._constant(self.damping)[:2, :2]
+
+    @property
+    def spatial_stiffness(self) -> FloatArray:
+        """(5, 5) over x, y, z and the rotations about x and y."""
+        return _spatial(self._constant(self.stiffness))
+
+    @property
+    def spatial_damping(self) -> FloatArray:
+        """(5, 5) over x, y, z and the rotations about x and y."""
+        return _spatial(self._constant(self.damping))
+
+    @property
+    def mean_stiffness(self) -> float:
+        """(k_xx + k_yy) / 2, the stiffness of the planar modal basis (TM-101442 Eq. 7), N/m."""
+        return 0.5 * float(np.trace(self.radial_stiffness))
+
+    @property
+    def mean_tilt_stiffness(self) -> float:
+        """The same of the rotations about x and y, N·m/rad."""
+        return 0.5 * float(np.trace(self.spatial_stiffness[3:, 3:]))
+
+    @property
+    def mean_support(self) -> RadialSupport:
+        """The planar spring of the modal basis."""
+        return RadialSupport(self.at, self.mean_stiffness, self.mean_tilt_stiffness)
+
+    def plane_support(self, direction: int) -> RadialSupport:
+        """The bearing's own direct spring in x (``direction`` 0) or y (1)."""
+        # The section's slope in x is its rotation about y; the slope in y is minus that about x.
+        direct = self._constant(self.stiffness).diagonal().tolist()
+        return RadialSupport(self.at, direct[direction], direct[4 - direction] if len(direct) == 5 else 0.0)
+
+    def _constant(self, matrix: FloatArray) -> FloatArray:
+        if matrix.ndim == 3:
+            raise RotorError(f"bearing {self.name!r} has a table over speed; expected one speed of it, by at_speed")
+        return matrix
+
+    @cached_property
+    def _identity(self) -> tuple[object, ...]:
+        arrays = [self.stiffness, self.damping, self.speeds]
+        if self.pedestal is not None:
+            arrays += [self.pedestal.stiffness, self.pedestal.damping, np.array(self.pedestal.mass)]
+        return (self.name, self.at, *(None if array is None else (array.shape, array.tobytes()) for array in arrays))
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(self._identity)
+
+
+def undamped(bearing: Bearing) -> Bearing:
+    """The bearing and its pedestal without damping."""
+    pedestal = bearing.pedestal
+    if pedestal is None and not bearing.damping.any():
+        return bearing
+    if pedestal is not None:
+        pedestal = replace(pedestal, damping=np.zeros((2, 2)))
+    return replace(bearing, damping=np.zeros_like(bearing.damping), pedestal=pedestal)
+
+
+def _frozen(what: str, value: npt.ArrayLike) -> FloatArray:
+    """A finite, read-only array."""
+    array = np.array(value, dtype=np.float64)
+    require(bool(np.isfinite(array).all()), what, array.tolist(), "finite numbers")
+    array.setflags(write=False)
+    return array
+
+
+def _spatial(matrix: FloatArray) -> FloatArray:
+    if matrix.shape == (5, 5):
+        return matrix
+    whole = np.zeros((5, 5))
+    whole[:2, :2] = matrix
+    return whole

@@ -1,0 +1,118 @@
+"""Loads of a rotor: unbalance, residual bow, harmonic forces."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import require, require_finite
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Unbalance:
+    """An unbalance: a mass off the axis of rotation.
+
+    Parameters
+    ----------
+    at
+        Position from the rotor's left end, m.
+    moment
+        Mass times eccentricity, kg·m.
+    phase
+        Its angle on the rotor from x, counter-clockwise seen from +z, rad.
+    """
+
+    at: float
+    moment: float
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite("unbalance position", self.at, minimum=0.0)
+        require_finite("unbalance moment", self.moment)
+        require_finite("unbalance phase", self.phase)
+
+    @property
+    def vector(self) -> complex:
+        """Moment times e^{i phase}."""
+        return complex(self.moment * np.exp(1j * self.phase))
+
+
+@dataclass(frozen=True)
+class HarmonicForce:
+    """A force and moment Re[F e^{iωt}] at a place.
+
+    Parameters
+    ----------
+    at
+        Position from the rotor's left end, m.
+    x, y
+        Complex amplitudes of the force, N.
+    slope_x, slope_y
+        Complex amplitudes of the moments that turn the section in the plane of x and of y, N·m: about y, and
+        about −x.
+    """
+
+    at: float
+    x: complex = 0.0
+    y: complex = 0.0
+    slope_x: complex = 0.0
+    slope_y: complex = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite("force position", self.at, minimum=0.0)
+        for what in ("x", "y", "slope_x", "slope_y"):
+            value = complex(getattr(self, what))
+            require(bool(np.isfinite(value)), f"force {what}", value, "a finite complex number")
+
+    @property
+    def circular(self) -> tuple[complex, complex, complex, complex, complex]:
+        """Over r+, β+, r−, β− and z."""
+        root = np.sqrt(0.5)
+        x, y, bx, by = self.x, self.y, self.slope_x, self.slope_y
+        return (
+            complex(root * (x + 1j * y)),
+            complex(root * (bx + 1j * by)),
+            complex(root * (x - 1j * y)),
+            complex(root * (bx - 1j * by)),
+            0j,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Bow:
+    """Residual bow: the shape of the unloaded shaft, measured at some places.
+
+    Parameters
+    ----------
+    at
+        (k,): positions from the rotor's left end, m.
+    offset
+        (k,): distances of the centre line from the axis of rotation, m.
+    phase
+        (k,): their angles on the rotor from x, counter-clockwise seen from +z, rad; zero if not given.
+    """
+
+    at: FloatArray
+    offset: FloatArray
+    phase: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        at, offset = np.array(self.at, dtype=np.float64), np.array(self.offset, dtype=np.float64)
+        phase = np.zeros_like(offset) if self.phase is None else np.array(self.phase, dtype=np.float64)
+        fits = at.ndim == 1 and at.size > 0 and at.shape == offset.shape == phase.shape
+        require(fits, "bow shapes", (at.shape, offset.shape, phase.shape), "one position, offset and phase per point")
+        finite = bool(np.isfinite(np.concatenate([at, offset, phase])).all())
+        require(finite, "bow", (at.tolist(), offset.tolist(), phase.tolist()), "finite numbers")
+        apart = np.unique(at).size == at.size
+        require(apart, "bow positions", at.tolist(), "each place once")
+        for what, value in (("at", at), ("offset", offset), ("phase", phase)):
+            value.setflags(write=False)
+            object.__setattr__(self, what, value)
+
+    @property
+    def vectors(self) -> npt.NDArray[np.complex128]:
+        """Offsets times e^{i phase}, (k,)."""
+        assert self.phase is not None
+        return np.asarray(self.offset * np.exp(1j * self.phase))

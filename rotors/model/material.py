@@ -1,0 +1,143 @@
+"""Shaft material, and Timoshenko's shear coefficient of round cross-sections.
+
+Round cross-section: area, second moment, stiffness and mass per length.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from rotors.errors import require, require_finite
+
+ShearFormula = Literal["cowper", "hutchinson"]
+
+
+@dataclass(frozen=True)
+class ShaftMaterial:
+    """A linear elastic, isotropic shaft material.
+
+    Parameters
+    ----------
+    youngs_modulus, shear_modulus
+        E and G in Pa.
+    density
+        Mass per volume in kg/m³; zero makes a segment a pure spring.
+
+    Raises
+    ------
+    RotorError
+        A modulus is not positive, or the density is negative.
+    """
+
+    youngs_modulus: float
+    shear_modulus: float
+    density: float
+
+    def __post_init__(self) -> None:
+        require_finite("youngs_modulus", self.youngs_modulus, positive=True)
+        require_finite("shear_modulus", self.shear_modulus, positive=True)
+        require_finite("density", self.density, minimum=0.0)
+
+    @classmethod
+    def from_poisson_ratio(cls, youngs_modulus: float, poisson_ratio: float, density: float) -> "ShaftMaterial":
+        """Material of modulus E (Pa), Poisson ratio ν and density (kg/m³); G = E / 2(1 + ν)."""
+        require(-1.0 < poisson_ratio <= 0.5, "poisson_ratio", poisson_ratio, "a number in (-1, 0.5]")
+        return cls(youngs_modulus, youngs_modulus / (2.0 * (1.0 + poisson_ratio)), density)
+
+    @property
+    def poisson_ratio(self) -> float:
+        """ν = E / 2G − 1."""
+        return self.youngs_modulus / (2.0 * self.shear_modulus) - 1.0
+
+
+def shear_coefficient(formula: ShearFormula, bore_ratio: float, poisson_ratio: float) -> float:
+    """Timoshenko's shear coefficient κ of a round section, solid or hollow.
+
+    With m the bore over the outer diameter and ν the Poisson ratio,
+
+    - ``"cowper"`` (Cowper, J. Appl. Mech. 33, 1966, hollow circle)::
+
+          κ = 6 (1 + ν) (1 + m²)² / [(7 + 6ν)(1 + m²)² + (20 + 12ν) m²]
+
+    - ``"hutchinson"`` (Hutchinson, J. Appl. Mech. 68, 2001, hollow circle)::
+
+          κ = 6 (1 + ν)² (1 + m²)²
+              / [(7 + 34 m² + 7 m⁴) + 12 ν (1 + 4 m² + m⁴) + 4 ν² (1 + 4 m² + m⁴)]
+
+    Raises
+    ------
+    RotorError
+        Unknown formula, a ratio m outside [0, 1), or ν outside (-1, 0.5].
+    """
+    require(0.0 <= bore_ratio < 1.0, "bore over outer diameter", bore_ratio, "a number in [0, 1)")
+    require(
+        -1.0 < poisson_ratio <= 0.5,
+        "Poisson ratio E / 2G - 1",
+        poisson_ratio,
+        "a number in (-1, 0.5]; check the moduli, or give the shear coefficient as a number",
+    )
+    m2, nu = bore_ratio**2, poisson_ratio
+    if formula == "cowper":
+        solid = (1.0 + m2) ** 2
+        return 6.0 * (1.0 + nu) * solid / ((7.0 + 6.0 * nu) * solid + (20.0 + 12.0 * nu) * m2)
+    require(formula == "hutchinson", "shear_coefficient", formula, "'cowper', 'hutchinson' or a number")
+    poisson_terms = (12.0 * nu + 4.0 * nu**2) * (1.0 + 4.0 * m2 + m2**2)
+    return 6.0 * (1.0 + nu) ** 2 * (1.0 + m2) ** 2 / (7.0 + 34.0 * m2 + 7.0 * m2**2 + poisson_terms)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A round section of a shaft: outer and inner diameter in m, its material, its shear coefficient."""
+
+    outer_diameter: float
+    inner_diameter: float
+    material: ShaftMaterial
+    shear_coefficient: ShearFormula | float
+
+    @property
+    def shear_factor(self) -> float:
+        """Shear coefficient κ as a number."""
+        if isinstance(self.shear_coefficient, str):
+            ratio = self.inner_diameter / self.outer_diameter
+            return shear_coefficient(self.shear_coefficient, ratio, self.material.poisson_ratio)
+        return float(self.shear_coefficient)
+
+    @property
+    def area(self) -> float:
+        """Area in m²."""
+        return math.pi / 4.0 * (self.outer_diameter**2 - self.inner_diameter**2)
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area about a diameter, m⁴; twice this is the polar one."""
+        return math.pi / 64.0 * (self.outer_diameter**4 - self.inner_diameter**4)
+
+    @property
+    def bending_stiffness(self) -> float:
+        """E I in N·m²."""
+        return self.material.youngs_modulus * self.second_moment
+
+    @property
+    def shear_stiffness(self) -> float:
+        """κ G A in N."""
+        return self.shear_factor * self.material.shear_modulus * self.area
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """G J in N·m²."""
+        return 2.0 * self.material.shear_modulus * self.second_moment
+
+    @property
+    def axial_stiffness(self) -> float:
+        """E A in N."""
+        return self.material.youngs_modulus * self.area
+
+    @property
+    def mass_per_length(self) -> float:
+        """ρ A in kg/m."""
+        return self.material.density * self.area
+
+    @property
+    def polar_inertia_per_length(self) -> float:
+        """2 ρ I in kg·m."""
+        return 2.0 * self.material.density * self.second_moment

@@ -1,0 +1,181 @@
+"""Shaft segment: a straight round length of shaft, cylindrical or conical.
+
+Flexible coupling between two shafts on one axis.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rotors.errors import require, require_finite
+from rotors.model.material import Section, ShaftMaterial, ShearFormula
+from rotors.numerics.quadrature import gauss_rule
+
+DAMPINGS = ("lateral_damping", "tilt_damping", "torsional_damping", "axial_damping")
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A flexible coupling between two shafts on one axis, in their row of segments.
+
+    Its compliances are spread evenly over its length, as those of a massless beam with κGA = k L, EI = k_t L,
+    GJ = k_θ L and EA = k_z L; half of its mass is at either end.
+
+    Parameters
+    ----------
+    length
+        From hub to hub, m.
+    lateral_stiffness, axial_stiffness
+        k and k_z, N/m.
+    tilt_stiffness, torsional_stiffness
+        k_t against an angle between the axes and k_θ about them, N·m/rad.
+    mass, polar_inertia, diametral_inertia
+        Of the whole coupling, kg and kg·m².
+    lateral_damping, axial_damping, tilt_damping, torsional_damping
+        Dashpots beside the stiffnesses, N·s/m and N·m·s/rad: c of the coupled system, which turn with the shaft.
+
+    Raises
+    ------
+    RotorError
+        A length or stiffness that is not positive and finite, or a negative inertia or damping.
+    """
+
+    length: float
+    lateral_stiffness: float
+    tilt_stiffness: float
+    torsional_stiffness: float
+    axial_stiffness: float
+    mass: float = 0.0
+    polar_inertia: float = 0.0
+    diametral_inertia: float = 0.0
+    lateral_damping: float = 0.0
+    tilt_damping: float = 0.0
+    torsional_damping: float = 0.0
+    axial_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        for what in ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"):
+            require_finite(f"coupling {what}", getattr(self, what), positive=True)
+        for what in ("mass", "polar_inertia", "diametral_inertia", *DAMPINGS):
+            require_finite(f"coupling {what}", getattr(self, what), minimum=0.0)
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether it has damping."""
+        return any(getattr(self, what) > 0.0 for what in DAMPINGS)
+
+    @property
+    def mass_centre(self) -> float:
+        """Distance of the centre of mass from the left end, m."""
+        return 0.5 * self.length
+
+    @property
+    def polar_centre(self) -> float:
+        """Distance of the centre of the polar inertia from the left end, m."""
+        return 0.5 * self.length
+
+
+_GAUSS = tuple(zip(*(part.tolist() for part in gauss_rule(4)), strict=True))
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A straight round length of shaft, cylindrical or conical.
+
+    Parameters
+    ----------
+    length, outer_diameter, inner_diameter
+        In m; the bore (inner diameter) may be zero. For a cone, the diameters at its left end.
+    material
+        Its material.
+    shear_coefficient
+        ``"cowper"``, ``"hutchinson"``, or the number κ itself.
+    right_outer_diameter, right_inner_diameter
+        Diameters at the right end, m; the diameters change linearly. None for a cylinder.
+    axial_force
+        Static force in N that the piece carries, tension positive.
+
+    Raises
+    ------
+    RotorError
+        A length or outer diameter that is not positive, a bore not inside the section, or a material
+        whose Poisson ratio the shear formula cannot take.
+    """
+
+    length: float
+    outer_diameter: float
+    inner_diameter: float
+    material: ShaftMaterial
+    shear_coefficient: ShearFormula | float = "cowper"
+    right_outer_diameter: float | None = None
+    right_inner_diameter: float | None = None
+    axial_force: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite("segment length", self.length, positive=True)
+        require_finite("segment axial_force", self.axial_force)
+        for side, (outer, inner) in zip(("", "right_"), self.end_diameters, strict=True):
+            require_finite(f"segment {side}outer_diameter", outer, positive=True)
+            require_finite(f"segment {side}inner_diameter", inner, minimum=0.0)
+            expected = f"less than the outer diameter {outer:g} m"
+            require(inner < outer, f"segment {side}inner_diameter", inner, expected)
+        if isinstance(self.shear_coefficient, str):
+            _ = self.section(0.0).shear_factor  # raises where the material does not suit the formula
+        else:
+            require_finite("shear coefficient", self.shear_coefficient, positive=True)
+
+    @property
+    def end_diameters(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Outer and inner diameter at the left end, and at the right end, m."""
+        right_outer = self.outer_diameter if self.right_outer_diameter is None else self.right_outer_diameter
+        right_inner = self.inner_diameter if self.right_inner_diameter is None else self.right_inner_diameter
+        return (self.outer_diameter, self.inner_diameter), (right_outer, right_inner)
+
+    @property
+    def is_conical(self) -> bool:
+        """Whether a diameter changes along the piece."""
+        left, right = self.end_diameters
+        return left != right
+
+    def section(self, fraction: float) -> Section:
+        """The section at a fraction of the length from the left end, 0 to 1."""
+        (outer, inner), (right_outer, right_inner) = self.end_diameters
+        return Section(
+            outer + fraction * (right_outer - outer),
+            inner + fraction * (right_inner - inner),
+            self.material,
+            self.shear_coefficient,
+        )
+
+    @property
+    def mass(self) -> float:
+        """Mass in kg."""
+        return self._integral(lambda section, _: section.mass_per_length)
+
+    @property
+    def mass_centre(self) -> float:
+        """Distance of the centre of mass from the left end, m."""
+        return self._integral(lambda section, z: section.mass_per_length * z) / self.mass if self.mass else 0.0
+
+    @property
+    def polar_inertia(self) -> float:
+        """Moment of inertia about the axis, kg·m²."""
+        return self._integral(lambda section, _: section.polar_inertia_per_length)
+
+    @property
+    def polar_centre(self) -> float:
+        """Distance of the centre of the polar inertia from the left end, m."""
+        about_left = self._integral(lambda section, z: section.polar_inertia_per_length * z)
+        return about_left / self.polar_inertia if self.polar_inertia else 0.0
+
+    @property
+    def diametral_inertia(self) -> float:
+        """Moment of inertia about a diameter through its own centre of mass, kg·m²."""
+        about_left = self._integral(lambda section, z: section.mass_per_length * z**2)
+        return 0.5 * self.polar_inertia + about_left - self.mass * self.mass_centre**2
+
+    def _integral(self, density: Callable[[Section, float], float]) -> float:
+        """Integral along the piece; Gauss's four points are exact for the polynomials of a cone (degree 5)."""
+        return self.length * math.fsum(
+            weight * density(self.section(fraction), fraction * self.length) for fraction, weight in _GAUSS
+        )

@@ -1,0 +1,282 @@
+"""Lateral modes: undamped bending of a shaft in one plane, the modal basis of the rotor (TM-101442 Eqs. 7–13).
+
+Buckling of a shaft under its axial forces, by the Wittrick-Williams root count.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.certificate import ModeCertificate
+from rotors.errors import require
+from rotors.model.bearing import RadialSupport
+from rotors.model.segment import Segment
+from rotors.model.shaft import Rotor
+from rotors.transfer_matrix.mode_shapes import ShaftFields, find_modes, require_positions
+from rotors.transfer_matrix.rotor_shafts import bending_shaft
+from rotors.transfer_matrix.wittrick_williams import wittrick_williams_count
+
+# Part of the frequency scale √(stiffness / mass) that stands for standstill: a free shaft's rigid motion is at zero.
+STANDSTILL = 1e-9
+RELATIVE_WIDTH = 1e-13
+MOST_DOUBLINGS = 100
+# A shaft that is free to tilt buckles under any compression: a factor below this is zero.
+LEAST_FACTOR = 1e-9
+
+
+def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> float:
+    """The least factor on all axial forces of a rotor at which it buckles in one plane.
+
+    Compression lowers the natural frequencies. Where one has reached zero the shaft buckles: beyond, the root count at
+    standstill exceeds the number of rigid motions.
+
+    Parameters
+    ----------
+    rotor
+        The shaft, with the axial forces of its segments.
+    supports
+        Springs to ground in this plane.
+
+    Returns
+    -------
+    float
+        To 1e-13 of itself; infinite without compression, zero for a shaft that is free to tilt.
+
+    Raises
+    ------
+    RotorError
+        A support off the shaft; or compression would have to exceed half of the shear stiffness κGA first, which no
+        material bears.
+    """
+    forces = [part.axial_force for part in rotor.segments if isinstance(part, Segment)]
+    if min(forces, default=0.0) >= 0.0:
+        return np.inf
+    low, high = 0.0, 1.0
+    for _ in range(MOST_DOUBLINGS):
+        if _has_buckled(rotor, supports, high):
+            break
+        low, high = high, 2.0 * high
+    if _has_buckled(rotor, supports, LEAST_FACTOR):
+        return 0.0
+    while high - low > RELATIVE_WIDTH * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _has_buckled(rotor, supports, middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def require_unbuckled(rotor: Rotor, supports: Sequence[RadialSupport]) -> None:
+    """Raise `RotorError` with the buckling factor if the rotor's own axial forces buckle it."""
+    if rotor.is_compressed:
+        buckled = _has_buckled(rotor, supports, 1.0)
+        factor = buckling_factor(rotor, supports) if buckled else np.inf
+        require(
+            not buckled,
+            f"rotor {rotor.name!r} axial force",
+            min(part.axial_force for part in rotor.segments if isinstance(part, Segment)),
+            f"compression that it bears: it buckles at {factor:.6g} times its axial forces",
+        )
+
+
+def _has_buckled(rotor: Rotor, supports: Sequence[RadialSupport], factor: float) -> bool:
+    parts = [
+        replace(part, axial_force=factor * part.axial_force) if isinstance(part, Segment) else part
+        for part in rotor.segments
+    ]
+    line = bending_shaft(replace(rotor, segments=parts), supports)
+    # Every chain of this line has the same scale; the pieces of a standstill are the longest.
+    chain = line.cut(STANDSTILL * line.likely_frequency(1))
+    return wittrick_williams_count(chain, chain.highest) > int(chain.rigid_shapes.shape[0])
+
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class LateralModes:
+    """Mass-orthonormal planar modes, Φᵀ M Φ = I and Φᵀ K Φ = diag(ω²).
+
+    M holds the shaft's translational and rotary inertia along its length as well as the discs; K the
+    shaft and the supports.
+
+    Attributes
+    ----------
+    frequencies
+        (m,): ascending, rad/s; rigid motions of a free shaft are zeros.
+    stations
+        (s,): segment ends, discs and supports, m from the left end.
+    displacement, slope
+        (m, s): x and the rotation of the section at the stations, in m and rad per unit modal coordinate.
+    polar_inertia_matrix
+        (m, m): ∫ ρI_p βᵢβⱼ dz plus Σ I_p βᵢβⱼ of the discs: the gyroscopic matrix per rad/s.
+    supports
+        The springs in K, which a coupled model removes again.
+    certificate
+        Proof of completeness. It does not cover the attachment modes of `rotors.add_attachment_modes`.
+    """
+
+    frequencies: FloatArray
+    stations: FloatArray
+    displacement: FloatArray
+    slope: FloatArray
+    polar_inertia_matrix: FloatArray
+    supports: tuple[RadialSupport, ...]
+    certificate: ModeCertificate
+    fields: ShaftFields = field(repr=False)
+    mixture: FloatArray = field(repr=False)
+
+    @property
+    def count(self) -> int:
+        """Number of modes m."""
+        return int(self.frequencies.size)
+
+    def evaluate(self, z: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Displacement and slope of every mode at positions z (m), both (m, len(z)), by the exact field.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        positions = require_positions(self.stations, z)
+        states = np.tensordot(self.mixture, self.fields.at(positions)[:, :, :2], axes=1)
+        unit = self.fields.chain.displacement_unit
+        return states[:, :, 0] * unit[0], states[:, :, 1] * unit[1]
+
+    def section_loads(self, z: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Shear force and bending moment of every mode at positions z (m), both (m, len(z)).
+
+        f = κGA (x' − β) + P x' in N and EI β' in N·m, per unit modal coordinate, just right of a position; at the
+        shaft's right end just left of it.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        positions = require_positions(self.stations, z)
+        states = np.tensordot(self.mixture, self.fields.at(positions)[:, :, 2:], axes=1)
+        unit = self.fields.chain.displacement_unit
+        return states[:, :, 0] / unit[0], states[:, :, 1] / unit[1]
+
+    def strain_energy_shares(self, edges: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Shares of every mode's strain energy in lengths of shaft and in its supports; their sum is one.
+
+        A mode's strain energy is ½ ω² at unit modal coordinate. Rigid motions have none, and zeros here.
+
+        Parameters
+        ----------
+        edges
+            (e + 1,): ascending positions that divide the shaft, m: `Rotor.joints` for its segments.
+
+        Returns
+        -------
+        lengths, supports
+            (m, e) and (m, supports); a support that is infinitely stiff stores nothing.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        places = require_positions(self.stations, edges)
+        fields = self.fields.on(self.fields.chain.with_nodes(places))
+        nodes = fields.chain.nodes
+        owner = np.searchsorted(places, 0.5 * (nodes[1:] + nodes[:-1])) - 1
+        pieces = fields.strain_of_pieces(self.mixture)
+        lengths = np.stack([pieces[:, owner == k].sum(axis=1) for k in range(places.size - 1)], axis=1)
+        supports = np.zeros((self.count, len(self.supports)))
+        for k, support in enumerate(self.supports):
+            for stiffness, motion in zip(
+                (support.stiffness, support.tilt_stiffness), self.evaluate([support.at]), strict=True
+            ):
+                if np.isfinite(stiffness):
+                    supports[:, k] += stiffness * motion[:, 0] ** 2
+        whole = np.where(self.frequencies > 0.0, self.frequencies**2, np.inf)[:, None]
+        return lengths / whole, supports / whole
+
+    @property
+    def free_stiffness(self) -> FloatArray:
+        """diag(ω²) less the supports: stiffness of the shaft alone, (m, m), 1/s²."""
+        return np.diag(self.frequencies**2) - self.support_matrix
+
+    @property
+    def support_matrix(self) -> FloatArray:
+        """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""
+        total = np.zeros((self.count, self.count))
+        if not self.supports:
+            return total
+        springs = np.array([(support.stiffness, support.tilt_stiffness) for support in self.supports])
+        springs[np.isinf(springs)] = 0.0
+        for stiffness, motion in zip(springs.T, self.evaluate([support.at for support in self.supports]), strict=True):
+            total += (motion * stiffness) @ motion.T
+        return total
+
+
+def solve_lateral_modes(
+    rotor: Rotor,
+    supports: Sequence[RadialSupport] = (),
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+) -> LateralModes:
+    """Every planar bending mode below a limit, or the lowest ones, without gyroscopic effects.
+
+    Parameters
+    ----------
+    rotor
+        The shaft and its discs.
+    supports
+        Springs to ground in this plane; none leaves the shaft free, with two rigid motions at zero.
+    frequency_limit
+        rad/s: all modes strictly below.
+    count
+        Number of modes, instead of a limit; with neither, 10 (or all that a lumped rotor has). A multiple root at the
+        end is kept whole, so that the result may hold a mode or two more.
+
+    Raises
+    ------
+    RotorError
+        A support off the shaft, both a limit and a count, more modes than a lumped rotor has, or axial forces that
+        buckle the shaft.
+    IncompleteModesError
+        The modes fail their own proof.
+    """
+    held = tuple(supports)
+    require_unbuckled(rotor, held)
+    found = find_modes(bending_shaft(rotor, held), frequency_limit, count)
+    return lateral_modes(found.frequencies, found.fields, found.mixture, held, found.certificate)
+
+
+def lateral_modes(
+    frequencies: FloatArray,
+    fields: ShaftFields,
+    mixture: FloatArray,
+    supports: tuple[RadialSupport, ...],
+    certificate: ModeCertificate,
+) -> LateralModes:
+    """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
+    chain = fields.chain
+    at_stations = fields.at(chain.stations)[:, :, :2]
+    # By sums over fields, of which there are none below a limit under the first mode.
+    nodal = np.tensordot(mixture, at_stations, axes=1)
+    # The largest displacement is positive, so that a shape does not depend on the solver's start.
+    shapes = nodal[:, :, 0]
+    largest = np.abs(shapes).argmax(axis=1)
+    sign = np.where(shapes[np.arange(largest.size), largest] < 0.0, -1.0, 1.0)
+    mixture = sign[:, None] * mixture
+    nodal = sign[:, None, None] * nodal * chain.displacement_unit
+    # Polar inertia and rotary mass share one unit, so that the unit modal mass carries it over unchanged.
+    polar = fields.polar_matrix(mixture)
+    return LateralModes(
+        frequencies=frequencies,
+        stations=chain.stations,
+        displacement=nodal[:, :, 0],
+        slope=nodal[:, :, 1],
+        polar_inertia_matrix=0.5 * (polar + polar.T),
+        supports=supports,
+        certificate=certificate,
+        fields=fields,
+        mixture=mixture,
+    )

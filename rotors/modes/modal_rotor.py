@@ -1,0 +1,313 @@
+"""Modal rotor: a rotor reduced to modes and residual attachment modes, and its bearings in modal form.
+
+Both planes share the bending modes Φ at averaged bearing stiffness k̄ (TM-101442 Eqs. 7 to 13), so that q = (q_x, q_y)
+obeys
+
+    q̈ + [Ω (J ⊗ G) + C_b] q̇ + [I ⊗ diag(ω²) + K_s + K_c] q = Φᵀ f,        J = [[0, 1], [-1, 0]],
+
+with the gyroscopic matrix G = ∫ Φ' dI_p Φ'ᵀ and, summed over the bearings, the compensation
+
+    K_s = Σ diag(k_xx - k̄, k_yy - k̄) ⊗ Φ_b Φ_bᵀ
+
+and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-104434 Eqs. 11 to 15). A bearing's tilt stiffness
+enters in the same way with the slopes. The modes are followed by residual attachment modes for every load that a
+bearing or a gear puts on the shaft: a lateral force at each of them, a moment and an axial force where a bearing
+resists these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated
+modes (Craig 2000), without which the shaft is too stiff at gears and bearings.
+
+Participation factors of a rotor's modes in rigid motions of the ground.
+
+For a ground that moves rigidly, u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation
+of the sections. R is a displacement along x (or y), a turn of the shaft's line about its left end in the plane of x
+(or y), or a motion along the axis. The same integral with the polar inertia is the gyroscopic moment of a base that
+turns.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import require, require_finite
+from rotors.model.bearing import Bearing, RadialSupport
+from rotors.model.segment import Segment
+from rotors.model.shaft import Rotor, station_inertias
+from rotors.modes.lateral import LateralModes, solve_lateral_modes
+from rotors.modes.residual_modes import add_attachment_modes, add_rod_attachment_modes
+from rotors.modes.torsional_and_axial import AxialModes, TorsionalModes, solve_axial_modes, solve_torsional_modes
+from rotors.numerics.quadrature import gauss_rule
+from rotors.transfer_matrix.rotor_shafts import bending_shaft, rod_shaft
+from rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
+
+FloatArray = npt.NDArray[np.float64]
+
+_FRACTIONS, _WEIGHTS = gauss_rule(10)  # on pieces no longer than the shaft is thick
+
+
+@dataclass(frozen=True)
+class Participation:
+    """Participation of m bending and a axial modes in rigid motions of the ground, integrals over the rotor.
+
+    Attributes
+    ----------
+    displacement : ndarray, shape (m,)
+        ∫ φ dm [√kg].
+    tilt : ndarray, shape (m,)
+        ∫ (z φ dm + β dI_d), z from the left end [√kg m].
+    spin : ndarray, shape (m,)
+        ∫ β dI_p [√kg m].
+    axial : ndarray, shape (a,)
+        ∫ ψ dm [√kg].
+    """
+
+    displacement: FloatArray
+    tilt: FloatArray
+    spin: FloatArray
+    axial: FloatArray
+
+
+def participation(rotor: Rotor, lateral: LateralModes, axial: AxialModes | None) -> Participation:
+    """Participation of a rotor's modes and vectors in the rigid motions of its ground."""
+    places, inertias = _spread(rotor)
+    mass, diametral, polar = inertias.T
+    displacement, slope = lateral.evaluate(places)
+    along = np.zeros(0) if axial is None else axial.evaluate(places) @ mass
+    return Participation(
+        displacement @ mass, displacement @ (mass * places) + slope @ diametral, slope @ polar, np.asarray(along)
+    )
+
+
+def _spread(rotor: Rotor) -> tuple[FloatArray, FloatArray]:
+    """Quadrature places (p,) [m] and mass, diametral and polar inertia (p, 3) of the whole rotor there."""
+    stations = rotor.stations
+    places, inertias = [stations], [station_inertias(rotor, stations)]
+    for part, left in zip(rotor.segments, rotor.joints[:-1].tolist(), strict=True):
+        if rotor.mass_model == "lumped" or not isinstance(part, Segment):
+            continue
+        thinnest = min(outer for outer, _ in part.end_diameters)
+        count = int(np.ceil(part.length / thinnest))
+        fractions = ((np.arange(count)[:, None] + _FRACTIONS) / count).ravel()
+        lengths = np.tile(_WEIGHTS, count) * part.length / count
+        sections = [part.section(float(fraction)) for fraction in fractions]
+        mass = lengths * [section.mass_per_length for section in sections]
+        polar = lengths * [section.polar_inertia_per_length for section in sections]
+        places.append(left + fractions * part.length)
+        inertias.append(np.column_stack([mass, 0.5 * polar, polar]))
+    return np.concatenate(places), np.concatenate(inertias)
+
+
+# More modes of a kind than this are a mistake in a unit: every one is a coordinate of a dense system.
+MOST_MODES = 300
+_FEWEST = 4  # modes, below which a frequency limit is too low to be meant
+
+
+@dataclass(frozen=True)
+class ModalRotor:
+    """A rotor reduced to modes and attachment vectors.
+
+    Attributes
+    ----------
+    lateral : LateralModes
+        b bending modes and vectors, for the x and for the y plane.
+    torsional : TorsionalModes
+        Free to turn; the rigid rotation first.
+    axial : AxialModes or None
+        Free along the axis; the rigid motion first. Where no bearing resists motion along it, there are none.
+    bearings : tuple of Bearing
+        The bearings whose averaged stiffness is in the bending modes.
+    ports : tuple of float
+        Places of bearings, gears and other forces, m from the left end.
+    participation : Participation or None
+        Of the modes and vectors in the rigid motions of the ground.
+    """
+
+    lateral: LateralModes
+    torsional: TorsionalModes
+    axial: AxialModes | None = None
+    bearings: tuple[Bearing, ...] = ()
+    ports: tuple[float, ...] = ()
+    participation: Participation | None = None
+
+    @property
+    def gyroscopic(self) -> FloatArray:
+        """J ⊗ G over (q_x, q_y), (2 b, 2 b): times the speed of rotation [rad/s] it joins the damping."""
+        return gyroscopic_matrix(self.lateral.polar_inertia_matrix)
+
+    @property
+    def compensation(self) -> FloatArray:
+        """K_s over (q_x, q_y), (2 b, 2 b) [1/s²]."""
+        return self._bearing_sum("stiffness", np.eye(2)) - np.kron(np.eye(2), self.lateral.support_matrix)
+
+    @property
+    def cross_coupling(self) -> FloatArray:
+        """K_c over (q_x, q_y), (2 b, 2 b) [1/s²]; not symmetric where the bearings' is not."""
+        return self._bearing_sum("stiffness", 1.0 - np.eye(2))
+
+    @property
+    def bearing_damping(self) -> FloatArray:
+        """C_b over (q_x, q_y), (2 b, 2 b) [1/s]."""
+        return self._bearing_sum("damping", np.ones((2, 2)))
+
+    @property
+    def static_error(self) -> float:
+        """Largest share of the static compliance at a port that the modes lack without the attachment modes.
+
+        Zero for a rotor that its bearings leave free, which has no static compliance.
+        """
+        frequencies, proper = self.lateral.frequencies, self.lateral.certificate.found
+        if not self.ports or bool((frequencies <= 0.0).any()):
+            return 0.0
+        shares = (self.lateral.evaluate(self.ports)[0] / frequencies[:, None]) ** 2
+        return float((shares[proper:].sum(axis=0) / shares.sum(axis=0)).max())
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n: two planes of bending, torsion, and motion along the axis, in this order."""
+        return 2 * self.lateral.count + self.torsional.count + (0 if self.axial is None else self.axial.count)
+
+    def motions(self, at: float) -> FloatArray:
+        """Motion of the section at a place (m): x, y, z, rotations about x and y, by all coordinates, (5, n)."""
+        bending = 2 * self.lateral.count
+        along = np.zeros((0, 1)) if self.axial is None else self.axial.evaluate([at])
+        (section,) = section_motions(*self.lateral.evaluate([at]), along)
+        rows = np.zeros((5, self.size))
+        rows[:, :bending] = section[:, :bending]
+        rows[:, bending + self.torsional.count :] = section[:, bending:]
+        return rows
+
+    def rotation(self, at: float) -> FloatArray:
+        """Rotation about the axis of the section at a place (m), by all coordinates, (n,)."""
+        row, first = np.zeros(self.size), 2 * self.lateral.count
+        row[first : first + self.torsional.count] = self.torsional.evaluate([at])[:, 0]
+        return row
+
+    def _bearing_sum(self, what: str, chosen: FloatArray) -> FloatArray:
+        """Σ of the chosen entries, (2, 2), of the bearings' matrices, on displacements and on slopes."""
+        size = 2 * self.lateral.count
+        total = np.zeros((size, size))
+        # The plane that x, y and the rotations about x and y belong to; z moves no bending coordinate.
+        plane = np.array([0, 1, 0, 1, 0])
+        for bearing in self.bearings:
+            matrix = bearing.spatial_stiffness if what == "stiffness" else bearing.spatial_damping
+            motions = self.motions(bearing.at)[:, :size]
+            total += motions.T @ (matrix * chosen[np.ix_(plane, plane)]) @ motions
+        return total
+
+
+def gyroscopic_matrix(polar_inertia: FloatArray) -> FloatArray:
+    """J ⊗ G over the coordinates (q_x, q_y) of both planes, (2 b, 2 b), of G (b, b): per rad/s of the speed."""
+    return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), polar_inertia)
+
+
+def section_motions(displacement: FloatArray, slope: FloatArray, along: FloatArray) -> FloatArray:
+    """Motions of sections by the coordinates of both planes and of the axis, (p, 5, 2 b + a).
+
+    Rows are x, y, z and the rotations about x and y: the slope in x is the rotation about y, the slope in y minus that
+    about x.
+
+    Parameters
+    ----------
+    displacement, slope
+        (b, p): of the planar motions at p places.
+    along
+        (a, p): displacements of the axial motions.
+    """
+    b, places = displacement.shape
+    rows = np.zeros((places, 5, 2 * b + along.shape[0]))
+    rows[:, 0, :b] = rows[:, 1, b : 2 * b] = displacement.T
+    rows[:, 2, 2 * b :] = along.T
+    rows[:, 3, b : 2 * b] = -slope.T
+    rows[:, 4, :b] = slope.T
+    return rows
+
+
+def modal_rotor(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    *,
+    frequency_limit: float | None = None,
+    count: int | None = None,
+    gears_at: Sequence[float] = (),
+    forces_at: Sequence[float] = (),
+    moments_at: Sequence[float] = (),
+    thrusts_at: Sequence[float] = (),
+) -> ModalRotor:
+    """Reduce a rotor to its modes and to residual attachment modes that make the compliance of its ports exact.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings; those with tables over speed at their speed (`Bearing.at_speed`).
+    frequency_limit : float
+        rad/s: every bending and torsional mode below it is kept, and at least four bending modes.
+    count : int
+        Number of bending modes in each plane and of torsional modes, the rigid rotation included, instead.
+    gears_at : sequence of float
+        Where forces and torques of gears act, m from the left end.
+    forces_at : sequence of float
+        Where other lateral forces act, such as those of a bow.
+    moments_at : sequence of float
+        Where moments that bend the shaft act, beside those of bearings that resist tilting: at helical gears, and at
+        bearings whose resistance is not in their matrices.
+    thrusts_at : sequence of float
+        Where forces along the axis act, beside those of bearings that resist them; without effect where none does.
+
+    Raises
+    ------
+    RotorError
+        Both or neither of a limit and a count, or places off the shaft.
+    IncompleteModesError
+        The modes fail their proof.
+    """
+    one = (frequency_limit is None) != (count is None)
+    require(one, "frequency_limit and count", (frequency_limit, count), "one of the two")
+    supports = tuple(bearing.mean_support for bearing in bearings)
+    _require_few(rotor, supports, frequency_limit, count)
+    lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
+    torsional = solve_torsional_modes(rotor, frequency_limit=frequency_limit, count=count)
+    ports = (*(bearing.at for bearing in bearings), *gears_at, *forces_at)
+    if frequency_limit is not None and lateral.count < _FEWEST:
+        least = min(_FEWEST, bending_shaft(rotor, supports).available_modes)
+        lateral = solve_lateral_modes(rotor, supports, count=int(least))
+    if frequency_limit is not None and torsional.count < _FEWEST:
+        least = min(_FEWEST, rod_shaft(rotor, (), "torsion").available_modes)
+        torsional = solve_torsional_modes(rotor, count=int(least))
+    # A lumped rotor has no more motions than its modes.
+    if rotor.mass_model == "distributed":
+        tilted = [one.at for one in bearings if one.spatial_stiffness[3:].any() or one.spatial_damping[3:].any()]
+        lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
+        torsional = add_rod_attachment_modes(torsional, gears_at)
+    axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)
+    return ModalRotor(lateral, torsional, axial, tuple(bearings), ports, participation(rotor, lateral, axial))
+
+
+def _require_few(
+    rotor: Rotor, supports: Sequence[RadialSupport], frequency_limit: float | None, count: int | None
+) -> None:
+    """Raise `RotorError` where more modes are requested than `MOST_MODES`."""
+    most = f"{MOST_MODES} or fewer: a lower frequency_limit, or a shaft less soft"
+    if count is not None:
+        require(count <= MOST_MODES, f"rotor {rotor.name!r}: number of modes", count, most)
+    if frequency_limit is None:
+        return
+    require_finite("frequency_limit", frequency_limit, positive=True)
+    for kind, line in (("bending", bending_shaft(rotor, supports)), ("torsional", rod_shaft(rotor, (), "torsion"))):
+        (number,) = wittrick_williams_counts([line.cut(frequency_limit)], frequency_limit)
+        below = f"below {frequency_limit / (2.0 * np.pi):.5g} Hz"
+        require(number <= MOST_MODES, f"rotor {rotor.name!r}: number of {kind} modes {below}", number, most)
+
+
+def _axial(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    frequency_limit: float | None,
+    count: int | None,
+    thrusts_at: Sequence[float],
+) -> AxialModes | None:
+    """Free axial modes with attachment modes at the axial bearings; None without axial bearings."""
+    thrust = [b.at for b in bearings if b.spatial_stiffness[2].any() or b.spatial_damping[2].any()]
+    if not thrust:
+        return None
+    modes = solve_axial_modes(rotor, frequency_limit=frequency_limit, count=count)
+    return modes if rotor.mass_model == "lumped" else add_rod_attachment_modes(modes, (*thrust, *thrusts_at))

@@ -1,0 +1,128 @@
+"""Residual attachment modes: the static compliance that a truncated modal basis lacks at loaded places."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.modes.lateral import LateralModes, lateral_modes
+from rotors.modes.torsional_and_axial import Modes, RodModes, rod_modes
+from rotors.transfer_matrix.mode_shapes import ShaftFields, SolvedModes, require_positions, responses, ritz_vectors
+
+FloatArray = npt.NDArray[np.float64]
+
+# A residual smaller than this part of the static response is rounding.
+NOTHING_LEFT = 1e-7
+# A free shaft has no static response: it is taken at ω² = −(this part of the first elastic ω)². All but a thousandth of
+# that response is rigid; the direction of the rest errs by the same part at most, so the compliance errs by its square.
+# A smaller shift would lose more to rounding.
+FREE_SHIFT = 0.03
+
+
+def add_attachment_modes(
+    modes: LateralModes, *, forces_at: Sequence[float] = (), moments_at: Sequence[float] = ()
+) -> LateralModes:
+    """Modes followed by residual attachment modes, which make the static response to point loads exact.
+
+    The static response to a unit force or moment at each place, less what the modes already carry, is
+    made orthonormal in mass and diagonal in stiffness. The natural modes do not change. The attachment modes have
+    frequencies too (Rayleigh quotients, not natural frequencies), so that the whole set enters a coupled model like
+    natural modes. On a free shaft the response is taken at ω² slightly below zero.
+
+    Parameters
+    ----------
+    modes
+        A certified set from `rotors.solve_lateral_modes`, with one mode or more.
+    forces_at, moments_at
+        Places of forces and of moments in the plane, m from the left end.
+
+    Raises
+    ------
+    RotorError
+        A place that is not on the shaft.
+    """
+    forces = require_positions(modes.stations, list(forces_at))
+    moments = require_positions(modes.stations, list(moments_at))
+    loads = [(place, 0) for place in forces.tolist()] + [(place, 1) for place in moments.tolist()]
+    found = _attached(modes, loads)
+    if found is None:
+        return modes
+    return lateral_modes(found.frequencies, found.fields, found.mixture, modes.supports, modes.certificate)
+
+
+def add_rod_attachment_modes(modes: Modes, at: Sequence[float]) -> Modes:
+    """Torsional or axial modes followed by residual attachment modes, exact in static response to point loads.
+
+    As `add_attachment_modes`, for torques or forces along the axis. On a free shaft they carry the elastic part of the
+    response, without the rigid motion.
+
+    Parameters
+    ----------
+    modes
+        A certified set from `rotors.solve_torsional_modes` or `rotors.solve_axial_modes`.
+    at
+        Places of the loads, m from the left end.
+
+    Raises
+    ------
+    RotorError
+        A place that is not on the shaft.
+    """
+    places = require_positions(modes.stations, list(at))
+    found = _attached(modes, [(place, 0) for place in places.tolist()])
+    return modes if found is None else rod_modes(type(modes), found)
+
+
+def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]]) -> SolvedModes | None:
+    """Modes followed by the attachment modes of some loads; None where these add nothing.
+
+    Each load is a place (m) and the component of displacement along which it acts.
+    """
+    chain = modes.fields.chain.with_nodes(np.array([place for place, _ in loads_at]))
+    loads = [(chain.node_at(place), component) for place, component in loads_at]
+    loads = [load for load in dict.fromkeys(loads) if not chain.constrained[load]]
+    if not loads:
+        return None
+    elastic = modes.frequencies[modes.frequencies > 0.0]
+    zeros = modes.count - elastic.size
+    is_free = chain.rigid_shapes.shape[0] > 0
+    reference = elastic[0] if elastic.size else 1.0
+    squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
+    static = ShaftFields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
+    fields = modes.fields.on(chain).joined(static)
+    mixture = _residuals(fields, modes.mixture, zeros, len(loads))
+    if mixture.shape[0] == 0:
+        return None
+    squared, vectors = ritz_vectors(*fields.energies(mixture))
+    old = np.hstack([modes.mixture, np.zeros((modes.count, len(loads)))])
+    frequencies = np.concatenate([modes.frequencies, np.sqrt(np.maximum(squared, 0.0))])
+    return SolvedModes(frequencies, fields, np.vstack([old, vectors.T @ mixture]), modes.certificate)
+
+
+def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
+    """Combinations of fields that span the last ``count`` of them less the modes, (r, fields).
+
+    The first ``zeros`` modes are rigid. They are removed first: the response of a nearly free shaft is almost all
+    rigid, and the residual is a part of the small remainder.
+    """
+    kept = np.hstack([modes, np.zeros((modes.shape[0], count))])
+    rows = np.hstack([np.zeros((count, modes.shape[1])), np.eye(count)])
+    rows = rows / fields.mass_norms(rows)[:, None]
+    rows = _without(fields, rows, kept[:zeros])
+    rows = rows / fields.mass_norms(rows)[:, None]
+    rows = _without(fields, rows, kept)
+    left = fields.mass_norms(rows)
+    rows, left = rows[left > NOTHING_LEFT], left[left > NOTHING_LEFT]
+    if rows.shape[0] == 0:
+        return rows
+    rows /= left[:, None]
+    values, vectors = np.linalg.eigh(fields.mass_products(rows, rows))
+    independent = values > 1e-9
+    return np.asarray((vectors[:, independent] / np.sqrt(values[independent])).T @ rows)
+
+
+def _without(fields: ShaftFields, rows: FloatArray, modes: FloatArray) -> FloatArray:
+    """Combinations without their components along orthonormal modes; twice, to remove rounding."""
+    for _ in range(2 if modes.size else 0):
+        rows = rows - fields.mass_products(rows, modes) @ modes
+    return rows

@@ -1,0 +1,1 @@
+"""Numerical methods that the room shares: compiled kernels, banded matrices, Gauss rules, trust regions."""

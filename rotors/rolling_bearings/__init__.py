@@ -1,0 +1,48 @@
+"""Rolling bearings by their geometry: loads of the elements and tangent stiffness under a load.
+
+    row = BallRow(count=7, ball_diameter=11.5e-3, pitch_diameter=43.5e-3)
+    state = rolling_equilibrium(RollingBearing([row]), [1000.0, 0.0, 0.0, 0.0, 0.0])
+    bearing = bearing_from(state, "drive end", at=0.02)
+
+A state carries the displacement, the 5×5 tangent stiffness, each element's load, contact angles and pressures, and the
+residual of its equilibrium. `catalogue_row` estimates a row from bore, outer diameter and width; `paired` sets two
+against each other. Coordinates are x, y, z and the rotations about x and y of the inner ring against the outer.
+"""
+
+from rotors.rolling_bearings.element_contacts import ElementLoads
+from rotors.rolling_bearings.equilibrium import (
+    COORDINATES,
+    LARGEST_APPROACH,
+    RollingState,
+    kramer_ball_stiffness,
+    kramer_roller_stiffness,
+    linearised_bearing,
+    rolling_equilibrium,
+    rolling_reaction,
+)
+from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, point_contact
+from rotors.rolling_bearings.rolling_bearing import RollingBearing, catalogue_row, paired, preload_offset, static_rating
+from rotors.rolling_bearings.rows import BallRow, RollerRow
+
+__all__ = [
+    "COORDINATES",
+    "LARGEST_APPROACH",
+    "STEEL",
+    "BallRow",
+    "ContactElasticity",
+    "ElementLoads",
+    "PointContact",
+    "RollerRow",
+    "RollingBearing",
+    "RollingState",
+    "catalogue_row",
+    "kramer_ball_stiffness",
+    "kramer_roller_stiffness",
+    "linearised_bearing",
+    "paired",
+    "point_contact",
+    "preload_offset",
+    "rolling_equilibrium",
+    "rolling_reaction",
+    "static_rating",
+]

@@ -1,0 +1,154 @@
+"""Centrifugal force on balls: contact equilibrium of balls that orbit in a bearing.
+
+The centrifugal force F_c on an orbiting ball makes its two contact angles differ (Jones 1960; Harris and Kotzalas
+2006). With f the force of the inner contact, the outer one carries f + F_c r, r the radial direction. A contact under
+the force g reaches by A + c |g|^{2/3} from the ball to its groove's centre, c = K^{−2/3}, and both together reach from
+centre to centre:
+
+    (A_i + c_i |f|^{2/3}) f/|f| + (A_o + c_o |f + F_c r|^{2/3}) (f + F_c r)/|f + F_c r| = v
+
+The left side is the gradient of a complementary energy that is convex in f,
+
+    ψ(f) = A_i |f| + ⅗ c_i |f|^{5/3} + A_o |f + F_c r| + ⅗ c_o |f + F_c r|^{5/3},
+
+so f minimises ψ(f) − f·v, the ball's energy is φ(v) = max over f of f·v − ψ(f), convex as every such maximum is, and
+
+    ∂φ/∂v = f,   ∂²φ/∂v² = [∂²ψ/∂f²]⁻¹.
+
+The ball leaves the inner ring, f = 0, where the outer groove alone holds it within the inner one's reach; far beyond
+any groove, as in an iteration, it leaves the outer ring likewise, f = −F_c r. In terms of the ball's place the same
+problem is a narrow curved valley, in which Newton's method is slow for slow balls. The gyroscopic moment, and with it
+friction, is left out; the ball orbits at the speed of its nominal contact angle.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import EquilibriumError
+from rotors.numerics.trust_region import Local, minimise
+from rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy, ball_kinematics, ball_loads, row_energy
+from rotors.rolling_bearings.hertz import PointContact
+from rotors.rolling_bearings.rows import BallRow
+
+FloatArray = npt.NDArray[np.float64]
+
+# Closure error of the contacts, as a part of the distance between the grooves' centres: target and largest accepted.
+# The latter also limits the force error, relative to the larger of the static and the centrifugal force.
+_CLOSED = 1e-15
+_OPEN = 1e-12
+
+
+@dataclass(frozen=True)
+class CentrifugalBalls:
+    """Contacts of a row of balls under a centrifugal force each, ``thrown`` (N)."""
+
+    row: BallRow
+    azimuths: FloatArray
+    thrown: float
+
+    def energy(self, q: FloatArray) -> RowEnergy:
+        """Energy and its derivatives over q, every ball where its forces balance."""
+        v, motion = self._vectors(q)
+        force = np.array([self._inner_force(one) for one in v])
+        inner_value, _, inner_hessian = _reach(self.row.inner_contact, self._inner_arm, force)
+        outer_value, _, outer_hessian = _reach(self.row.outer_contact, self._outer_arm, force + self._outwards)
+        value = (force * v).sum(axis=1) - inner_value - outer_value
+        # A ball in contact with one ring only adds no stiffness.
+        hessian = np.zeros((self.row.count, 2, 2))
+        both = force.any(axis=1) & (force + self._outwards).any(axis=1)
+        hessian[both] = np.linalg.inv(inner_hessian[both] + outer_hessian[both])
+        return row_energy(motion, value, force, hessian)
+
+    def loads(self, q: FloatArray) -> ElementLoads:
+        """Loads of every ball at both rings."""
+        v, _ = self._vectors(q)
+        inner = np.array([self._inner_force(one) for one in v])
+        outer = inner + self._outwards
+        inside, outside = np.linalg.norm(inner, axis=1), np.linalg.norm(outer, axis=1)
+        approach = (inside / self.row.inner_contact.stiffness) ** (2.0 / 3.0)
+        approach = approach + (outside / self.row.outer_contact.stiffness) ** (2.0 / 3.0)
+        lines = np.where((inside > 0.0)[:, None], inner, v)
+        return ball_loads(self.row, self.azimuths, (inside, outside), (lines, outer), approach)
+
+    def _inner_force(self, v: FloatArray) -> FloatArray:
+        """Force of the inner contact on a ball's groove, (2,), N."""
+        row, radial = self.row, np.array([1.0, 0.0])
+        alone = self._outer_arm + (self.thrown / row.outer_contact.stiffness) ** (2.0 / 3.0)
+        gap = v - alone * radial
+        if np.linalg.norm(gap) <= self._inner_arm:
+            return np.zeros(2)
+        inward = self._inner_arm + (self.thrown / row.inner_contact.stiffness) ** (2.0 / 3.0)
+        if np.linalg.norm(v + inward * radial) <= self._outer_arm:
+            return -self._outwards
+        distance = float(np.linalg.norm(v))
+        static = row.stiffness * max(distance - row.groove_distance, 0.0) ** 1.5
+        scale = max(static, self.thrown)
+        start = static / scale * v / distance if static > self.thrown else gap / float(np.linalg.norm(gap))
+
+        def local(part: FloatArray) -> Local:
+            force = scale * part[None]
+            (inside,), (into,), (soft,) = _reach(row.inner_contact, self._inner_arm, force)
+            _, (out,), (softer,) = _reach(row.outer_contact, self._outer_arm, force + self._outwards)
+            outside, work = self._outer_rise(force[0]), float(force[0] @ v)
+            return Local(
+                value=(inside + outside - work) / scale,
+                gradient=into + out - v,
+                hessian=(soft + softer) * scale,
+                noise=(inside + abs(outside) + abs(work)) / scale,
+                force=row.groove_distance,
+            )
+
+        found = minimise(local, start, 0.5, _CLOSED)
+        # The force of a ball that barely touches has no certain direction: then its possible error decides.
+        there = local(found.place)
+        if found.residual > _OPEN and np.linalg.norm(np.linalg.solve(there.hessian, there.gradient)) > _OPEN:
+            raise EquilibriumError(
+                f"a ball's contacts miss their grooves by {found.residual:.3g} of the distance of their centres after "
+                f"{found.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"
+            )
+        return np.asarray(scale * found.place)
+
+    def _outer_rise(self, force: FloatArray) -> float:
+        """Complementary energy of the outer contact under f + F_c r less that under F_c r, with a small f's digits."""
+        total = float(np.linalg.norm(force + self._outwards))
+        rise = (2.0 * self.thrown * force[0] + float(force @ force)) / (total + self.thrown)
+        work = 0.6 * self.thrown * (self.thrown / self.row.outer_contact.stiffness) ** (2.0 / 3.0)
+        part = rise / self.thrown
+        grown = math.expm1(5.0 / 3.0 * math.log1p(part)) if part > -0.5 else (total / self.thrown) ** (5.0 / 3.0) - 1.0
+        return float(self._outer_arm * rise + work * grown)
+
+    @cached_property
+    def _kinematics(self) -> tuple[FloatArray, FloatArray]:
+        return ball_kinematics(self.row, self.azimuths)
+
+    def _vectors(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        start, motion = self._kinematics
+        return start + motion @ q, motion
+
+    @property
+    def _outwards(self) -> FloatArray:
+        return np.array([self.thrown, 0.0])
+
+    @property
+    def _inner_arm(self) -> float:
+        return (self.row.inner_groove - 0.5) * self.row.ball_diameter
+
+    @property
+    def _outer_arm(self) -> float:
+        return (self.row.outer_groove - 0.5) * self.row.ball_diameter
+
+
+def _reach(contact: PointContact, arm: float, forces: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A |g| + ⅗ c |g|^{5/3} of every force, (n, 2), and its first and second derivatives, (n, 2) and (n, 2, 2)."""
+    size = np.linalg.norm(forces, axis=1)
+    safe = np.where(size > 0.0, size, 1.0)
+    normal = forces / safe[:, None]
+    approach = (size / contact.stiffness) ** (2.0 / 3.0)
+    along = normal[:, :, None] * normal[:, None, :]
+    across = ((arm + approach) / safe)[:, None, None] * (np.eye(2) - along)
+    hessian = (approach / (1.5 * safe))[:, None, None] * along + across
+    return size * (arm + 0.6 * approach), (arm + approach)[:, None] * normal, hessian

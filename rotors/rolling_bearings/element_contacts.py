@@ -1,0 +1,274 @@
+"""Contact energy of a row of balls, its gradient and its Hessian.
+
+At the azimuth ψ the centre of the inner groove's curvature stands from that of the outer one by the vector v in the
+ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a ball
+just touches both grooves, s the clearance, e the axial offset and (R, z) the radius and place of the inner centres:
+
+    v₀ = (A cos α − s/2,  σ (A sin α + e))
+    B  = [[cos ψ, sin ψ, 0, −z sin ψ,  z cos ψ],
+          [0,     0,     1,  R sin ψ, −R cos ψ]]
+
+(De Mul, Vree and Maas 1989; ISO 16281 for one plane). A ball without inertia feels two forces in one line, its contacts
+in series, and the approach is δ = |v| − A:
+
+    φ = ⅖ K δ^{5/2},  ∂φ/∂v = K δ^{3/2} n,  ∂²φ/∂v² = 3/2 K δ^{1/2} n nᵀ + (K δ^{3/2} / |v|) (I − n nᵀ),  n = v / |v|
+
+for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an increasing convex function of it: the
+energy is convex in q. Friction is left out.
+
+Contact energy and element loads: the common form of ball and roller rows.
+
+Contact energy of a row of cylindrical rollers, its gradient and its Hessian.
+
+Slice k of the roller at ψ, at the place z_k along the axis, is pressed between the raceways by
+
+    δ_jk = x cos ψ + y sin ψ + z_k (θ_y cos ψ − θ_x sin ψ) − s/2 − 2 P(x_k)
+
+with s the clearance and P the profile: a roller tilts by half of what the rings do, so that either raceway sees half of
+each slice's approach. It carries c/n δ_jk^{10/9} (ISO 16281), the energy is 9/19 of c/n δ_jk^{19/9}: convex in q.
+Rollers skewing about the radius, friction on ribs and centrifugal forces are left out.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.rolling_bearings.rows import BallRow, RollerRow
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RowEnergy:
+    """Energy (J), its gradient (5,) and Hessian (5, 5) over the inner ring's displacement q.
+
+    ``force`` is the sum of the elements' loads, N: the scale of the gradient's rounding.
+    """
+
+    value: float
+    gradient: FloatArray
+    hessian: FloatArray
+    force: float
+
+
+@dataclass(frozen=True)
+class ElementLoads:
+    """Loads, contact angles and pressures of each rolling element of a row.
+
+    Attributes
+    ----------
+    azimuths
+        (n,): from x towards y, rad.
+    inner_load, outer_load
+        (n,): of the contacts with either ring, N; they differ only with centrifugal forces.
+    inner_angle, outer_angle
+        (n,): contact angles, in the row's direction, rad.
+    inner_pressure, outer_pressure
+        (n,): Hertz's greatest, Pa; of a roller that of its worst slice.
+    inner_semi_axes, outer_semi_axes
+        (n, 2): of a ball's contact ellipses, across the groove and along it, m; of a roller's worst slice, half the
+        slice's length and half the contact's width.
+    approach
+        (n,): of the rings through the element, m; of a roller at its worst slice.
+    slice_loads
+        (n, slices), N, of rollers.
+    """
+
+    azimuths: FloatArray
+    inner_load: FloatArray
+    outer_load: FloatArray
+    inner_angle: FloatArray
+    outer_angle: FloatArray
+    inner_pressure: FloatArray
+    outer_pressure: FloatArray
+    inner_semi_axes: FloatArray
+    outer_semi_axes: FloatArray
+    approach: FloatArray
+    slice_loads: FloatArray | None = None
+
+    @property
+    def loaded(self) -> int:
+        """Number of elements that press on the inner ring."""
+        return int(np.count_nonzero(self.inner_load > 0.0))
+
+    @property
+    def peak_pressure(self) -> float:
+        """Greatest pressure in the row, Pa."""
+        return float(max(self.inner_pressure.max(), self.outer_pressure.max()))
+
+
+class RowContacts(Protocol):
+    """Contacts of a row with its elements at given azimuths."""
+
+    def energy(self, q: FloatArray) -> RowEnergy:
+        """Energy and its derivatives at the inner ring's displacement q, (5,)."""
+
+    def loads(self, q: FloatArray) -> ElementLoads:
+        """Element loads at that displacement."""
+
+
+def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """v₀, (2,), and B, (balls, 2, 5)."""
+    radius, place = row.inner_groove_centre
+    cosine, sine, zero = np.cos(azimuths), np.sin(azimuths), np.zeros_like(azimuths)
+    motion = np.array(
+        [
+            [cosine, sine, zero, -place * sine, place * cosine],
+            [zero, zero, zero + 1.0, radius * sine, -radius * cosine],
+        ]
+    )
+    return np.array(row.groove_offset), np.moveaxis(motion, 2, 0)
+
+
+@dataclass(frozen=True)
+class StaticBalls:
+    """Contacts of a row of balls without inertia: both contacts of every ball in series."""
+
+    row: BallRow
+    azimuths: FloatArray
+
+    def energy(self, q: FloatArray) -> RowEnergy:
+        """Energy and its derivatives over q."""
+        v, motion, approach = self._state(q)
+        distance = np.linalg.norm(v, axis=1)
+        return row_energy(motion, *_spring(self.row.stiffness, v, approach, distance))
+
+    def loads(self, q: FloatArray) -> ElementLoads:
+        """Loads of every ball."""
+        v, _, approach = self._state(q)
+        load = self.row.stiffness * np.maximum(approach, 0.0) ** 1.5
+        return ball_loads(self.row, self.azimuths, (load, load), (v, v), approach)
+
+    @cached_property
+    def _kinematics(self) -> tuple[FloatArray, FloatArray]:
+        return ball_kinematics(self.row, self.azimuths)
+
+    def _state(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        start, motion = self._kinematics
+        moved = motion @ q
+        v, nominal = start + moved, self.row.groove_distance
+        excess = self.row.groove_excess + 2.0 * moved @ start + (moved**2).sum(axis=1)
+        return v, motion, excess / (np.linalg.norm(v, axis=1) + nominal)
+
+
+def _spring(
+    stiffness: float, vectors: FloatArray, approach: FloatArray, length: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """⅖ K δ^{5/2} of every contact, (n,), and its first and second derivatives by the vector, (n, 2) and (n, 2, 2)."""
+    safe = np.where(approach > 0.0, length, 1.0)
+    normal, deep = vectors / safe[:, None], np.maximum(approach, 0.0)
+    load = stiffness * deep**1.5
+    along = normal[:, :, None] * normal[:, None, :]
+    hessian = (1.5 * stiffness * np.sqrt(deep))[:, None, None] * along
+    hessian = hessian + (load / safe)[:, None, None] * (np.eye(2) - along)
+    return 0.4 * load * deep, load[:, None] * normal, hessian
+
+
+def row_energy(motion: FloatArray, value: FloatArray, force: FloatArray, hessian: FloatArray) -> RowEnergy:
+    """Energy of the row over the ring's coordinates, from the energies in every ball's plane."""
+    return RowEnergy(
+        value=float(value.sum()),
+        gradient=np.einsum("bi,bij->j", force, motion),
+        hessian=np.einsum("bik,bij,bjl->kl", motion, hessian, motion),
+        force=float(np.linalg.norm(force, axis=1).sum()),
+    )
+
+
+def ball_loads(
+    row: BallRow,
+    azimuths: FloatArray,
+    loads: tuple[FloatArray, FloatArray],
+    vectors: tuple[FloatArray, FloatArray],
+    approach: FloatArray,
+) -> ElementLoads:
+    """Element loads of a row from the inner and outer contact loads and their lines of action."""
+    contacts = (row.inner_contact, row.outer_contact)
+    angles = [np.arctan2(row.direction * vector[:, 1], vector[:, 0]) for vector in vectors]
+    roots = [np.cbrt(load) for load in loads]
+    pressures = [contact.unit_pressure * root for contact, root in zip(contacts, roots, strict=True)]
+    semi_axes = [
+        np.outer(root, [contact.semi_major, contact.semi_minor]) for contact, root in zip(contacts, roots, strict=True)
+    ]
+    return ElementLoads(
+        azimuths=azimuths,
+        inner_load=loads[0],
+        outer_load=loads[1],
+        inner_angle=angles[0],
+        outer_angle=angles[1],
+        inner_pressure=pressures[0],
+        outer_pressure=pressures[1],
+        inner_semi_axes=semi_axes[0],
+        outer_semi_axes=semi_axes[1],
+        approach=np.maximum(approach, 0.0),
+    )
+
+
+_POWER = 10.0 / 9.0
+
+
+@dataclass(frozen=True)
+class RollerSlices:
+    """Contacts of a row of rollers cut into slices."""
+
+    row: RollerRow
+    azimuths: FloatArray
+
+    def energy(self, q: FloatArray) -> RowEnergy:
+        """Energy and its derivatives over q."""
+        motion, deep = self._state(q)
+        load = self._slice_stiffness * deep**_POWER
+        # The tangent is weakly singular at first touch; an untouched slice has none.
+        tangent = np.where(deep > 0.0, _POWER * load / np.where(deep > 0.0, deep, 1.0), 0.0)
+        return RowEnergy(
+            value=float((load * deep).sum()) / (1.0 + _POWER),
+            gradient=np.einsum("jk,jki->i", load, motion),
+            hessian=np.einsum("jk,jki,jkl->il", tangent, motion, motion),
+            force=float(load.sum()),
+        )
+
+    def loads(self, q: FloatArray) -> ElementLoads:
+        """Loads of every roller and slice; pressures of the worst slice by Hertz's line contact.
+
+        p = (w E* Σρ / π)^{1/2} and half the width b = 2 w / (π p), w the load per length.
+        """
+        row = self.row
+        _, deep = self._state(q)
+        load = self._slice_stiffness * deep**_POWER
+        worst = load.max(axis=1) * row.slices / row.length
+        gamma = row.roller_diameter / row.pitch_diameter
+        pressures, axes = [], []
+        for curvature in (2.0 / row.roller_diameter / (1.0 - gamma), 2.0 / row.roller_diameter / (1.0 + gamma)):
+            pressure = np.sqrt(worst * row.elasticity.contact_modulus * curvature / math.pi)
+            width = np.divide(2.0 * worst, math.pi * pressure, out=np.zeros_like(worst), where=pressure > 0.0)
+            pressures.append(pressure)
+            axes.append(np.column_stack([np.full(row.count, 0.5 * row.length / row.slices), width]))
+        level = np.zeros(row.count)
+        return ElementLoads(
+            azimuths=self.azimuths,
+            inner_load=load.sum(axis=1),
+            outer_load=load.sum(axis=1),
+            inner_angle=level,
+            outer_angle=level,
+            inner_pressure=pressures[0],
+            outer_pressure=pressures[1],
+            inner_semi_axes=axes[0],
+            outer_semi_axes=axes[1],
+            approach=deep.max(axis=1),
+            slice_loads=load,
+        )
+
+    @property
+    def _slice_stiffness(self) -> float:
+        return self.row.stiffness / self.row.slices
+
+    def _state(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Motion of the slices, (rollers, slices, 5), and their approaches, (rollers, slices)."""
+        row = self.row
+        place = row.position + row.slice_places
+        cosine, sine = (np.repeat(f(self.azimuths)[:, None], row.slices, axis=1) for f in (np.cos, np.sin))
+        motion = np.stack([cosine, sine, np.zeros_like(cosine), -place * sine, place * cosine], axis=2)
+        return motion, np.maximum(motion @ q - 0.5 * row.clearance - 2.0 * row.slice_drops, 0.0)

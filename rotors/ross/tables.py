@@ -1,0 +1,187 @@
+"""Element tables of a ROSS file, read with messages that name the file and the key.
+
+``rotor.save("x.toml")`` of ROSS 2 writes ``ross_version``, a table ``parameters``, and for each element a table named
+by its class and its tag, such as ``["ShaftElement_Shaft Element 0"]``, that holds the arguments of its constructor in
+SI, except those that are None. With the suffix ``.json`` it writes the same as JSON.
+
+Remarks on properties that a file format cannot hold, each made once for all elements concerned.
+"""
+
+import json
+import math
+import os
+import tomllib
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeGuard
+
+from rotors.errors import RotorError
+
+
+class Remarks:
+    """Collects remarks on elements; equal texts become one."""
+
+    def __init__(self) -> None:
+        self._places: defaultdict[str, list[str]] = defaultdict(list)
+
+    def add(self, place: str, text: str) -> None:
+        """Add a remark on a place."""
+        if place not in self._places[text]:
+            self._places[text].append(place)
+
+    def sentences(self) -> tuple[str, ...]:
+        """One sentence for each text, in the order in which they came up."""
+        return tuple(
+            f"{places[0]}{f' and {len(places) - 1} more' if places[1:] else ''}: {text}"
+            for text, places in self._places.items()
+        )
+
+
+LARGEST_FILE = 50_000_000
+"""Size of the largest file that is read [bytes]."""
+
+_NOT_ELEMENTS = ("parameters", "ross_version")
+_SPEEDS_OF_OPERATION = {"min_w", "max_w", "rated_w"}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One element of the file.
+
+    Attributes
+    ----------
+    file
+        Name of the file, for messages.
+    key
+        Of its table, such as ``ShaftElement_Shaft Element 0``.
+    values
+        Its keys as they stand in the file.
+    """
+
+    file: str
+    key: str
+    values: Mapping[str, Any]
+
+    @property
+    def place(self) -> str:
+        """File and key, for remarks."""
+        return f"{self.file}: {self.key}"
+
+    @property
+    def kind(self) -> str:
+        """The class of the element; those of six degrees of freedom had names of their own before ROSS 2."""
+        return self.key.partition("_")[0].removesuffix("6DoF")
+
+    @property
+    def tag(self) -> str:
+        """Name of the element; without one, the rest of its key."""
+        given = self.values.get("tag")
+        return given if isinstance(given, str) and given else self.key.partition("_")[2] or self.key
+
+    def error(self, name: str, expected: str) -> RotorError:
+        """Error of a key, with file, key and value."""
+        value = self.values.get(name, "missing")
+        return RotorError(f"{self.file}: {self.key}.{name} is {value!r}; expected {expected}")
+
+    def inner(self, name: str) -> "Entry":
+        """A table within this one."""
+        value = self.values.get(name)
+        if not isinstance(value, Mapping):
+            raise self.error(name, "a table")
+        return Entry(self.file, f"{self.key}.{name}", value)
+
+    def number(self, name: str, default: float | None = None) -> float:
+        """A finite number; without a default the key must be there."""
+        value = self.values.get(name, default)
+        if not _is_number(value):
+            raise self.error(name, "a finite number")
+        return float(value)
+
+    def node(self, name: str = "n") -> int | None:
+        """Number of a node, or None where the key is missing."""
+        value = self.values.get(name)
+        if value is None:
+            return None
+        if not _is_number(value) or value != int(value) or value < 0:
+            raise self.error(name, "a node: a whole number from 0")
+        return int(value)
+
+    def required_node(self) -> int:
+        """The node that the element stands on, which must be given."""
+        node = self.node()
+        if node is None:
+            raise self.error("n", "a node: a whole number from 0")
+        return node
+
+    def flag(self, name: str) -> bool:
+        """A flag that is true where the key is missing."""
+        value = self.values.get(name, True)
+        if not isinstance(value, bool):
+            raise self.error(name, "true or false")
+        return value
+
+    def series(self, name: str, default: float | None = 0.0) -> list[float]:
+        """A number, or a list of them, as a list; without a default the key must be there."""
+        value = self.values.get(name, default)
+        values = value if isinstance(value, list) else [value]
+        if not values or not all(_is_number(entry) for entry in values):
+            raise self.error(name, "a finite number, or a list of them")
+        return [float(entry) for entry in values]
+
+
+def read_entries(path: str | os.PathLike[str], remarks: Remarks) -> list[Entry]:
+    """Elements of a file in its order.
+
+    Raises
+    ------
+    RotorError
+        No such file, not one of ROSS's, or not TOML (JSON where it is named so).
+    """
+    place = Path(path)
+    document = _document(place)
+    entries = []
+    for key, value in document.items():
+        if key in _NOT_ELEMENTS or key.startswith("_"):
+            continue
+        if not isinstance(value, Mapping):
+            raise RotorError(f"{place.name}: {key} is {value!r}; expected a table, an element of a rotor saved by ROSS")
+        entries.append(Entry(place.name, key, value))
+    if not entries:
+        raise RotorError(f"{place.name}: no elements; expected a rotor saved by ROSS, with tables ShaftElement_…")
+    parameters = document.get("parameters", {})
+    if isinstance(parameters, Mapping):
+        for name in sorted(set(parameters) - _SPEEDS_OF_OPERATION):
+            remarks.add(f"{place.name}: parameters", f"{name} is not read")
+    return entries
+
+
+def _document(place: Path) -> Mapping[str, Any]:
+    try:
+        size = place.stat().st_size
+        if size > LARGEST_FILE:
+            raise RotorError(f"{place}: {size} bytes; expected a rotor's file of at most {LARGEST_FILE // 10**6} MB")
+        text = place.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise RotorError(f"{place.name}: byte {error.start} is not UTF-8; expected text") from None
+    except OSError as error:
+        raise RotorError(f"{place}: {error.strerror or error}; expected a rotor saved by ROSS") from None
+    is_json = place.suffix.lower() == ".json"
+    try:
+        document = json.loads(text) if is_json else tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise RotorError(f"{place.name}: {error}; expected {'JSON' if is_json else 'TOML'}") from None
+    if not isinstance(document, dict):
+        raise RotorError(f"{place.name}: {type(document).__name__}; expected a table of elements")
+    return document
+
+
+def _is_number(value: object) -> TypeGuard[float]:
+    """Whether a value is a finite number: flags are none, and no integer beyond a float's range is one."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False

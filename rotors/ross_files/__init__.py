@@ -1,6 +1,0 @@
-"""ROSS files: reads and writes rotors of ROSS (Rotordynamic Open Source Software), which need not be installed."""
-
-from .reading import RossModel, read_ross
-from .writing import write_ross
-
-__all__ = ["RossModel", "read_ross", "write_ross"]

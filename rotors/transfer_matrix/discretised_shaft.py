@@ -1,0 +1,389 @@
+"""Discretised shaft: elements between nodes, the common form of bending, torsion and axial motion.
+
+Every node may carry inertia and a spring to ground; every piece of shaft between two nodes has an exact transfer matrix
+(`rotors.transfer_matrix.timoshenko`). Lengths and forces are scaled so that displacements and forces are of one size
+and a state vector can be normalised as a whole. `rotors.transfer_matrix.rotor_shafts` makes the discretised shafts of
+a rotor.
+
+Continuous shaft: its spans between stations, and their discretisation into elements short enough for a frequency.
+
+Pieces are so short that none, clamped at both ends, has a natural frequency of its own below the highest asked.
+For a Timoshenko piece of length h, clamped ends give by Wirtinger's inequality ‖x‖ ≤ (h/π)‖x'‖,
+‖β‖ ≤ (h/π)‖β'‖ and ‖x'‖ ≤ ‖x' − β‖ + (h/π)‖β'‖, so that its strain energy, that of an axial force P included,
+exceeds its kinetic energy for every field when, with u = (h/π)² and C = max(−P, 0),
+
+    2 (ρA ω² u + C) < κGA    and    2 (ρA ω² u + C) u + ρI ω² u < EI,
+
+with the least stiffness and the largest inertia of the piece; of a rod, when ρA ω² u < EA. This removes the
+term J₀ from the Wittrick–Williams count and bounds the growth of any transfer matrix.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import RotorError
+from rotors.model.shaft import merged_positions, restricted, station_index
+from rotors.numerics.quadrature import gauss_rule
+from rotors.transfer_matrix.timoshenko import NumberArray, ShaftElements
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+
+# Products of two fields, on pieces this short, are integrated to rounding.
+GAUSS_FRACTIONS, GAUSS_WEIGHTS = gauss_rule(10)
+# For the squares of forward and backward whirl.
+SQUARE_FRACTIONS, SQUARE_WEIGHTS = gauss_rule(6)
+
+
+@dataclass(frozen=True)
+class EnergyWeights:
+    """Weights of squared motions and strains at the Gauss points of all pieces, and then at the nodes.
+
+    ``mass`` and ``polar`` weigh n displacements at each; ``strain`` weighs the rotation (of a beam) and the n
+    forces at each Gauss point and the n displacements of each node.
+    """
+
+    mass: FloatArray
+    polar: FloatArray
+    strain: FloatArray
+
+
+@dataclass(frozen=True)
+class DiscretisedShaft:
+    """A shaft as pieces between nodes, in scaled units; n is 2 for bending and 1 for a rod.
+
+    Attributes
+    ----------
+    nodes
+        (p + 1,): ascending positions, m (they and the stations are not in scaled units).
+    table
+        The distinct pieces, in scaled units.
+    element
+        (p,): index of each piece in the table.
+    node_inertia, node_stiffness
+        (p + 1, n): at the nodes; an infinite stiffness is a constraint.
+    node_polar
+        (p + 1,): polar moment of inertia at the nodes, for the gyroscopic matrix of bending.
+    length_unit
+        m.
+    displacement_unit
+        (n,): SI value of a displacement and rotation of one, at unit modal mass in kg·m² or kg.
+    highest
+        rad/s up to which the pieces are short enough.
+    stations
+        (s,): ascending positions of segment ends, discs and supports, m; nodes need not be among them.
+    """
+
+    nodes: FloatArray
+    table: ShaftElements
+    element: IntArray
+    node_inertia: FloatArray
+    node_stiffness: FloatArray
+    node_polar: FloatArray
+    length_unit: float
+    displacement_unit: FloatArray
+    highest: float
+    stations: FloatArray
+
+    @property
+    def size(self) -> int:
+        """Displacements at a node: 2 in bending, 1 of a rod."""
+        return self.table.size
+
+    @cached_property
+    def lengths(self) -> FloatArray:
+        """Lengths of the pieces in scaled units, (p,)."""
+        return self.table.lengths[self.element]
+
+    @cached_property
+    def constrained(self) -> npt.NDArray[np.bool_]:
+        """Whether each node displacement is constrained, (p + 1, n)."""
+        return np.isinf(self.node_stiffness)
+
+    @cached_property
+    def finite_stiffness(self) -> FloatArray:
+        """Node stiffness with constraints, which store no energy, as zero, (p + 1, n)."""
+        return np.where(self.constrained, 0.0, self.node_stiffness)
+
+    @cached_property
+    def energy_weights(self) -> EnergyWeights:
+        """Quadrature weights of squared motions and strains: coefficients times lengths times Gauss weights."""
+        from rotors.transfer_matrix.mode_shape_kernels import energy_weights
+
+        table, nodal = self.table, (self.node_stiffness, self.node_inertia, self.node_polar)
+        return EnergyWeights(
+            *energy_weights(GAUSS_FRACTIONS, GAUSS_WEIGHTS, table.lengths, table.coefficients, self.element, *nodal)
+        )
+
+    @cached_property
+    def inertia_weights(self) -> FloatArray:
+        """Weights of squared displacement and rotation at the `SQUARE_FRACTIONS` (g,) of distinct pieces, (e, g, 2)."""
+        along = self.table.coefficients_along(SQUARE_FRACTIONS)[:, :, 2:4]
+        return np.asarray(along * (self.table.lengths[:, None] * SQUARE_WEIGHTS)[:, :, None])
+
+    def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
+        """Coefficients of the table at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
+        return self.table.coefficients_at(self.element[piece], fraction)
+
+    def transfer_matrices(self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None) -> NumberArray:
+        """Transfer matrices of all pieces at every ω² of a (b,) array, (p, b, 2n, 2n).
+
+        Parameters
+        ----------
+        translation, rotation
+            (b,): ω² that multiplies the mass and the rotary inertia, real or complex; without the second, both
+            are the first. For e^{λt} in circular coordinates they are −λ² and −λ² ± 2iΩλ.
+        """
+        return np.moveaxis(self.table.transfer_matrices(translation, rotation)[:, :, 0], 0, 1)[self.element]
+
+    def transfer_matrices_to(
+        self,
+        piece: IntArray,
+        fraction: FloatArray,
+        translation: npt.ArrayLike,
+        rotation: npt.ArrayLike | None = None,
+    ) -> NumberArray:
+        """Transfer matrices from the left ends of pieces (z,) to fractions (z,) of them, (z, b, 2n, 2n)."""
+        return self.table.transfer_matrices_to(self.element[piece], fraction, translation, rotation)
+
+    def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Index of the piece at each position (z,) in m, and the fraction of it to the left, both (z,)."""
+        piece = self.nodes.searchsorted(positions, side="right") - 1
+        piece = np.minimum(np.maximum(piece, 0), self.element.size - 1)
+        left = self.nodes[piece]
+        fraction = (positions - left) / (self.nodes[piece + 1] - left)
+        return piece, np.minimum(np.maximum(fraction, 0.0), 1.0)
+
+    def on_springs(self, stiffness: FloatArray) -> "DiscretisedShaft":
+        """The same pieces with other springs at the nodes, (p + 1, n), in scaled units."""
+        return replace(self, node_stiffness=stiffness)
+
+    def node_at(self, position: float) -> int:
+        """Index of the node at a position (m), which must be one of the nodes."""
+        return station_index(self.nodes, position)
+
+    def with_nodes(self, positions: FloatArray) -> "DiscretisedShaft":
+        """The same chain with nodes, bare ones where there were none, at positions (k,) in m as well."""
+        nodes = merged_positions(self.nodes, positions.tolist())
+        if nodes.size == self.nodes.size:
+            return self
+        piece, start = self.places(nodes[:-1])
+        end = np.where(piece[1:] == piece[:-1], start[1:], 1.0) if piece.size > 1 else np.ones(0)
+        part = np.append(end, 1.0) - start
+        element, index = self.element[piece], np.searchsorted(nodes, self.nodes)
+        coefficients = restricted(self.table.coefficients[element], 2.0 * start + part - 1.0, part)
+        return replace(
+            self,
+            nodes=nodes,
+            table=ShaftElements(self.table.lengths[element] * part, coefficients),
+            element=np.arange(piece.size),
+            node_inertia=spread(nodes.size, index, self.node_inertia),
+            node_stiffness=spread(nodes.size, index, self.node_stiffness),
+            node_polar=spread(nodes.size, index, self.node_polar),
+        )
+
+    @cached_property
+    def rigid_shapes(self) -> FloatArray:
+        """Independent rigid motions, which strain nothing, as node displacements, (zero modes, p + 1, n).
+
+        An axial force does work on a tilting shaft, so that a shaft with an axial force has no free tilt.
+        """
+        if self.size == 2 and np.count_nonzero(self.node_stiffness[:, 0]) > 1:
+            return np.zeros((0, self.nodes.size, 2))
+        place = (self.nodes - self.nodes[0]) / self.length_unit
+        if self.size == 1:
+            free = not bool((self.node_stiffness > 0.0).any())
+            return np.ones((1, place.size, 1))[: int(free)]
+        held = place[self.node_stiffness[:, 0] > 0.0]
+        slope, constant = np.ones_like(place), np.zeros_like(place)
+        loaded = bool(self.table.coefficients[:, 5].any())
+        tilt_held = loaded or bool((self.node_stiffness[:, 1] > 0.0).any())
+        if held.size == 0:
+            shift = np.stack([slope, constant], axis=-1)
+            tilt = np.stack([place - place.mean(), slope], axis=-1)
+            return np.stack([shift] if tilt_held else [shift, tilt])
+        if held.size == 1 and not tilt_held:
+            return np.stack([place - held[0], slope], axis=-1)[None]
+        return np.zeros((0, place.size, 2))
+
+
+def spread(size: int, index: IntArray, values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
+    """Values at some of ``size`` nodes, those of the given ascending indices; zero at the others."""
+    if size == index.size:
+        return values
+    whole = np.zeros((size, *values.shape[1:]), dtype=values.dtype)
+    whole[index] = values
+    return whole
+
+
+# Pieces are this many times shorter than the inequalities demand: the series then stay below |λ²| = 5.
+PIECE_MARGIN = 2.0
+MOST_PIECES = 50_000
+
+
+@dataclass(frozen=True)
+class ContinuousShaft:
+    """One motion of a shaft as spans between stations, in scaled units; n is 2 for bending and 1 for a rod.
+
+    Attributes
+    ----------
+    label
+        Name in messages.
+    nodes
+        (s + 1,): ends of the spans, m.
+    stations
+        (r,): ascending positions of segment ends, discs and supports, m.
+    kind, start, end, lengths
+        (s,): of every span its kind, the fractions of that kind's own span it covers, and its length, m.
+    coefficients, uniform
+        (k, 6 or 2, j) and (k,): of the kinds, as in `rotors.transfer_matrix.timoshenko.ShaftElements`.
+    stiffness, inertia, force
+        (k, n), (k, n) and (k,): their least stiffness, their largest inertia, and axial force, per length in SI.
+    node_inertia, node_stiffness
+        (s + 1, n); and ``node_polar`` (s + 1,).
+    length_unit, displacement_unit
+        As in `rotors.transfer_matrix.discretised_shaft.DiscretisedShaft`.
+    """
+
+    label: str
+    nodes: FloatArray
+    stations: FloatArray
+    kind: IntArray
+    start: FloatArray
+    end: FloatArray
+    lengths: FloatArray
+    coefficients: FloatArray
+    uniform: npt.NDArray[np.bool_]
+    stiffness: FloatArray
+    inertia: FloatArray
+    force: FloatArray
+    node_inertia: FloatArray
+    node_stiffness: FloatArray
+    node_polar: FloatArray
+    length_unit: float
+    displacement_unit: FloatArray
+
+    @property
+    def available_modes(self) -> float:
+        """Number of modes: infinite with distributed mass, else the number of inertias that can move."""
+        if bool(self.inertia.any()):
+            return np.inf
+        return int(np.count_nonzero((self.node_inertia > 0.0) & ~np.isinf(self.node_stiffness)))
+
+    def likely_frequency(self, count: int) -> float:
+        """Estimate of the ``count``-th natural frequency from the waves of the bare shaft, or a frequency scale; rad/s.
+
+        It is that of a simply supported shaft without discs: a free shaft's is lower, a clamped one's higher.
+        """
+        shear, bending = self._wave_sums
+        if shear == 0.0:
+            # In the chain's units stiffness is about one.
+            return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
+        phase = (count - 0.5) * np.pi
+        # Waves are no longer than those of bending without shear, nor than those of shear without bending.
+        return min(phase / shear, (phase / bending) ** 2) if bending else phase / shear
+
+    @cached_property
+    def _wave_sums(self) -> tuple[float, float]:
+        """∫ (m / k)^½ dz with the stiffness against shear (or of the rod), and ∫ (m / k)^¼ dz with that of bending."""
+        heavy = self.inertia[self.kind, 0]
+        shear = self.lengths @ np.sqrt(heavy / self.stiffness[self.kind, 0])
+        bent = self.stiffness.shape[1] == 2
+        bending = self.lengths @ (heavy / self.stiffness[self.kind, 1]) ** 0.25 if bent else 0.0
+        return float(shear), float(bending)
+
+    def cut(self, highest: float) -> DiscretisedShaft:
+        """The discretised shaft, valid up to ``highest`` rad/s.
+
+        Raises
+        ------
+        RotorError
+            It takes too many pieces.
+        """
+        from rotors.transfer_matrix.timoshenko_kernels import piece_counts
+
+        counts = piece_counts(highest, PIECE_MARGIN, self.kind, self.lengths, self.stiffness, self.inertia, self.force)
+        if counts.sum() > MOST_PIECES:
+            raise RotorError(
+                f"{self.label}: a limit of {highest:g} rad/s needs {counts.sum():.0f} pieces of shaft, "
+                f"more than {MOST_PIECES}; expected a lower frequency limit or fewer modes"
+            )
+        return self.in_pieces(counts.astype(np.intp), highest)
+
+    def in_pieces(self, counts: IntArray, highest: float) -> DiscretisedShaft:
+        """The discretised shaft with every span in ``counts`` (s,) equal pieces, valid up to ``highest`` rad/s."""
+        from rotors.transfer_matrix.timoshenko_kernels import cut_spans
+
+        nodes, index, element, kind, middle, half, lengths = cut_spans(
+            counts, self.nodes, self.kind, self.start, self.end, self.lengths, self.uniform
+        )
+        given = self.coefficients[kind]
+        if given.shape[2] > 1:
+            given = restricted(given, middle, half)
+        return DiscretisedShaft(
+            nodes=nodes,
+            table=ShaftElements(lengths / self.length_unit, given),
+            element=element,
+            node_inertia=spread(nodes.size, index, self.node_inertia),
+            node_stiffness=spread(nodes.size, index, self.node_stiffness),
+            node_polar=spread(nodes.size, index, self.node_polar),
+            length_unit=self.length_unit,
+            displacement_unit=self.displacement_unit,
+            highest=highest,
+            stations=self.stations,
+        )
+
+    def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[ContinuousShaft]":
+        """The same shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
+
+        Returns one shaft for each set of springs; the places are common to all sets.
+        """
+        if not places:
+            return [self] * len(springs)
+        nodes = merged_positions(self.nodes, places)
+        line = self if nodes.size == self.nodes.size else self.with_nodes(nodes)
+        stations = merged_positions(self.stations, places)
+        index = [station_index(nodes, place) for place in places]
+        lines = []
+        for stiffness in springs:
+            node_stiffness = line.node_stiffness.copy()
+            for node, spring in zip(index, stiffness, strict=True):
+                node_stiffness[node] += spring
+            lines.append(replace(line, node_stiffness=node_stiffness, stations=stations))
+        return lines
+
+    def with_nodes(self, nodes: FloatArray) -> "ContinuousShaft":
+        """The same shaft with nodes (m) that include its own; new ones carry nothing, and are no stations."""
+        span = np.clip(np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, self.kind.size - 1)
+        left, width = self.nodes[span], np.diff(self.nodes)[span]
+        # Places within the span, and from them within the kind's own span.
+        first, last = (nodes[:-1] - left) / width, (nodes[1:] - left) / width
+        reach = (self.end - self.start)[span]
+        whole = (first == 0.0) & (last == 1.0)
+        index = np.searchsorted(nodes, self.nodes)
+        return replace(
+            self,
+            nodes=nodes,
+            kind=self.kind[span],
+            start=self.start[span] + first * reach,
+            end=self.start[span] + last * reach,
+            lengths=np.where(whole, self.lengths[span], np.diff(nodes)),
+            node_inertia=spread(nodes.size, index, self.node_inertia),
+            node_stiffness=spread(nodes.size, index, self.node_stiffness),
+            node_polar=spread(nodes.size, index, self.node_polar),
+        )
+
+
+def discretise_together(lines: Sequence[ContinuousShaft], highest: float) -> list[DiscretisedShaft]:
+    """Discretised shafts, valid up to ``highest`` rad/s, of shafts that differ in their springs only."""
+    first = lines[0].cut(highest)
+    index = first.nodes.searchsorted(lines[0].nodes)
+    springs = [spread(first.nodes.size, index, line.node_stiffness) for line in lines[1:]]
+    return [first, *(first.on_springs(stiffness) for stiffness in springs)]

@@ -1,0 +1,368 @@
+"""Mode shapes: null vectors of the transfer equations of the whole shaft at once.
+
+A shape integrated from one end loses a mode that is localised at the other end. All node states are therefore
+unknowns together (multiple shooting): the equations u_{i+1} = T₁₁ u_i + T₁₂ f_i, the same for forces with
+the node's springs and inertias added, and free ends. A held displacement takes the place of its force balance. Node by
+node, this matrix is a band; in the chain's units it is well conditioned for any number of pieces, and inverse
+iteration on it with as many vectors as the root's multiplicity gives every shape, localised or not.
+
+Exact fields along a discretised shaft: continued from node states to any place, with their energies.
+
+A field is the state (displacements, then forces) at the left end of every piece at one ω²; inside a
+piece the transfer matrix continues it. Quadrature over a piece is Gauss–Legendre, which integrates
+products of two such fields on pieces this short to rounding.
+
+Certified modes of a shaft in bending, torsion or axial motion, below a frequency limit or by their number.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from rotors.certificate import ModeCertificate, certify
+from rotors.errors import IncompleteModesError, RotorError, require, require_count, require_finite
+from rotors.model.shaft import STATION_TOLERANCE
+from rotors.transfer_matrix.discretised_shaft import GAUSS_FRACTIONS, ContinuousShaft, DiscretisedShaft
+from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, shaft_arrays, wittrick_williams_count
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ShaftFields:
+    """Exact fields along one discretised shaft, in its scaled units.
+
+    Attributes
+    ----------
+    chain
+        The shaft.
+    frequency_squared
+        (k,): ω² of each field.
+    states
+        (k, p + 1, 2n): state just right of each node.
+    """
+
+    chain: DiscretisedShaft
+    frequency_squared: FloatArray
+    states: FloatArray
+
+    def at(self, positions: FloatArray) -> FloatArray:
+        """States at positions (z,) in m on the shaft, (k, z, 2n)."""
+        piece, fraction = self.chain.places(positions)
+        transfer_matrices = self.chain.transfer_matrices_to(piece, fraction, self.frequency_squared)
+        return np.asarray(np.einsum("zkij,kzj->kzi", transfer_matrices, self.states[:, piece]))
+
+    def energies(self, mixture: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
+        """Mass and stiffness matrices of combinations of the fields, in the chain's units.
+
+        Kinetic energy is ½ q̇ᵀ M q̇ and strain energy, springs to ground and the work of an axial force
+        included, ½ qᵀ K q. In bending the energies per length are ½ (ρA x² + ρI β²) ω² and
+        ½ [f_x²/(κGA + P) + f_β²/EI + g P β²]. The fields are combined before they are squared: a combination
+        that cancels keeps its digits.
+
+        Parameters
+        ----------
+        mixture
+            (m, k): rows are the combinations; without it, the fields themselves.
+
+        Returns
+        -------
+        mass, stiffness
+            Both (m, m).
+        """
+        motion, strain = self._rows
+        if mixture is not None:
+            motion, strain = mixture @ motion, mixture @ strain
+        weights = self.chain.energy_weights
+        return (motion * weights.mass) @ motion.T, (strain * weights.strain) @ strain.T
+
+    def mass_products(self, rows: FloatArray, others: FloatArray) -> FloatArray:
+        """Entries of the mass matrix between two sets of combinations (a, k) and (b, k), (a, b)."""
+        motion = self._rows[0]
+        weighted = (rows @ motion) * self.chain.energy_weights.mass
+        return np.asarray(weighted @ (others @ motion).T)
+
+    def mass_norms(self, rows: FloatArray) -> FloatArray:
+        """Norms in mass of combinations (a, k), (a,)."""
+        motion = rows @ self._rows[0]
+        return np.sqrt((motion**2) @ self.chain.energy_weights.mass)
+
+    def polar_matrix(self, mixture: FloatArray) -> FloatArray:
+        """∫ ρI_p βᵢ βⱼ dz plus the nodes' polar inertias, of combinations of bending fields, (m, m)."""
+        motion = mixture @ self._rows[0]
+        return np.asarray((motion * self.chain.energy_weights.polar) @ motion.T)
+
+    def strain_of_pieces(self, mixture: FloatArray) -> FloatArray:
+        """Twice the strain energy in each piece of combinations of the fields, springs left out, (m, p)."""
+        strain, weights = mixture @ self._rows[1], self.chain.energy_weights.strain
+        inside = weights.size - self.chain.finite_stiffness.size
+        pieces = (strain**2 * weights)[:, :inside]
+        return np.asarray(pieces.reshape(mixture.shape[0], self.chain.element.size, -1).sum(axis=2))
+
+    def joined(self, other: "ShaftFields") -> "ShaftFields":
+        """These fields followed by those of ``other``, on the same shaft."""
+        return ShaftFields(
+            self.chain,
+            np.concatenate([self.frequency_squared, other.frequency_squared]),
+            np.concatenate([self.states, other.states]),
+        )
+
+    def on(self, chain: DiscretisedShaft) -> "ShaftFields":
+        """The same fields on a discretised shaft with further nodes."""
+        if chain is self.chain:
+            return self
+        return ShaftFields(chain, self.frequency_squared, self.at(chain.nodes))
+
+    @cached_property
+    def _rows(self) -> tuple[FloatArray, FloatArray]:
+        """Motion and strain of every field at the Gauss points and the nodes, as of `energy_rows`."""
+        from rotors.transfer_matrix.mode_shape_kernels import energy_rows
+
+        table, weights, count = self.chain.table, self.chain.energy_weights, self.frequency_squared.size
+        motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))
+        energy_rows(
+            self.frequency_squared,
+            self.states,
+            GAUSS_FRACTIONS,
+            table.lengths,
+            table.coefficients,
+            self.chain.element,
+            motion,
+            strain,
+        )
+        return motion, strain
+
+
+# Roots closer than this share one null space, at their mean: the frequencies are good to 1e-12. Shapes err by as much,
+# which a heavy disc amplifies.
+ONE_NULL_SPACE = 2e-12
+# Roots closer than this are multiples of one root: a set of modes holds all of them or none.
+SAME_ROOT = 1e-10
+# Smallest share of a rigid motion in an elastic mode, as a part of its norm, that is removed.
+LEAST_SHARE = 1e-12
+# Shapes of roots closer than this mix in rounding, and are separated again by their energies.
+NEAR_ROOT = 1e-4
+
+
+def groups(frequencies: FloatArray, tolerance: float) -> list[slice]:
+    """Groups of ascending frequencies whose neighbours differ by less than ``tolerance`` of their value."""
+    breaks = np.flatnonzero(np.diff(frequencies) > tolerance * frequencies[1:]) + 1
+    edges = [0, *breaks.tolist(), frequencies.size]
+    return [slice(left, right) for left, right in pairwise(edges) if right > left]
+
+
+def responses(chain: DiscretisedShaft, loads: list[tuple[int, int]], frequency_squared: float) -> FloatArray:
+    """Node states under unit forces at one ω² off the roots, each on a node and a component, (loads, p + 1, 2n)."""
+    from rotors.transfer_matrix.mode_shape_kernels import shooting_responses
+
+    n = chain.size
+    sides = np.zeros((len(loads), 2 * n * chain.nodes.size))
+    for load, (node, component) in enumerate(loads):
+        # The force balance of a displacement at a node; an external force stands in it with a negative sign.
+        sides[load, 2 * n * node + component] = -1.0
+    return np.asarray(shooting_responses(frequency_squared, sides, *shaft_arrays(chain)))
+
+
+def rigid_states(chain: DiscretisedShaft) -> FloatArray:
+    """Node states of the rigid motions, orthonormal in mass, (zero modes, p + 1, 2n).
+
+    Raises
+    ------
+    RotorError
+        A rigid motion moves no inertia, so that it has no frequency.
+    """
+    shapes = chain.rigid_shapes
+    states = np.concatenate([shapes, np.zeros_like(shapes)], axis=-1)
+    if states.shape[0] == 0:
+        return states
+    mass, _ = ShaftFields(chain, np.zeros(states.shape[0]), states).energies()
+    size = np.sqrt(np.diag(mass))
+    if size.min() == 0.0 or linalg.eigvalsh(mass / np.outer(size, size))[0] < 1e-13:
+        raise RotorError(
+            "a rigid motion of the free shaft moves no inertia; expected a disc with diametral inertia, "
+            "a shaft with density, or another support"
+        )
+    lower = linalg.cholesky(mass, lower=True)
+    return np.asarray(np.einsum("ij,jkl->ikl", linalg.inv(lower), states))
+
+
+def shared_roots(elastic: FloatArray) -> FloatArray:
+    """Ascending natural frequencies (m,), those that share one null space at their mean."""
+    if not has_neighbours(elastic):
+        return elastic
+    shared = elastic.copy()
+    for group in groups(elastic, ONE_NULL_SPACE):
+        shared[group] = elastic[group].mean()
+    return shared
+
+
+def has_neighbours(elastic: FloatArray) -> bool:
+    """Whether any two neighbouring roots are closer than `NEAR_ROOT`."""
+    return bool(np.count_nonzero(elastic[1:] - elastic[:-1] <= NEAR_ROOT * elastic[1:]))
+
+
+def solve_mode_shapes(
+    chain: DiscretisedShaft, frequencies: FloatArray
+) -> tuple[ShaftFields, FloatArray, FloatArray, FloatArray]:
+    """Fields of the modes at the given natural frequencies, the mixture that makes them orthonormal, and its energies.
+
+    Parameters
+    ----------
+    chain
+        The shaft.
+    frequencies
+        (m,): ascending, rad/s, the rigid motions' zeros first.
+
+    Returns
+    -------
+    fields
+        m fields.
+    mixture
+        (m, m): modes are ``mixture @ fields``; block diagonal over groups of near roots, but for the rigid motions'
+        share that is taken out of the others where rounding has left one.
+    mass, stiffness
+        (m, m): integrated anew where modes are combinations of fields, so that what cancels keeps its digits.
+    """
+    from rotors.transfer_matrix.mode_shape_kernels import null_states
+
+    zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
+    shared, elastic, near = frequencies, frequencies[zeros:], []
+    if has_neighbours(elastic):
+        shared, near = np.concatenate([frequencies[:zeros], shared_roots(elastic)]), groups(elastic, NEAR_ROOT)
+    squared = shared**2
+    states = null_states(squared[zeros:], *shaft_arrays(chain))
+    if zeros:
+        states = np.concatenate([rigid_states(chain)[:zeros], states])
+    fields = ShaftFields(chain, squared, states)
+    mass, stiffness = fields.energies()
+    scale = 1.0 / np.sqrt(mass.diagonal())
+    scale[:zeros] = 1.0
+    mixture = np.diag(scale)
+    # Beside a very heavy disc the share of a rigid motion in an elastic shape is rounding, but not negligible.
+    rigid = scale[zeros:, None] * mass[zeros:, :zeros]
+    leaning = zeros > 0 and np.abs(rigid).max(initial=0.0) > LEAST_SHARE
+    if not near and not leaning:
+        both = scale[:, None] * scale
+        return fields, mixture, both * mass, both * stiffness
+    for group in near:
+        if group.stop - group.start > 1:
+            part = slice(group.start + zeros, group.stop + zeros)
+            mixture[part, part] = ritz_vectors(mass[part, part], stiffness[part, part])[1].T
+    if leaning:
+        mixture[zeros:, :zeros] = -mixture[zeros:, zeros:] @ mass[zeros:, :zeros]
+    return fields, mixture, *fields.energies(mixture)
+
+
+def ritz_vectors(mass: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ascending ω² and mass-orthonormal columns of the small eigenproblem K q = ω² M q.
+
+    Raises
+    ------
+    IncompleteModesError
+        The mass matrix is singular: the shapes are not independent.
+    """
+    size = np.sqrt(np.diag(mass))
+    scaled = mass / np.outer(size, size)
+    if np.linalg.eigvalsh(scaled)[0] < 1e-12:
+        raise IncompleteModesError("shapes of near roots are not independent; this is a defect, please report")
+    values, vectors = linalg.eigh(stiffness / np.outer(size, size), scaled)
+    return np.asarray(values), np.asarray(vectors / size[:, None])
+
+
+DEFAULT_COUNT = 10
+# Part of the frequency scale below which there are rigid motions only.
+STANDSTILL = 1e-12
+# A first guess this far off would mean a model of no finite frequency at all.
+MOST_DOUBLINGS = 200
+
+
+@dataclass(frozen=True)
+class SolvedModes:
+    """Modes of a shaft: frequencies (m,) in rad/s, k fields, their mixture (m, k) in each mode, and a certificate."""
+
+    frequencies: FloatArray
+    fields: ShaftFields
+    mixture: FloatArray
+    certificate: ModeCertificate
+
+
+def find_modes(line: ContinuousShaft, frequency_limit: float | None, count: int | None) -> SolvedModes:
+    """Every mode of a shaft below the limit (rad/s), or the lowest ``count``."""
+    require(
+        frequency_limit is None or count is None,
+        "frequency_limit and count",
+        (frequency_limit, count),
+        "one of the two",
+    )
+    if frequency_limit is not None:
+        require_finite("frequency_limit", frequency_limit, positive=True)
+        chain = line.cut(frequency_limit)
+        return certified_modes(chain, wittrick_williams_count(chain, frequency_limit), frequency_limit)
+    available = line.available_modes
+    if count is None:
+        wanted = int(min(DEFAULT_COUNT, available))
+    else:
+        require_count("count of modes", count)
+        require(count <= available, "count of modes", count, f"at most {available:g}, all this lumped rotor has")
+        wanted = count
+    return certified_modes(shaft_with_modes(line, wanted), wanted)
+
+
+def certified_modes(chain: DiscretisedShaft, wanted: int, limit: float | None = None) -> SolvedModes:
+    """The lowest ``wanted`` modes of a shaft: all below a limit (rad/s), or with every multiple of the last root.
+
+    Raises
+    ------
+    IncompleteModesError
+        The modes fail their own proof.
+    """
+    frequencies = lowest_natural_frequencies(chain, wanted, limit or chain.highest)
+    if limit is None:
+        limit = limit_above(float(frequencies[-1]), chain)
+        wanted = wittrick_williams_count(chain, limit)
+    return proved_modes(chain, frequencies, wanted, limit)
+
+
+def limit_above(last: float, chain: DiscretisedShaft) -> float:
+    """A limit (rad/s) a little above the last mode, which takes in its twins, if it has any."""
+    return min(max(last * (1.0 + 2.0 * SAME_ROOT), STANDSTILL * chain.highest), chain.highest)
+
+
+def proved_modes(chain: DiscretisedShaft, frequencies: FloatArray, expected: int, limit: float) -> SolvedModes:
+    """Modes of a chain at its lowest frequencies (m,), or at the ``expected`` lowest where those lack twins.
+
+    Raises
+    ------
+    IncompleteModesError
+        The modes fail their own proof.
+    """
+    if expected > frequencies.size:
+        frequencies = lowest_natural_frequencies(chain, expected, chain.highest)
+    fields, mixture, mass, stiffness = solve_mode_shapes(chain, frequencies)
+    return SolvedModes(frequencies, fields, mixture, certify(limit, expected, frequencies, mass, stiffness))
+
+
+def shaft_with_modes(line: ContinuousShaft, wanted: int) -> DiscretisedShaft:
+    """A discretised shaft with at least ``wanted`` modes below the highest frequency that it is good for."""
+    highest = line.likely_frequency(wanted)
+    for _ in range(MOST_DOUBLINGS):
+        chain = line.cut(highest)
+        if wittrick_williams_count(chain, highest) >= wanted:
+            return chain
+        highest *= 2.0
+    raise RotorError(f"{wanted} modes are not found below {highest:g} rad/s; expected a rotor with fewer")
+
+
+def require_positions(stations: FloatArray, z: npt.ArrayLike) -> FloatArray:
+    """Positions (m) as an array clipped onto the shaft; raises `RotorError` for one beyond its ends."""
+    positions = np.atleast_1d(np.asarray(z, dtype=np.float64))
+    low, high = float(stations[0]), float(stations[-1])
+    slack = STATION_TOLERANCE * (high - low)
+    inside = (positions >= low - slack) & (positions <= high + slack)
+    if positions.ndim != 1 or not bool(inside.all()):
+        raise RotorError(f"positions are {z!r}; expected places on the shaft, {low:g} to {high:g} m")
+    return np.asarray(np.minimum(np.maximum(positions, low), high))

@@ -1,0 +1,143 @@
+"""Exact transfer matrices of a shaft element: Timoshenko beam in bending, rod in torsion or along its axis.
+
+Bending, at circular frequency ω, with the section's displacement x and rotation β, under a static axial
+force P (tension positive). From the energy ½ ∫ κGA (x' − β)² + EI β'² + P x'² dz the transverse force is
+``f_x = κGA (x' − β) + P x'`` and the bending moment ``f_β = EI β'``; with g = κGA / (κGA + P)::
+
+    x'   = g β + f_x / (κGA + P)        f_x' = −ω² ρA x
+    β'   = f_β / EI                     f_β' = −(ω² ρI − g P) β − g f_x
+
+or y' = A(z) y with y = (x, β, f_x, f_β). A rod is the same with y = (u, f): u' = f/EA, f' = −ω² ρA u, and in
+torsion with GJ and ρJ. ω² may differ between translation and rotation, and be complex: this is how a
+turning or damped shaft enters.
+
+**A uniform piece** has T = exp(A h). The characteristic polynomial of A h holds only even powers,
+λ⁴ − e₁ λ² + e₂, so that
+
+    T = C₀ I + C₁ (A h) + C₂ (A h)² + C₃ (A h)³
+
+where, by reducing the exponential series modulo that polynomial,
+
+    C₂ = Σ_{k≥1} h_{k−1}/(2k)!        C₀ = 1 − e₂ Σ_{k≥2} h_{k−2}/(2k)!
+    C₃ = Σ_{k≥1} h_{k−1}/(2k+1)!      C₁ = 1 − e₂ Σ_{k≥2} h_{k−2}/(2k+1)!
+
+with h_k = e₁ h_{k−1} − e₂ h_{k−2}, h_0 = 1, h_{−1} = 0 (the complete homogeneous polynomials of the
+two roots λ²). These series are entire: they need no square root, so the cut-off frequency √(κGA/ρI),
+where the second wave number turns real, the massless field of the Myklestad–Prohl chain (ρ = 0),
+the static state (ω = 0) and negative ω² (a shifted, positive definite problem) are no special cases.
+They are used on pieces short enough (`rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5, where
+thirteen terms are exact to rounding and no hyperbolic function can overflow.
+
+**A tapering piece** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.shaft`
+makes them, exact to rounding). Its solution is an entire function, whose power series about the middle is
+summed, y(s) = Φ(s) y(0); then T = Φ(1) Φ(−1)⁻¹. Both equations are Hamiltonian (reciprocity), hence Φ
+symplectic, and its inverse is a transposition: T is symplectic to rounding too.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+NumberArray = npt.NDArray[Any]
+
+WHOLE = np.ones(1)
+
+
+@dataclass(frozen=True)
+class ShaftElements:
+    """Pieces of shaft that differ from each other, in any consistent units.
+
+    Attributes
+    ----------
+    lengths
+        (e,).
+    coefficients
+        (e, 6, j) in bending: 1/(κGA + P), 1/EI, ρA, ρI, g and g P; (e, 2, j) of a rod: 1/EA and ρA, or 1/GJ
+        and ρJ. Over the last axis, the coefficients of 1, s, s², ...; of uniform pieces alone, j is 1.
+    """
+
+    lengths: FloatArray
+    coefficients: FloatArray
+
+    @property
+    def size(self) -> int:
+        """Displacements at an end, n: 2 in bending, 1 of a rod."""
+        return 2 if self.coefficients.shape[1] == 6 else 1
+
+    def transfer_matrices(
+        self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None, fractions: FloatArray = WHOLE
+    ) -> NumberArray:
+        """Transfer matrices from the left end to fractions of the length: state there = T · state at the left.
+
+        Parameters
+        ----------
+        translation, rotation
+            (b,): ω² at the mass and at the rotary inertia, real or complex, of a size for which the pieces are
+            short enough; of a rod the first alone counts. Without the second, both are the first.
+        fractions
+            (k,): of every piece's length; the whole of it if not given.
+
+        Returns
+        -------
+        (b, e, k, 2n, 2n)
+            In the order displacement, rotation, force, moment; or angle, torque.
+        """
+        from rotors.transfer_matrix.timoshenko_kernels import table_transfer_matrices
+
+        moving, turning = _pair(translation, rotation)
+        shape = (moving.size, self.lengths.size, fractions.size, 2 * self.size, 2 * self.size)
+        out = np.empty(shape, moving.dtype)
+        table_transfer_matrices(self.lengths, self.coefficients, moving, turning, fractions, out)
+        return out
+
+    def transfer_matrices_to(
+        self,
+        element: IntArray,
+        fractions: FloatArray,
+        translation: npt.ArrayLike,
+        rotation: npt.ArrayLike | None = None,
+    ) -> NumberArray:
+        """Transfer matrices to one fraction (z,) each of some pieces (z,), at every ω² (b,), (z, b, 2n, 2n)."""
+        from rotors.transfer_matrix.timoshenko_kernels import place_transfer_matrices
+
+        moving, turning = _pair(translation, rotation)
+        out = np.empty((element.size, moving.size, 2 * self.size, 2 * self.size), moving.dtype)
+        place_transfer_matrices(self.lengths, self.coefficients, element, fractions, moving, turning, out)
+        return out
+
+    def growth(self, frequency: float) -> FloatArray:
+        """About by what power of e motion at most grows along the pieces at ω, (e,): the root of a bound on |λ²|."""
+        largest = np.abs(self.coefficients).sum(axis=2) * self.lengths[:, None]
+        if self.size == 1:
+            return np.asarray(frequency * np.sqrt(largest[:, 0] * largest[:, 1]))
+        a, b, m, j, k, axial = largest.T
+        m, j = frequency**2 * m, frequency**2 * j + axial
+        return np.asarray(np.sqrt(a * m + b * j + np.sqrt(b * m * (a * j + k * k))))
+
+    def coefficients_along(self, fractions: FloatArray) -> FloatArray:
+        """Coefficients at the same fractions (k,) of every piece, (e, k, 6) or (e, k, 2)."""
+        kinds, fields, order = self.coefficients.shape
+        if order == 1:
+            return np.broadcast_to(self.coefficients.reshape(kinds, 1, fields), (kinds, fractions.size, fields))
+        powers = (2.0 * fractions[:, None] - 1.0) ** np.arange(order)
+        return np.asarray(np.einsum("efj,kj->ekf", self.coefficients, powers))
+
+    def coefficients_at(self, element: IntArray, fractions: FloatArray) -> FloatArray:
+        """Coefficients at fractions (z,) of some pieces (z,), (z, 6) or (z, 2)."""
+        given = self.coefficients[element]
+        if given.shape[2] == 1:
+            return given[:, :, 0]
+        powers = (2.0 * fractions[:, None] - 1.0) ** np.arange(given.shape[2])
+        return np.asarray(np.einsum("zfj,zj->zf", given, powers))
+
+
+def _pair(translation: npt.ArrayLike, rotation: npt.ArrayLike | None) -> tuple[NumberArray, NumberArray]:
+    moving = np.atleast_1d(np.asarray(translation))
+    turning = moving if rotation is None else np.atleast_1d(np.asarray(rotation))
+    kind = np.result_type(moving, turning, np.float64)
+    moving, turning = np.broadcast_arrays(moving.astype(kind), turning.astype(kind))
+    return np.ascontiguousarray(moving), np.ascontiguousarray(turning)

@@ -1,0 +1,217 @@
+"""Inertia count of whirl frequencies below a frequency, for rotors without damping or driving forces.
+
+Let stiffness be Hermitian and positive semidefinite and damping absent. At λ = iω the dynamic stiffness of the
+turning rotor over both planes is the Hermitian D(ω) = K − ω²M + ωG, with G Hermitian in circular coordinates and
+proportional to the speed Ω, or to ω where the speed follows the frequency. At a root, with D v = 0,
+
+    vᴴ D' v = −2ω vᴴMv + vᴴGv = −ω vᴴMv − vᴴKv / ω < 0,
+
+because vᴴGv = ω vᴴMv − vᴴKv / ω there. (For Ω = ω, D = K − ω²(M − G') and vᴴD'v = −2 vᴴKv / ω.) Each eigenvalue
+of D that passes zero as ω grows passes downwards, so the roots between two frequencies number exactly the
+difference of s(D), the negative eigenvalues: Wittrick and Williams' count, carried over to any speed. Roots that move
+no stiffness, the free rotor's at zero, lie below both.
+
+Eliminating nodes from the left, with (U, F) the n states that the left part admits, S = F U⁻¹, and K₁₁ = T₁₂⁻¹T₁₁
+of the next piece, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.transfer_matrix.wittrick_williams`. Congruence with U
+spares the inverse:
+
+    s(S + K₁₁) = s(Uᴴ T₁₂⁻¹ U_right).
+
+Pedestals are eliminated first: the negative eigenvalues of each one's own matrix count, and the bearing becomes the
+Schur complement.
+
+Completeness of whirl modes: roots counted, and searched for again where one is missing.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.certificate import ModeCertificate
+from rotors.errors import IncompleteModesError
+from rotors.model.bearing import Bearing
+from rotors.whirl.argument_principle import NONE, RootOnContourError, Sector, count_by_argument_principle
+from rotors.whirl.circular_coordinates import NodeBearing
+from rotors.whirl.eigenvalues import ExactRoots, Speed, distinct, refine_roots, with_circle
+from rotors.whirl.equations import WhirlEquations
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+# A bearing's smallest eigenvalue may lie this far below zero beside its largest, from rounding.
+ROUNDING = 1e-12
+
+
+def is_conservative(bearings: Sequence[Bearing]) -> bool:
+    """Whether bearings and pedestals are undamped with symmetric, positive semidefinite stiffness."""
+    for bearing in bearings:
+        stiffnesses, dampings = [bearing.spatial_stiffness], [bearing.spatial_damping]
+        if bearing.pedestal is not None:
+            stiffnesses.append(bearing.pedestal.stiffness)
+            dampings.append(bearing.pedestal.damping)
+        if any(bool(damping.any()) for damping in dampings):
+            return False
+        for stiffness in stiffnesses:
+            if not np.array_equal(stiffness, stiffness.T):
+                return False
+            # Scaled to a unit diagonal, as forces and moments differ in unit.
+            size = np.sqrt(np.maximum(np.diag(stiffness), 0.0))
+            unit = np.divide(stiffness, np.outer(size, size), out=stiffness * 0.0, where=np.outer(size, size) > 0.0)
+            if bool((stiffness[np.outer(size, size) == 0.0] != 0.0).any()):
+                return False
+            if np.linalg.eigvalsh(unit)[0] < -ROUNDING:
+                return False
+    return True
+
+
+def negative_count(chain: WhirlEquations, frequencies: FloatArray, speed: Speed) -> IntArray:
+    """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω (rad/s), (b,)."""
+    eigenvalues = (1j * frequencies).astype(np.complex128)
+    # One unit of force for all frequencies: with that of a frequency near zero every bearing would seem rigid.
+    speeds, scale = speed(eigenvalues), np.full(frequencies.size, chain.force_scale(eigenvalues).max())
+    n, batch = chain.size, frequencies.size
+    nodes, added = _node_matrices(chain, eigenvalues, speeds, scale)
+    transfer_matrices = chain.dense_transfers(eigenvalues, speeds, scale)
+    displacements = np.broadcast_to(np.eye(n, dtype=np.complex128), (batch, n, n))
+    forces = np.zeros((batch, n, n), dtype=np.complex128)
+    for piece in range(nodes.shape[1] - 1):
+        forces = forces + nodes[:, piece] @ displacements
+        transfer = transfer_matrices[piece]
+        moved = transfer @ np.concatenate([displacements, forces], axis=1)
+        reaction = np.linalg.solve(transfer[:, :n, n:], moved[:, :n])
+        added += _negatives(_adjoint(displacements) @ reaction)
+        states = np.linalg.qr(moved)[0]
+        displacements, forces = states[:, :n], states[:, n:]
+    forces = forces + nodes[:, -1] @ displacements
+    return added + _negatives(_adjoint(displacements) @ forces)
+
+
+def _node_matrices(
+    chain: WhirlEquations, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+) -> tuple[ComplexArray, IntArray]:
+    """Dynamic stiffness at every node, (b, p + 1, n, n), and the pedestals' own negative eigenvalues, (b,)."""
+    terms = chain.node_terms(eigenvalues, speeds) / scale[:, None, None]
+    nodes = terms[..., None] * np.eye(chain.size)
+    negatives = np.zeros(eigenvalues.size, dtype=np.intp)
+    for tie in chain.ties:
+        reduced, own = _reduced(tie, eigenvalues)
+        nodes[:, tie.node] += reduced / scale[:, None, None]
+        negatives += own
+    return nodes, negatives
+
+
+def _reduced(tie: NodeBearing, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
+    bearing, ground = tie.dynamic_stiffness(eigenvalues)
+    turned = tie.frame.conj().T
+    if not tie.foot:
+        return turned @ bearing @ tie.frame, np.zeros(eigenvalues.size, dtype=np.intp)
+    foot = list(tie.foot)
+    whole = ground + bearing[:, foot][:, :, foot]
+    reduced = bearing - bearing[:, :, foot] @ np.linalg.solve(whole, bearing[:, foot])
+    return turned @ reduced @ tie.frame, _negatives(whole)
+
+
+def _negatives(matrices: ComplexArray) -> IntArray:
+    hermitian = 0.5 * (matrices + _adjoint(matrices))
+    return np.asarray((np.linalg.eigvalsh(hermitian) < 0.0).sum(axis=-1))
+
+
+def _adjoint(matrices: ComplexArray) -> ComplexArray:
+    return np.asarray(np.swapaxes(matrices, -1, -2).conj())
+
+
+# The sector of oscillating motions begins this far from the real axis, rad, and at this part of the lowest frequency.
+NO_OSCILLATION = 1e-6
+MOST_MISSING = 3
+MOST_CUTS = 24
+MOST_NUDGES = 6
+
+
+def oscillating(least: float, most: float) -> Sector:
+    """The sector of motions that oscillate, stable or not."""
+    return Sector(least, most, NO_OSCILLATION, np.pi - NO_OSCILLATION)
+
+
+def certified_roots(
+    chain: WhirlEquations,
+    roots: ExactRoots,
+    speed: Speed,
+    sector: Sector,
+    conservative: bool,
+    beyond: ComplexArray = NONE,
+) -> tuple[ExactRoots, ModeCertificate]:
+    """All roots in a sector, starting from the known ones, and the proof; approximate roots ``beyond`` reduce its work.
+
+    Raises
+    ------
+    IncompleteModesError
+        The count and the roots do not agree even after a search.
+    """
+    method = "inertia" if conservative else "winding"
+    held = roots.take(sector.holds(roots.eigenvalues))
+    expected = count_roots(chain, speed, sector, conservative, np.concatenate([roots.eigenvalues, beyond]))
+    if held.eigenvalues.size < expected:
+        held = search(chain, roots, speed, sector)
+    found = held.eigenvalues.size
+    certificate = ModeCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
+    if not certificate.complete:
+        raise IncompleteModesError(
+            f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "
+            f"by their {method} count; choose a limit a little apart, or check the model for parts that differ by many "
+            "orders of magnitude in stiffness or damping"
+        )
+    return held, certificate
+
+
+def count_roots(
+    chain: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
+) -> int:
+    """Number of roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
+    if conservative:
+        edges = np.array([sector.least, sector.most])
+        low, high = negative_count(chain, edges, speed).tolist()
+        return int(high - low)
+    return count_by_argument_principle(chain, sector, speed, known).count
+
+
+def search(chain: WhirlEquations, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
+    """All roots in a sector: the known ones, and the missing ones by the argument principle and power sums."""
+    roots, waiting, cuts = known, [sector], 0
+    while waiting:
+        part = waiting.pop()
+        winding = count_by_argument_principle(chain, part, speed, roots.eigenvalues)
+        inside = roots.eigenvalues[part.holds(roots.eigenvalues)]
+        missing = winding.count - inside.size
+        if missing <= 0:
+            continue
+        if missing <= MOST_MISSING:
+            starts = winding.missing(missing)
+            roots = distinct(roots.joined(refine_roots(chain, starts, speed)))
+            for start in starts:
+                if int(part.holds(roots.eigenvalues).sum()) == winding.count:
+                    break
+                roots = with_circle(chain, roots, complex(start), speed)
+            if int(part.holds(roots.eigenvalues).sum()) == winding.count:
+                continue
+        if cuts >= MOST_CUTS:
+            break
+        cuts += 1
+        waiting += _cut(chain, part, speed, roots.eigenvalues)
+    return roots.take(sector.holds(roots.eigenvalues))
+
+
+def _cut(chain: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
+    """Two parts of a sector without a root on their common side."""
+    for nudge in range(MOST_NUDGES):
+        halves = sector.halves(0.5 + 0.037 * nudge)
+        try:
+            count_by_argument_principle(chain, halves[0], speed, known)
+        except RootOnContourError:
+            continue
+        return list(halves)
+    raise RootOnContourError(
+        f"whirl modes about |λ| = {sector.most:g} rad/s lie too close to each other to be told apart; "
+        "choose a lower limit"
+    )

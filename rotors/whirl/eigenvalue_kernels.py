@@ -1,0 +1,214 @@
+"""Compiled Newton iteration for whirl eigenvalues, each root by itself; see `rotors.whirl.eigenvalues`.
+
+Importing this module imports numba.
+
+Compiled tests of eigenvalues: oscillating or not, separated or not, inside a sector or not.
+
+Importing this module imports numba.
+"""
+
+import cmath
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.certificate import ACCEPTED, MOST_STEPS, SETTLED
+from rotors.numerics.banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
+from rotors.numerics.compiled import FUSED, counted, inner, uncounted
+from rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put_entries, scratch
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+BoolArray = npt.NDArray[np.bool_]
+
+
+@inner(error_model="python")
+def logarithm(value: complex) -> complex:
+    """ln λ; minus infinity for zero."""
+    return complex(math.log(abs(value)), math.atan2(value.imag, value.real))
+
+
+@counted(error_model="python")
+def ascending(values: ComplexArray, least: float, angle: float) -> ComplexArray:
+    """Values above the real axis by more than a small angle (rad) and larger than ``least``, by ascending modulus."""
+    kept, sizes, count = np.empty(values.size, dtype=np.complex128), np.empty(values.size), 0
+    for k in range(values.size):
+        size = abs(values[k])
+        # Both are false for NaN.
+        if not (size > least and values[k].imag > angle * size):
+            continue
+        place = count
+        while place > 0 and sizes[place - 1] > size:
+            kept[place], sizes[place] = kept[place - 1], sizes[place - 1]
+            place -= 1
+        kept[place], sizes[place] = values[k], size
+        count += 1
+    return kept[:count].copy()
+
+
+@uncounted(error_model="python")
+def are_apart(values: ComplexArray, tolerance: float) -> bool:
+    """Whether no two values are closer than ``tolerance`` times either's modulus."""
+    for i in range(values.size):
+        for j in range(i):
+            if abs(values[i] - values[j]) <= tolerance * max(abs(values[i]), abs(values[j])):
+                return False
+    return True
+
+
+@uncounted(error_model="python")
+def are_converged(values: ComplexArray, residuals: FloatArray, accepted: float, tolerance: float) -> bool:
+    """Whether no residual exceeds ``accepted`` and no two values are closer than ``tolerance`` times a modulus."""
+    for residual in residuals:
+        if not residual <= accepted:
+            return False
+    return are_apart(values, tolerance)
+
+
+@uncounted(error_model="python")
+def inside(values: ComplexArray, bounds: FloatArray, out: BoolArray) -> None:
+    """Mark the values inside a sector; ``bounds`` as in `edge_distance`."""
+    for k in range(values.size):
+        out[k] = edge_distance(logarithm(values[k]), bounds) < 0.0
+
+
+@inner(error_model="python")
+def edge_distance(place: complex, bounds: FloatArray) -> float:
+    """Distance of ln λ from the edge of a sector, negative inside: the larger of those along the two axes.
+
+    ``bounds`` are the least and the greatest ln |λ| and arg λ, in this order.
+    """
+    across: float = max(bounds[0] - place.real, place.real - bounds[1])
+    along: float = max(bounds[2] - place.imag, place.imag - bounds[3])
+    return max(across, along)
+
+
+IntArray = npt.NDArray[np.intp]
+
+# Slopes are recomputed after steps longer than this.
+STALE = 1e-4
+# A step larger than this part of the root is shortened: its start is not near a root.
+LONGEST_STEP = 0.3
+# After a smaller relative step the existing factors serve for the next one.
+CLOSE = 1e-6
+# Largest correction of the vector in that step: its remaining error is a few times the square of the correction.
+TURNED = 1e-7
+# Relative step of the forward difference for slopes of the entries, accurate to about 1e-6.
+FORWARD = 1e-6
+
+
+@inner(error_model="python", fastmath=FUSED)
+def forms(
+    rows: IntArray,
+    columns: IntArray,
+    values: ComplexArray,
+    slopes: ComplexArray,
+    left: ComplexArray,
+    right: ComplexArray,
+) -> tuple[complex, complex]:
+    """yᴴ N x and yᴴ N' x; the varying entries come first."""
+    top, bottom = 0.0j, 0.0j
+    for entry in range(slopes.size):
+        both = np.conj(left[rows[entry]]) * right[columns[entry]]
+        top += both * values[entry]
+        bottom += both * slopes[entry]
+    for entry in range(slopes.size, values.size):
+        top += np.conj(left[rows[entry]]) * right[columns[entry]] * values[entry]
+    return top, bottom
+
+
+@counted(error_model="python")
+def newton(
+    starts: ComplexArray,
+    given: ComplexArray,
+    bases: ComplexArray,
+    rate: complex,
+    mass: float,
+    table: Table,
+    pattern: Pattern,
+) -> tuple[ComplexArray, ComplexArray, FloatArray, FloatArray]:
+    """Newton's method from starting values (w,) and vectors (w or more, order).
+
+    The speed of rotation is Ω = base + rate λ, with one base for all or one for each, the unit of force the inertia
+    force of a ``mass``. Returned are roots (w,), vectors (w, order), the last correction as a part of the root, (w,),
+    and the unit of force in each vector, (w,).
+
+    Close to a root one step reuses the factors of the last: with N the matrix at the new place and F the factored one,
+    x ← x − F⁻¹ N x reduces the vector's error by the relative change of the root (Neumaier, SIAM J. Numer. Anal. 22,
+    1985). A vector from factors belongs to the place where they were made: it has converged only if the root has not
+    moved from there.
+    """
+    rows, columns, envelope, lower, upper = pattern
+    order = envelope.shape[0]
+    beams, rods, values, varying = scratch(table, rows.size)
+    slopes = np.empty(varying, dtype=np.complex128)
+    matrix = np.empty((order, 2 * lower + upper + 1), dtype=np.complex128)
+    left, side = np.empty((1, order), dtype=np.complex128), np.empty(order, dtype=np.complex128)
+    pivots, ends = np.empty(order, dtype=np.intp), np.empty(order, dtype=np.intp)
+    count = starts.size
+    roots, vectors = np.empty(count, dtype=np.complex128), np.empty((count, order), dtype=np.complex128)
+    residuals, scales = np.empty(count), np.empty(count)
+    for root in range(count):
+        at, base, last, held = starts[root], bases[root % bases.size], math.inf, False
+        residuals[root], right = math.inf, vectors[root : root + 1]
+        put(given[root], right[0])
+        for _ in range(MOST_STEPS):
+            scale = scales[root] if held else force_unit(at, mass)
+            scales[root] = scale
+            put_entries(at, base + rate * at, scale, table, beams, rods, values)
+            # Slopes of the last step serve for a root that has hardly moved: they do not enter the residual.
+            if last > STALE:
+                ahead = at * (1.0 + FORWARD)
+                put_entries(ahead, base + rate * ahead, scale, table, beams, rods, slopes)
+                over = 1.0 / (ahead - at)
+                for entry in range(varying):
+                    slopes[entry] = (slopes[entry] - values[entry]) * over
+            turned = 0.0
+            if held:
+                # The factors of the last step correct the vector.
+                for i in range(order):
+                    side[i] = 0.0
+                for entry in range(rows.size):
+                    side[rows[entry]] += values[entry] * right[0, columns[entry]]
+                forward_back(matrix, lower, envelope, pivots, ends, side)
+                along = 0.0j
+                for i in range(order):
+                    along += np.conj(right[0, i]) * side[i]
+                for i in range(order):
+                    change = side[i] - along * right[0, i]
+                    turned += change.real**2 + change.imag**2
+                    right[0, i] -= change
+                orthonormalise(right)
+            else:
+                largest = fill(rows, columns, lower, values, matrix)
+                factor(matrix, lower, envelope, pivots, ends, TINY * largest)
+                put(right[0], left[0])
+                adjoint(matrix, lower, envelope, pivots, ends, left[0])
+                orthonormalise(left)
+                put(left[0], right[0])
+                forward_back(matrix, lower, envelope, pivots, ends, right[0])
+                orthonormalise(right)
+                put(right[0], left[0])
+                adjoint(matrix, lower, envelope, pivots, ends, left[0])
+                orthonormalise(left)
+            top, bottom = forms(rows, columns, values, slopes, left[0], right[0])
+            change = -top / bottom if bottom != 0.0 else complex(math.inf, 0.0)
+            share = abs(change) / abs(at)
+            if share > LONGEST_STEP:
+                change = LONGEST_STEP * abs(at) * cmath.exp(1j * cmath.phase(change))
+            # Only rounding moves a converged root: it keeps its value of the last good step.
+            rounding = share < ACCEPTED and share >= 0.5 * last
+            if not rounding and cmath.isfinite(change):
+                at += change
+            # Estimated error after the step, from the decrease of the last two steps.
+            forecast = math.inf
+            if share < math.sqrt(ACCEPTED) and last < 1.0:
+                forecast = share**2 * (1.0 / last if held else max(1.0, share / last**2)) + STALE * share
+            residuals[root] = share if rounding else min(share, forecast)
+            # Old factors serve one step: a root that has not converged by then gets new ones.
+            kept, held, last = held, not held and share <= CLOSE, share
+            if turned <= TURNED**2 and (rounding or share <= SETTLED or (kept and forecast <= SETTLED)):
+                break
+        roots[root] = at
+    return roots, vectors, residuals, scales

@@ -1,0 +1,277 @@
+"""Whirl equations: the exact transfer-matrix equations of both planes of a turning shaft at any complex frequency.
+
+A motion e^{λt} of a disc turning at Ω obeys I_d λ²β_x + Ω I_p λ β_y = M_x and I_d λ²β_y − Ω I_p λ β_x = M_y
+(`rotors.whirl.whirl_modes`). In the circular coordinates of `rotors.whirl.circular_coordinates` these part into
+
+    (I_d λ² ∓ iΩ I_p λ) β± = M± ,
+
+and since a round section's polar inertia is twice its diametral one, every piece of shaft obeys the planar
+equations of `rotors.transfer_matrix.timoshenko` with
+
+    ω² → −λ² for translation,     ω² → −λ² ± 2iΩλ for rotation.
+
+So the exact transfer matrices of both senses follow for any λ, with no modal truncation. Only the bearings couple the
+two senses, and the shaft's axial motion where their 5×5 matrices do. At λ = iω forward whirl is r+.
+
+The unknowns are the states (displacements u, forces f to the right) at some nodes, the forces g of bearings and the
+displacements p of pedestals; the equations are those of multiple shooting,
+
+    u_{i+1} = T₁₁ u_i + T₁₂ f_i
+    f_{i+1} = T₂₁ u_i + T₂₂ f_i + (λ² M + λ G) u_{i+1} + Fᴴ g
+    g = (K_b + λ C_b) (F u − p),        (K_p + λ C_p + λ² M_p) p = g
+
+with the forces g in a node's bearings along directions F u of their own, and no force f right of the last node. Every
+entry is an entire function of λ, the pedestals' resonances included, and so is the determinant; its zeros are the
+eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the pieces and of
+the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
+the pedestals to the forces on the right end and the pedestals.) `rotors.whirl.shooting_matrix` puts them in order.
+
+A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of pieces has
+the product of their transfer matrices (`WhirlEquations.in_runs`), so that a shaft of sixty steps has no more unknowns
+than a plain one.
+
+Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
+bearings loses no digits to its own stiffness.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.model.bearing import Bearing, RadialSupport
+from rotors.model.shaft import Rotor
+from rotors.numerics.banded import BandPattern
+from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
+from rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
+from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing, node_bearing
+from rotors.whirl.shooting_matrix import Layout, ShootingMatrix, shooting_matrix
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+# Least unit of force of a response, as a part of the stiffest bearing's force per unit displacement.
+STATIC_FORCE = 1e-6
+# Largest growth of motion along a run of pieces, as a power of e: it costs the states two digits at most.
+MOST_GROWTH = 4.5
+# Number of frequencies in an octave for which equations are made.
+REACH_STEPS = 4
+
+
+@dataclass(frozen=True)
+class WhirlEquations:
+    """Exact equations of a rotor on its bearings, for one set of coupled motions.
+
+    Attributes
+    ----------
+    rotor
+        The rotor.
+    bending
+        Pieces and node inertias of one plane, without springs.
+    blocks
+        1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
+    ties
+        Bearings with constant coefficients.
+    kept
+        (r + 1,): nodes whose states are unknowns, ascending: both ends, and nodes with inertia or a bearing.
+    """
+
+    rotor: Rotor
+    bending: DiscretisedShaft
+    blocks: tuple[int, ...]
+    ties: tuple[NodeBearing, ...]
+    kept: IntArray
+
+    @property
+    def size(self) -> int:
+        """Displacements at a node, n."""
+        return sum(len(BLOCK_COORDINATES[block]) for block in self.blocks)
+
+    @property
+    def units(self) -> FloatArray:
+        """SI value of each of a node's displacements; forces have its reciprocal. (n,)."""
+        return block_units(self.bending, self.blocks)
+
+    @cached_property
+    def axial(self) -> DiscretisedShaft:
+        """Axial motion of the same shaft, with the same nodes and units."""
+        return axial_shaft_on(self.rotor, self.bending)
+
+    @cached_property
+    def total_mass(self) -> float:
+        """Approximate mass of the rotor in scaled units."""
+        chain = self.bending
+        along = chain.coefficients_at(np.arange(chain.element.size), np.full(chain.element.size, 0.5))[:, 2]
+        return float(along @ chain.lengths + chain.node_inertia[:, 0].sum())
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Order of unknowns and equations."""
+        return Layout.of(self.blocks, self.kept, self.ties)
+
+    @cached_property
+    def entries(self) -> ShootingMatrix:
+        """The table from which the matrix is made at any λ."""
+        axial = self.axial if 0 in self.blocks else None
+        return shooting_matrix(self.bending, axial, self.blocks, self.ties, self.kept, self.layout)
+
+    @property
+    def pattern(self) -> BandPattern:
+        """Rows and columns of the entries in `values`."""
+        return self.entries.pattern
+
+    def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
+        """Unit of forces for roots near every λ: the inertia forces, or the shaft's own where they are less."""
+        return np.asarray(np.minimum(np.maximum(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30), 1.0))
+
+    def response_scale(self, eigenvalues: ComplexArray) -> FloatArray:
+        """Unit of forces for a response at every λ, zero included, where bearings may carry more than inertia."""
+        held = max((float(np.abs(tie.stiffness).max(initial=0.0)) for tie in self.ties), default=1.0)
+        least = np.full(eigenvalues.size, min(max(STATIC_FORCE * held, 1e-30), 1.0))
+        return np.asarray(np.maximum(self.force_scale(eigenvalues), least))
+
+    def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
+        return self.entries.values(eigenvalues, speeds, scale)
+
+    def node_terms(self, eigenvalues: ComplexArray, speeds: ComplexArray) -> ComplexArray:
+        """λ²M ∓ iΩλ I_p of the nodes' own inertias, (b, p + 1, n)."""
+        chain = self.bending
+        squared = eigenvalues[:, None] ** 2
+        columns = []
+        for block in self.blocks:
+            columns.append(squared * chain.node_inertia[:, 0])
+            if block:
+                gyroscopic = (block * 1j * speeds * eigenvalues)[:, None] * chain.node_polar
+                columns.append(squared * chain.node_inertia[:, 1] - gyroscopic)
+        return np.stack(columns, axis=-1)
+
+    def dense_transfers(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Transfer matrices of all blocks together, (p, b, 2n, 2n), displacements before forces."""
+        n = self.size
+        dense = np.zeros((self.bending.lengths.size, eigenvalues.size, 2 * n, 2 * n), dtype=np.complex128)
+        first = 0
+        for block in self.blocks:
+            local = first + np.arange(len(BLOCK_COORDINATES[block]))
+            both = np.concatenate([local, n + local])
+            dense[:, :, both[:, None], both] = self._transfers(block, eigenvalues, speeds, scale)
+            first += local.size
+        return dense
+
+    def _transfers(
+        self, block: int, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+    ) -> ComplexArray:
+        chain = self.bending if block else self.axial
+        transfer = chain.transfer_matrices(*squared_frequencies(block, eigenvalues, speeds))
+        half = transfer.shape[-1] // 2
+        transfer[..., :half, half:] *= scale[:, None, None]
+        transfer[..., half:, :half] /= scale[:, None, None]
+        return transfer
+
+    def states(
+        self, solutions: ComplexArray, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+    ) -> dict[int, ComplexArray]:
+        """States (b, p + 1, 2 or 4) of every block at all nodes in scaled units, from solutions (b, order)."""
+        from rotors.whirl.shooting_matrix_kernels import node_states
+
+        states, given = {}, np.ascontiguousarray(solutions)
+        for block, places in zip(self.blocks, self._state_places, strict=True):
+            own = np.empty((eigenvalues.size, self.bending.nodes.size, places.shape[1]), dtype=np.complex128)
+            runs = self.entries.beams if block else self.entries.rods
+            node_states(runs, *squared_frequencies(block, eigenvalues, speeds), places, scale, given, own)
+            states[block] = own
+        return states
+
+    @cached_property
+    def _state_places(self) -> list[IntArray]:
+        """Unknown of every state of every block at the kept nodes, (r + 1, 2 or 4); −1 where there is none."""
+        first, places, layout = 0, [], self.layout
+        forces = np.concatenate([layout.forces, np.full((1, self.size), -1)])
+        for block in self.blocks:
+            own = slice(first, first + len(BLOCK_COORDINATES[block]))
+            places.append(np.concatenate([layout.displacements[:, own], forces[:, own]], axis=1))
+            first = own.stop
+        return places
+
+    def in_runs(self) -> "WhirlEquations":
+        """The same equations with unknowns at loaded nodes only; no external load may act at the others."""
+        chain = self.bending
+        needed = chain.node_inertia.any(axis=1) | (chain.node_polar != 0.0)
+        needed[[0, -1, *(tie.node for tie in self.ties)]] = True
+        growth, total = chain.table.growth(chain.highest)[chain.element].tolist(), 0.0
+        for piece, own in enumerate(growth):
+            needed[piece] |= total + own > MOST_GROWTH
+            total = own if needed[piece] else total + own
+        return replace(self, kept=np.flatnonzero(needed))
+
+
+def block_units(chain: DiscretisedShaft, blocks: tuple[int, ...]) -> FloatArray:
+    """Units of a node's displacements, (n,)."""
+    return np.concatenate([chain.displacement_unit if block else chain.displacement_unit[:1] for block in blocks])
+
+
+def squared_frequencies(
+    block: int, eigenvalues: ComplexArray, speeds: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """ω² of translation and of rotation in the circular coordinates of a block, (w,) both."""
+    translation = -(eigenvalues**2)
+    return translation, translation + block * 2j * speeds * eigenvalues
+
+
+def whirl_reach(limit: float, speed: float) -> float:
+    """Planar frequency for which pieces must be short enough, for whirl up to ``limit`` at ``speed``, rad/s.
+
+    The rotary inertia's ω² ± 2Ωω is largest in magnitude at ω(ω + 2|Ω|).
+    """
+    return math.sqrt(limit * (limit + 2.0 * abs(speed)))
+
+
+def whirl_equations(
+    rotor: Rotor,
+    bearings: Sequence[Bearing],
+    blocks: tuple[int, ...],
+    highest: float,
+    places: Sequence[float] = (),
+) -> WhirlEquations:
+    """Exact equations of one set of coupled motions of a rotor on bearings of constant coefficients.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and its bearings.
+    blocks
+        One of `rotors.whirl.circular_coordinates.coupled_motions`.
+    highest
+        Planar frequency up to which pieces are short enough, rad/s: see `whirl_reach`.
+    places
+        Further places to be nodes, m.
+    """
+    supports = [RadialSupport(at, 0.0) for at in (*(bearing.at for bearing in bearings), *places)]
+    chain = discretised_bending_shaft(rotor, tuple(supports), highest)
+    units = block_units(chain, blocks)
+    ties = tuple(node_bearing(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
+    return WhirlEquations(rotor, chain, blocks, ties, np.arange(chain.nodes.size))
+
+
+def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> WhirlEquations:
+    """The equations of `whirl_equations` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
+    return whirl_equations(rotor, bearings, blocks, reach_step(highest)).in_runs()
+
+
+def reach_step(highest: float) -> float:
+    """The next of the frequencies (rad/s) that equations are made for, so that those of near speeds are the same."""
+    return math.exp2(math.ceil(REACH_STEPS * math.log2(highest)) / REACH_STEPS)
+
+
+def retied(chain: WhirlEquations, bearings: Sequence[Bearing], speed: float) -> WhirlEquations:
+    """The same equations with the bearings' coefficients at another speed (rad/s)."""
+    units = block_units(chain.bending, chain.blocks)
+    ties = tuple(
+        node_bearing(bearing.at_speed(speed), tie.node, chain.blocks, units)
+        for bearing, tie in zip(bearings, chain.ties, strict=True)
+    )
+    return replace(chain, ties=ties)

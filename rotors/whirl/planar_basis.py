@@ -1,0 +1,169 @@
+"""Planar basis of whirl: modes of one plane, and static responses to loads at bearings and discs.
+
+`rotors.whirl_basis` gives the same space as certified modes. Starting values need less: any mass-orthonormal basis of
+the space gives the same, and the roots have a proof of their own. Here the modes' fields and the responses are made
+orthonormal one after another, by Gram-Schmidt on their values at the quadrature points, so that the small part that a
+response adds to the modes keeps its digits.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import require, require_finite
+from rotors.model.bearing import Bearing, RadialSupport
+from rotors.model.shaft import Rotor
+from rotors.modes.lateral import LateralModes, require_unbuckled
+from rotors.modes.residual_modes import FREE_SHIFT, NOTHING_LEFT
+from rotors.transfer_matrix.discretised_shaft import GAUSS_FRACTIONS, GAUSS_WEIGHTS, ContinuousShaft, DiscretisedShaft
+from rotors.transfer_matrix.mode_shapes import responses, rigid_states, shaft_with_modes, shared_roots
+from rotors.transfer_matrix.rotor_shafts import bending_shaft
+from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, shaft_arrays, wittrick_williams_count
+
+FloatArray = npt.NDArray[np.float64]
+
+DEFAULT_COUNT = 12
+LEAST_MODES = 6
+SPARE_MODES = 3
+# The basis holds modes up to this multiple of the highest whirl frequency: it gives starting values only.
+BASIS_REACH = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarBasis:
+    """Mass-orthonormal motions of the shaft in one plane, and their values at its bearings.
+
+    Attributes
+    ----------
+    stiffness
+        (b, b): of the shaft without supports, 1/s².
+    polar_inertia
+        (b, b): the gyroscopic matrix per rad/s.
+    displacement, slope
+        (b, bearings): at the bearings, in m and rad per unit modal coordinate.
+    floor
+        The lowest frequency on the mean supports that is not a rigid motion's zero, rad/s.
+    """
+
+    stiffness: FloatArray
+    polar_inertia: FloatArray
+    displacement: FloatArray
+    slope: FloatArray
+    floor: float
+
+    @property
+    def count(self) -> int:
+        """Number of motions b."""
+        return int(self.stiffness.shape[0])
+
+    @classmethod
+    def of_modes(cls, modes: LateralModes, bearings: Sequence[Bearing]) -> "PlanarBasis":
+        """The basis of certified modes and attachment modes, at the given bearings."""
+        displacement = slope = np.zeros((modes.count, 0))
+        if bearings:
+            displacement, slope = modes.evaluate([bearing.at for bearing in bearings])
+        moving = modes.frequencies[modes.frequencies > 0.0]
+        return cls(
+            stiffness=modes.free_stiffness,
+            polar_inertia=modes.polar_inertia_matrix,
+            displacement=displacement,
+            slope=slope,
+            floor=float(moving.min()) if moving.size else 1.0,
+        )
+
+
+def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
+    """Planar springs of a basis: averaged bearing stiffness, of tables over speed at the middle of the table."""
+    return tuple(
+        bearing.at_speed(float(bearing.speeds[bearing.speeds.size // 2])).mean_support
+        if bearing.speeds is not None
+        else bearing.mean_support
+        for bearing in bearings
+    )
+
+
+def loaded_places(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[list[float], list[float]]:
+    """Places (m) of forces and of moments on the turning shaft: bearings, and discs with polar inertia."""
+    moments = [disc.at for disc in rotor.discs if disc.polar_inertia > 0.0]
+    moments += [bearing.at for bearing in bearings if bearing.stiffness.shape[-1] == 5]
+    return [bearing.at for bearing in bearings], moments
+
+
+def modes_needed(count: int | None, available: float) -> int:
+    """Number of planar modes in the basis for ``count`` whirl modes."""
+    return int(min(max((count or DEFAULT_COUNT) // 2 + SPARE_MODES, LEAST_MODES), available))
+
+
+def planar_basis(
+    rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
+) -> PlanarBasis:
+    """The space of `rotors.whirl_basis`, without its proof.
+
+    Raises
+    ------
+    RotorError, IncompleteModesError
+        As `rotors.whirl_basis`, of wrong arguments, or where the root count does not reach the modes.
+    """
+    from rotors.transfer_matrix.mode_shape_kernels import energy_rows, energy_weights, mass_orthonormal, null_states
+
+    both = (frequency_limit, count)
+    require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
+    supports = mean_supports(bearings)
+    require_unbuckled(rotor, supports)
+    chain, frequencies = _lowest_modes(bending_shaft(rotor, supports), frequency_limit, count)
+    zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
+    elastic = frequencies[zeros:]
+    forces, moments = loaded_places(rotor, bearings)
+    nodes = [chain.node_at(place) for place in forces]
+    loads = [(node, 0) for node in nodes] + [(chain.node_at(place), 1) for place in moments]
+    loads = list(dict.fromkeys(loads))
+    # As in `rotors.modes.residual_modes`, a free shaft answers a little below zero.
+    shift = -((FREE_SHIFT * (float(elastic[0]) if elastic.size else 1.0)) ** 2) if zeros else 0.0
+    squared = shared_roots(elastic) ** 2
+    states = [null_states(squared, *shaft_arrays(chain))]
+    if zeros:
+        states.insert(0, rigid_states(chain)[:zeros])
+    if loads:
+        states.append(responses(chain, loads, shift))
+    squared = np.concatenate([np.zeros(zeros), squared, np.full(len(loads), shift)])
+    fields = np.concatenate(states) if len(states) > 1 else states[0]
+    arrays = chain.table.lengths, chain.table.coefficients, chain.element
+    # The bearings' springs are added by the projection.
+    nodal = np.zeros_like(chain.node_stiffness), chain.node_inertia, chain.node_polar
+    mass, polar, stiffness = energy_weights(GAUSS_FRACTIONS, GAUSS_WEIGHTS, *arrays, *nodal)
+    motion, strain = np.empty((squared.size, mass.size)), np.empty((squared.size, stiffness.size))
+    energy_rows(squared, fields, GAUSS_FRACTIONS, *arrays, motion, strain)
+    at_bearings = fields[:, nodes, :2] * chain.displacement_unit
+    shapes = np.ascontiguousarray(at_bearings.reshape(squared.size, -1))
+    kept = mass_orthonormal(motion, strain, shapes, mass, NOTHING_LEFT)
+    motion, strain, shapes = motion[:kept], strain[:kept], shapes[:kept]
+    own = (strain * stiffness) @ strain.T
+    moving = np.sqrt(own.diagonal()[own.diagonal() > 0.0]) if elastic.size == 0 else elastic
+    return PlanarBasis(
+        stiffness=own,
+        polar_inertia=(motion * polar) @ motion.T,
+        displacement=shapes[:, 0::2],
+        slope=shapes[:, 1::2],
+        floor=float(moving.min()) if moving.size else 1.0,
+    )
+
+
+def _lowest_modes(
+    line: ContinuousShaft, frequency_limit: float | None, count: int | None
+) -> tuple[DiscretisedShaft, FloatArray]:
+    """A discretised shaft and its lowest natural frequencies, rad/s, those that the basis needs."""
+    available = line.available_modes
+    if frequency_limit is not None:
+        require_finite("frequency_limit", frequency_limit, positive=True)
+        highest = BASIS_REACH * frequency_limit
+        chain = line.cut(highest)
+        below = wittrick_williams_count(chain, highest)
+        if below >= min(LEAST_MODES, available):
+            return chain, lowest_natural_frequencies(chain, below, highest)
+        wanted = int(min(LEAST_MODES, available))
+    else:
+        wanted = modes_needed(count, available)
+    chain = shaft_with_modes(line, wanted)
+    return chain, lowest_natural_frequencies(chain, wanted, chain.highest)

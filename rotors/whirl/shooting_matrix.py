@@ -1,0 +1,265 @@
+"""Shooting matrix of the whirl equations: a table from which compiled code makes its entries for any λ.
+
+Beside the transfer matrices of runs of pieces every entry is, with Ω the speed of rotation and s the unit of force,
+
+    (c₀ + c₁ λ + c₂ λ² + c₃ λΩ + c₄ s) / (d₁ s + d₀):
+
+inertias have c₂, c₃ and d₁; bearings and pedestals c₀, c₁, c₂ over s plus the largest stiffness of their row, so that
+stiff and soft directions are scaled alike; their forces c₄. Unit entries and directions are constant.
+
+Order of the unknowns (columns) and equations (rows) of the shooting matrix.
+
+Elimination goes from left to right, and its cost is its fill-in. At every node the unknowns of bearings come first,
+then those of one block after another, displacements before forces; the equations of a node stand in the order of the
+blocks too, followed by those of bearings. So a bearing's coupling is eliminated before the next run begins, and the two
+senses hardly fill in each other's rows. Right of the last node there is no force.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.numerics.banded import BandPattern
+from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
+from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing
+
+IntArray = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class BearingPlaces:
+    """Columns of a bearing's forces (m,) and of its pedestal's displacements (f,), and the rows of both."""
+
+    forces: IntArray
+    feet: IntArray
+    force_rows: IntArray
+    foot_rows: IntArray
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Places of unknowns (columns) and equations (rows), for r + 1 nodes with n displacements each.
+
+    Attributes
+    ----------
+    order
+        Number of unknowns, and of equations.
+    displacements, forces
+        (r + 1, n) and (r, n): columns of the state right of a node.
+    continuity, balances
+        (r, n) and (r + 1, n): rows of the displacements at every node but the first, and of the forces at every node.
+    ties
+        For every bearing.
+    """
+
+    order: int
+    displacements: IntArray
+    forces: IntArray
+    continuity: IntArray
+    balances: IntArray
+    ties: tuple[BearingPlaces, ...]
+
+    @classmethod
+    def of(cls, blocks: tuple[int, ...], kept: IntArray, ties: Sequence[NodeBearing]) -> "Layout":
+        """Layout of the blocks at the nodes with unknowns, (r + 1,), and of the bearings at some of them."""
+        widths = np.array([len(BLOCK_COORDINATES[block]) for block in blocks])
+        n, width = int(widths.sum()), np.repeat(widths, widths)
+        # A block's displacements and then its forces, behind those of the blocks before it.
+        own = np.arange(n) + np.repeat(np.cumsum(widths) - widths, widths)
+        at = [int(kept.searchsorted(tie.node)) for tie in ties]
+        extra = np.zeros(kept.size, dtype=np.intp)
+        for node, tie in zip(at, ties, strict=True):
+            extra[node] += len(tie.directions) + len(tie.foot)
+        # The first node has no displacement to meet, the last no force.
+        columns = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n)])
+        rows = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n) - n])
+        states = columns + extra
+        displacements, balances = states[:, None] + own, rows[:, None] + width + own
+        displacements[-1], balances[0] = states[-1] + np.arange(n), np.arange(n)
+        behind = rows + 2 * n
+        behind[0] = n
+        places = []
+        for node, tie in zip(at, ties, strict=True):
+            m, f = len(tie.directions), len(tie.foot)
+            column, row = np.arange(columns[node], columns[node] + m + f), np.arange(behind[node], behind[node] + m + f)
+            places.append(BearingPlaces(column[:m], column[m:], row[:m], row[m:]))
+            columns[node] += m + f
+            behind[node] += m + f
+        return cls(
+            int(states[-1]) + n,
+            displacements,
+            states[:-1, None] + width + own,
+            rows[1:, None] + own,
+            balances,
+            tuple(places),
+        )
+
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
+
+ALONE = np.array([0.0, 1.0])
+OVER_FORCE = np.array([1.0, 0.0])
+NOWHERE = np.zeros(0, dtype=np.intp)
+NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NOWHERE, np.zeros(1, dtype=np.intp), NOWHERE)
+
+
+@dataclass(frozen=True)
+class ShootingMatrix:
+    """The shooting matrix of one set of equations, as a table of its entries.
+
+    Attributes
+    ----------
+    pattern
+        Rows and columns of the entries.
+    blocks
+        1 for r+, −1 for r−, 0 for z.
+    beams, rods
+        Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct pieces, each piece's index among them, (p,), the
+        nodes with unknowns, between which pieces form a run, (r + 1,), and for each run the first equal one, (r,); no
+        rods without z.
+    numerators, denominators
+        (t, 5) complex and (t, 2): of the entries that follow those of the transfer matrices.
+    constants
+        (c,) complex: constant entries, at the end.
+    """
+
+    pattern: BandPattern
+    blocks: IntArray
+    beams: Runs
+    rods: Runs
+    numerators: ComplexArray
+    denominators: FloatArray
+    constants: ComplexArray
+
+    def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Entries at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
+        from rotors.whirl.shooting_matrix_kernels import entries
+
+        out = np.empty((eigenvalues.size, self.pattern.rows.size), dtype=np.complex128)
+        entries(eigenvalues, speeds, scale, self.arrays, out)
+        return out
+
+    def log_determinants(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
+        """Logarithms of the determinants, (b,), their imaginary parts within (−π, π]."""
+        from rotors.whirl.shooting_matrix_kernels import determinants
+
+        return np.asarray(determinants(eigenvalues, speeds, scale, self.arrays, self.pattern.arrays))
+
+    @property
+    def arrays(self) -> tuple[IntArray, Runs, Runs, ComplexArray, FloatArray, ComplexArray]:
+        """The table as compiled functions take it."""
+        return self.blocks, self.beams, self.rods, self.numerators, self.denominators, self.constants
+
+
+def shooting_matrix(
+    bending: DiscretisedShaft,
+    axial: DiscretisedShaft | None,
+    blocks: tuple[int, ...],
+    ties: Sequence[NodeBearing],
+    kept: IntArray,
+    layout: Layout,
+) -> ShootingMatrix:
+    """The shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
+    first, terms, runs = 0, _Terms(), []
+    states = np.stack([layout.displacements[:-1], layout.forces])
+    reached = np.stack([layout.continuity, layout.balances[1:]])
+    for block in blocks:
+        own = slice(first, first + len(BLOCK_COORDINATES[block]))
+        # (r, 2n) each, displacements before forces.
+        rows, columns = (np.concatenate([*places[:, :, own]], axis=1) for places in (reached, states))
+        runs.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
+        first = own.stop
+    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
+    terms.add(layout.continuity, layout.displacements[1:], [1.0])
+    terms.add(layout.balances[:-1], layout.forces, [1.0])
+    for tie, own_places in zip(ties, layout.ties, strict=True):
+        node = int(kept.searchsorted(tie.node))
+        _add_tie(terms, tie, layout.balances[node], layout.displacements[node], own_places)
+    places, numerators, denominators, constants = terms.parted()
+    rows, columns = np.concatenate(runs + places, axis=1)
+    return ShootingMatrix(
+        BandPattern.of(rows, columns, layout.order),
+        np.array(blocks, dtype=np.intp),
+        _runs(bending, kept),
+        NO_RUNS if axial is None else _runs(axial, kept),
+        numerators,
+        denominators,
+        constants,
+    )
+
+
+def _runs(chain: DiscretisedShaft, kept: IntArray) -> Runs:
+    first: dict[bytes, int] = {}
+    pieces = [chain.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
+    like = [first.setdefault(same, run) for run, same in enumerate(pieces)]
+    return chain.table.lengths, chain.table.coefficients, chain.element, kept, np.array(like, dtype=np.intp)
+
+
+def _inertias(chain: DiscretisedShaft, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
+    """−M and the gyroscopic term of λΩ, (r + 1, n) both, of the nodes' own inertias."""
+    inertia, polar = chain.node_inertia[kept], chain.node_polar[kept]
+    squared, turning = [], []
+    for block in blocks:
+        squared += [-inertia[:, 0], -inertia[:, -1]][: len(BLOCK_COORDINATES[block])]
+        turning += [0.0 * polar, block * 1j * polar][: len(BLOCK_COORDINATES[block])]
+    return np.stack(squared, axis=1), np.stack(turning, axis=1)
+
+
+def _add_tie(terms: "_Terms", tie: NodeBearing, balance: IntArray, node: IntArray, places: BearingPlaces) -> None:
+    """Add the entries of a bearing's forces g and its pedestal's displacements p at a node."""
+    shared = list(tie.foot)
+    held = _over(tie.stiffness)
+    grounded = _over(tie.foot_stiffness)
+    force, foot = places.force_rows, places.foot_rows
+    terms.add(balance[:, None], places.forces, [-tie.frame.conj().T])
+    terms.add(force[:, None], node, [-tie.stiffness @ tie.frame, -tie.damping @ tie.frame], held[:, None])
+    terms.add(force, places.forces, [0.0, 0.0, 0.0, 0.0, 1.0], held)
+    if shared:
+        felt = [tie.stiffness[:, shared], tie.damping[:, shared]]
+        terms.add(force[:, None], places.feet, felt, held[:, None])
+        ground = [tie.foot_stiffness, tie.foot_damping, tie.foot_mass]
+        terms.add(foot[:, None], places.feet, ground, grounded[:, None])
+        terms.add(foot, places.forces[shared], [0.0, 0.0, 0.0, 0.0, -1.0], grounded)
+
+
+def _over(stiffness: ComplexArray) -> FloatArray:
+    """Denominators (m, 2) that scale rows (m,) to one size by a factor independent of λ."""
+    largest = np.abs(stiffness).max(axis=1, initial=0.0)
+    return np.stack([np.ones_like(largest), largest], axis=1)
+
+
+class _Terms:
+    """Entries collected block by block."""
+
+    def __init__(self) -> None:
+        self.places: list[IntArray] = []
+        self.numerators: list[ComplexArray] = []
+        self.denominators: list[FloatArray] = []
+
+    def add(
+        self, rows: IntArray, columns: IntArray, numerator: Sequence[npt.ArrayLike], denominator: FloatArray = ALONE
+    ) -> None:
+        """Entries at rows and columns that broadcast, with the leading coefficients of their numerators."""
+        shape = np.broadcast(rows, columns).shape
+        places = np.empty((2, *shape), dtype=np.intp)
+        places[0], places[1] = rows, columns
+        top, bottom = np.zeros((*shape, 5), dtype=np.complex128), np.empty((*shape, 2))
+        for k, coefficient in enumerate(numerator):
+            top[..., k] = coefficient
+        bottom[:] = denominator
+        self.places.append(places.reshape(2, -1))
+        self.numerators.append(top.reshape(-1, 5))
+        self.denominators.append(bottom.reshape(-1, 2))
+
+    def parted(self) -> tuple[list[IntArray], ComplexArray, FloatArray, ComplexArray]:
+        """Rows and columns of varying and of constant entries, the terms of the former and the values of the latter."""
+        places = np.concatenate(self.places, axis=1)
+        top, bottom = np.concatenate(self.numerators), np.concatenate(self.denominators)
+        held = ~top[:, 1:].any(axis=1) & (bottom == ALONE).all(axis=1)
+        varying, others = top.any(axis=1) & ~held, held & (top[:, 0] != 0.0)
+        return [places[:, varying], places[:, others]], top[varying], bottom[varying], top[others, 0]
