@@ -198,7 +198,7 @@ def _foot_sizes(box: Box) -> Iterator[BoxMisfit]:
 
 
 def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
-    """A bore in no end wall, or one that leaves it, with its boss or without."""
+    """Yield the misfits of a bore: in no end wall, or beyond its edge, with its boss or without."""
     half, location = box.size[2] / 2.0, ("bores", index)
     if layout.end_wall(box, bore) is None:
         expected = (
