@@ -29,7 +29,7 @@ def synthesised_responses(
     frequencies: FloatArray,
     quantity: Quantity = "acceleration",
 ) -> ComplexArray:
-    """The model's responses at the measured degrees of freedom to unit forces, residual modes included.
+    """Return the model's frequency responses at the measured degrees of freedom to unit forces, with residual modes.
 
     (iw)^n times the receptance (:func:`housing.modes.receptance.receptance`), n = 0, 1, 2.
 

@@ -30,7 +30,7 @@ ShapeArray: TypeAlias = npt.NDArray[np.inexact[Any]]
 
 
 def shape_set(shapes: npt.ArrayLike, name: str) -> ShapeArray:
-    """A set of shapes as a matrix, real where it is real.
+    """Return a set of mode shapes as a matrix, real where all entries are real.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def auto_mac(shapes: npt.ArrayLike) -> FloatArray:
 
 
 def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> ComplexArray:
-    """The factors that bring shapes nearest to those of a reference, pair by pair, by least squares.
+    """Return the modal scale factors: the least-squares factors from shapes to those of a reference, pair by pair.
 
     aᴴ b / aᴴ a with a a shape and b its reference (Allemang 1980), over the degrees of freedom that both have.
 

@@ -111,6 +111,7 @@ class PairingRule:
         return _WINDOW * self.frequency_spread
 
     def __post_init__(self) -> None:
+        """Check that the thresholds lie within their ranges."""
         for name, low, high in (
             ("least_mac", 0.0, 1.0),
             ("frequency_spread", 0.0, np.inf),
@@ -257,7 +258,7 @@ def _weight(model: FloatArray, measured: FloatArray, rule: PairingRule) -> Float
 def _blocks(
     chosen: list[tuple[int, int]], groups: tuple[IntArray, ...], test_groups: tuple[IntArray, ...]
 ) -> list[tuple[IntArray, IntArray]]:
-    """Sets of measured modes that share a group of close modes, each with all its possible model modes."""
+    """Split measured modes into sets that share a group of close modes, each with all its possible model modes."""
     model = {int(i): number for number, group in enumerate(groups) for i in group}
     test = {int(j): number for number, group in enumerate(test_groups) for j in group}
     blocks: list[tuple[set[int], set[int]]] = []
@@ -281,7 +282,7 @@ def _told_apart(own: FloatArray, shared: FloatArray) -> IntArray | None:
 
 
 def _in_order(distance: FloatArray) -> IntArray:
-    """The model modes (rows) nearest in frequency to the measured ones (columns), in ascending order."""
+    """Return the model modes (rows) nearest in frequency to the measured ones (columns), in ascending order."""
     _, rows = linear_sum_assignment(distance.T)
     return np.sort(rows)
 

@@ -334,7 +334,7 @@ class Factorizer:
 
 
 def default_backend() -> Backend:
-    """rslab where it can be imported, else SuperLU."""
+    """Return the name of the default solver: rslab where it can be imported, else SuperLU."""
     return "rslab" if can_import("rslab") else "superlu"
 
 

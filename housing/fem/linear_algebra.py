@@ -27,7 +27,7 @@ class Operator(Protocol):
         """Rows and columns."""
 
     def __matmul__(self, vectors: FloatArray, /) -> FloatArray:
-        """The product with one vector, shape (n,), or with many, shape (n, m)."""
+        """Multiply by one vector, shape (n,), or by many, shape (n, m)."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,7 @@ class SymmetricMatrix:
         return sparse.csc_array(self.lower + sparse.tril(self.lower, k=-1).T)
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
+        """Multiply the symmetric matrix by one vector, shape (n,), or by many, shape (n, m)."""
         own = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
         if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(own):
             with ThreadPoolExecutor(1) as pool:

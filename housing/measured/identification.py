@@ -51,6 +51,7 @@ class StabilityRule:
     contribution: float = 1e-3
 
     def __post_init__(self) -> None:
+        """Check that orders, share and tolerances are within their ranges."""
         if not 2 <= self.orders <= 200 or not 0.0 < self.share <= 1.0 or min(self.frequency, self.damping) <= 0.0:
             raise HousingError(f"{self} is no rule; expected 2 to 200 orders, a share up to 1 and tolerances above 0")
 
@@ -88,7 +89,7 @@ class PoleLine:
 
 
 def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high: float) -> list[PoleLine]:
-    """The lines of poles that are modes by a rule, each with the pole taken, ascending in frequency.
+    """Return the lines of stable poles that are modes by a rule, each with the pole taken, ascending in frequency.
 
     Parameters
     ----------
@@ -249,7 +250,7 @@ def identify_modes(
 
 
 def _spacing(hertz: FloatArray) -> tuple[float, int]:
-    """The even spacing of frequencies [Hz], and the number of spacings from 0 to the first.
+    """Return the even spacing of frequencies [Hz], and the number of spacings from 0 to the first.
 
     Raises
     ------
@@ -276,7 +277,7 @@ def _residues(model: Any, lines: list[PoleLine], low: float, high: float) -> tup
 def _contributing(
     lines: list[PoleLine], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
 ) -> list[PoleLine]:
-    """The lines whose modes make a good part of the responses at their own resonance."""
+    """Return the lines whose modes contribute enough to the responses at their own resonance."""
     kept = []
     power = ("receptance", "mobility", "accelerance").index(form)
     for number, line in enumerate(lines):
@@ -307,7 +308,7 @@ def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[Co
 def _completed(
     table: ComplexArray, measured: npt.NDArray[np.bool_], shape: ComplexArray, participation: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over the measured entries, by alternating least squares."""
+    """Fit the pair φ, ψ of the least Σ |R - φ ψᵀ|² over the measured entries, by alternating least squares."""
     for _ in range(_TURNS):
         before = shape
         weight = measured.T @ np.abs(shape) ** 2

@@ -51,6 +51,7 @@ class MeasuredGeometry:
     lines: tuple[tuple[int, ...], ...] = ()
 
     def __post_init__(self) -> None:
+        """Check shapes of arrays, unique labels, indices of points, and unit directions."""
         n_points, n_dofs = len(self.labels), len(self.points)
         if self.positions.shape != (n_points, 3) or self.directions.shape != (n_dofs, 3):
             raise HousingError(
@@ -98,6 +99,7 @@ class MeasuredModes:
     geometry: MeasuredGeometry | None = None
 
     def __post_init__(self) -> None:
+        """Check ascending frequencies, number of damping ratios, and shapes against the geometry."""
         count = len(self.frequencies)
         if count == 0 or not self.frequencies[0] > 0.0 or not np.all(np.diff(self.frequencies) >= 0.0):
             raise HousingError(f"measured frequencies {self.frequencies} rad/s must be positive and ascending")
@@ -147,6 +149,7 @@ class MeasuredResponses:
     motion: Motion = "acceleration"
 
     def __post_init__(self) -> None:
+        """Check shapes of arrays, ascending frequencies, points of references, missing values, and kind of motion."""
         references, lines = len(self.reference_points), len(self.frequencies)
         expected = (len(self.geometry.points), references, lines)
         if self.values.shape != expected or self.reference_directions.shape != (references, 3):
@@ -186,5 +189,6 @@ class SurveyData:
     remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        """Check that the survey holds points, modes or responses."""
         if self.geometry is None and self.modes is None and self.responses is None:
             raise MeasuredDataError("the file holds no points, no modes and no frequency responses")

@@ -110,7 +110,7 @@ def _digits(value: float) -> str:
 
 
 def _rows(path: Path) -> list[tuple[int, list[str]]]:
-    """The rows that are no remarks, each with its line number; the header first."""
+    """Return the rows of the table without remarks, each with its line number; the header first."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:

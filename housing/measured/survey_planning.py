@@ -274,7 +274,7 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
 
 
 def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbours: int = 3) -> MeasuredGeometry:
-    """The chosen degrees of freedom as a survey of their own, points joined with their neighbours to be drawn.
+    """Return the chosen degrees of freedom as a survey of their own, neighbouring points joined by trace lines.
 
     Points are numbered from 1 in the order given.
     """

@@ -196,14 +196,14 @@ class SurveyPoints:
     lines: tuple[tuple[int, ...], ...]
 
     def index(self, node: float, where: str) -> int:
-        """The place of a node in the list; an error where it is not there."""
+        """Return the index of a node in the list; an unknown node is an error."""
         try:
             return self.labels.index(str(int(node)))
         except ValueError:
             raise MeasuredDataError(f"{where} names node {int(node)}, which is not among the survey's points") from None
 
     def geometry(self, points: list[int], directions: list[FloatArray]) -> MeasuredGeometry:
-        """These points with some degrees of freedom."""
+        """Return the measured geometry of these points with some degrees of freedom."""
         return MeasuredGeometry(
             self.labels,
             self.positions,
@@ -220,7 +220,7 @@ _COMPONENTS = ("r1", "r2", "r3")
 def read_shapes(
     datasets: list[Dataset], points: SurveyPoints, directions: FloatArray, remarks: list[str]
 ) -> MeasuredModes | None:
-    """The modes of some datasets 55; None where none of them is a mode.
+    """Read the mode shapes of datasets 55; None where none of them is a mode.
 
     A direction in which every mode is exactly zero was not measured: the format has no other way to say so. A point
     left out of a mode, but not of all, is zero in it.
@@ -313,7 +313,7 @@ _Key = tuple[int, int]
 def read_functions(
     datasets: list[Dataset], points: SurveyPoints, length: float, force: float, remarks: list[str]
 ) -> MeasuredResponses | None:
-    """The frequency responses to forces among some functions; None where there are none.
+    """Read the frequency responses to forces from datasets 58; None where there are none.
 
     Parameters
     ----------

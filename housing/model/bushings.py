@@ -62,6 +62,7 @@ class Bushing:
     axes: Axes = GLOBAL_AXES
 
     def __post_init__(self) -> None:
+        """Check stiffness, damping and axes."""
         for what, amounts in (("stiffness", self.stiffness), ("damping", self.damping)):
             if np.shape(amounts) != (6,) or not all(0.0 <= amount < np.inf for amount in amounts):
                 raise HousingError(f"{what} {amounts}: expected six finite numbers, none of them negative")
@@ -166,6 +167,7 @@ class Joint:
     center: Point | None = None
 
     def __post_init__(self) -> None:
+        """Check that the joint has two different patches."""
         if self.first == self.second:
             raise HousingError(f"joint {self.name!r} ties a patch to itself; give two patches")
 

@@ -35,6 +35,7 @@ class Material:
     density: float
 
     def __post_init__(self) -> None:
+        """Check Young's modulus, density and Poisson's ratio."""
         if not (self.youngs_modulus > 0.0 and self.density > 0.0):
             raise HousingError(f"E = {self.youngs_modulus} Pa and ρ = {self.density} kg/m³ must be positive")
         if not 0.0 <= self.poisson_ratio < 0.5:

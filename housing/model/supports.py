@@ -48,6 +48,7 @@ class Support:
     plane: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
 
     def __post_init__(self) -> None:
+        """Check that the support is given in exactly one way and holds something, and its amounts."""
         if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
             raise HousingError(f"support {self.name!r} needs a surface, a box or a plane, one of the three")
         if not (any(self.fixed) or any(self.stiffness) or any(self.damping)):
@@ -57,7 +58,7 @@ class Support:
                 raise HousingError(f"support {self.name!r}: {what} {amounts} {unit} must be finite and not negative")
 
     def facets(self, mesh: Mesh) -> Facets:
-        """The facets of the patch."""
+        """Return the facets of the patch."""
         return Patch(self.surface, self.box, self.plane).facets(mesh)
 
     def additions(self, mesh: Mesh) -> Additions:
@@ -177,7 +178,7 @@ def _spring_stiffness(mesh: Mesh, support: Support | Mount, fields: FloatArray) 
 
 
 def _fixed_rows(mesh: Mesh, support: Support | Mount, fields: FloatArray) -> FloatArray:
-    """The rigid motions at the degrees of freedom that a support holds, shape (n, 6)."""
+    """Return the rigid motions at the degrees of freedom that a support holds, shape (n, 6)."""
     return fields[fixed_freedoms(mesh, [support])] if isinstance(support, Support) else fields[:0]
 
 

@@ -142,7 +142,7 @@ class CertifiedSearch:
         return factor, shift
 
     def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> CertifiedModes:
-        """The lowest modes by number; a multiple mode at the end is completed.
+        """Find the lowest modes by number; a multiple mode at the end is completed.
 
         A draft is not counted, and its last modes are less accurate.
         """
@@ -261,7 +261,7 @@ def _refined(
 
 
 def _gap_after(values: FloatArray, count: int, floor: float) -> float:
-    """A circular frequency in the first gap after ``count`` modes; 0 where they run out within a multiple mode.
+    """Return a circular frequency in the first gap after ``count`` modes; 0 where they end within a multiple mode.
 
     ``floor`` [rad²/s²] is far above the rounding of rigid modes, whose differences are no gaps.
     """

@@ -60,7 +60,7 @@ def block_lanczos(
     threads: int = 1,
     tolerance: float = TOLERANCE,
 ) -> tuple[FloatArray, FloatArray]:
-    """The modes nearest to a shift on one side of it.
+    """Solve for the modes nearest to a shift on one side of it by block Lanczos.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def arpack_modes(
     seed: int = 0,
     tolerance: float = 0.0,
 ) -> tuple[FloatArray, FloatArray]:
-    """The modes nearest to a shift on one side of it, by ``scipy.sparse.linalg.eigsh``.
+    """Solve for the modes nearest to a shift on one side of it by ``scipy.sparse.linalg.eigsh`` (ARPACK).
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ class ModeSet:
         return self.frequencies / (2.0 * np.pi)
 
     def project(self, port: sparse.csr_array) -> FloatArray:
-        """The modes' motions at a port, shape (n_modes, n_motions)."""
+        """Project a port on the modes: their motions at it, shape (n_modes, n_motions)."""
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
 
     def project_all(self, port: sparse.csr_array) -> FloatArray:
@@ -177,7 +177,7 @@ def solve_modes(
 
 
 def _oriented(vectors: FloatArray) -> FloatArray:
-    """The same vectors with their largest entry positive, so that equal input draws equal pictures.
+    """Orient mode shapes so that the largest entry is positive, and equal input draws equal pictures.
 
     Of entries that symmetry makes equally large, the first counts, or rounding would choose.
     """

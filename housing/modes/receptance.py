@@ -227,6 +227,7 @@ class OperatingShape:
     modal: ComplexArray
 
     def __post_init__(self) -> None:
+        """Check the frequency and the modal amplitudes."""
         if not self.frequency > 0.0:
             raise HousingError(f"an operating shape at {self.frequency} rad/s; expected a frequency above zero")
         if not np.all(np.isfinite(self.modal)) or not np.any(self.modal):

@@ -24,7 +24,7 @@ _PERIODS = 4  # of an MP4, which players show once; a GIF goes round
 
 
 def find_encoder() -> str:
-    """The ffmpeg of this machine, or the one that comes with the package imageio-ffmpeg.
+    """Find ffmpeg on this machine, or the one that comes with the package imageio-ffmpeg.
 
     Raises
     ------

@@ -36,7 +36,7 @@ _PORTS = ("loaded_motion", "moved_motion")
 
 
 def residual_mode_arrays(residual_modes: ResidualModes | None) -> dict[str, LabelledArray]:
-    """The arrays of residual modes and their proof; empty where there are none.
+    """Convert residual modes and their proof to labelled arrays; empty where there are none.
 
     An empty set, at ports whose response the modes hold already, keeps its proof; its arrays are left out, because a
     dimension of length 0 has another meaning in NetCDF.
@@ -65,7 +65,7 @@ def residual_mode_arrays(residual_modes: ResidualModes | None) -> dict[str, Labe
 
 
 def residual_modes_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> ResidualModes | None:
-    """The residual modes that these arrays were made of, equal bit for bit.
+    """Convert the arrays of :func:`residual_mode_arrays` back to residual modes, equal bit for bit.
 
     Raises
     ------
@@ -141,6 +141,7 @@ class ModeRecord:
     extras: Mapping[str, LabelledArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        """Check the shapes of the arrays, and that every sensor has a direction."""
         count = len(self.modes.frequencies)
         wanted = {
             "modes.shapes": (self.modes.shapes, (count, len(self.mesh.points), 3)),
@@ -161,7 +162,7 @@ class ModeRecord:
 
 
 def with_sensors(record: ModeRecord, ports: Iterable[SensorPort]) -> ModeRecord:
-    """The record with these sensors in place of its own, and the modes' motions along them."""
+    """Return the record with other sensors, and the modes' motions along them."""
     placed = list(ports)
     motions = [record.modes.project(port.matrix)[:, 0] for port in placed]
     sensors = []
@@ -192,7 +193,7 @@ def record_attributes(record: ModeRecord) -> dict[str, str]:
 
 
 def record_of(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -> ModeRecord:
-    """The record that these arrays and attributes were made of, equal bit for bit.
+    """Convert arrays and attributes back to the mode record, equal bit for bit.
 
     Raises
     ------
@@ -359,7 +360,7 @@ def read_modes(path: str | Path) -> ModeRecord:
 
 
 def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
-    """The arrays and attributes of a file, once its kind, schema and digest are found right."""
+    """Return the arrays and attributes of a file after a check of its kind, schema and digest."""
     import h5py
 
     if not path.is_file():

@@ -90,6 +90,7 @@ class Target:
     firmness: float = 1.0
 
     def __post_init__(self) -> None:
+        """Check frequencies, noise and number of shapes."""
         measured = self.frequencies
         if len(measured) == 0 or measured[0] <= 0.0 or np.any(np.diff(measured) <= 0.0):
             raise HousingError(f"measured frequencies {measured} rad/s must be positive and ascending")
@@ -100,7 +101,7 @@ class Target:
 
     @property
     def logarithms(self) -> FloatArray:
-        """ln ω, shape (n,)."""
+        """Logarithms ln ω of the measured frequencies, shape (n,)."""
         return np.log(self.frequencies)
 
 
@@ -228,7 +229,7 @@ def is_met(target: Target, misfit: Misfit) -> bool:
 
 
 def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
-    """The modes that violate a known number of modes below a limit, or nearly do.
+    """Return the modes that violate a known number of modes below a limit, or nearly do.
 
     Returns
     -------
@@ -245,7 +246,7 @@ def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, Floa
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:
-    """The assignment of greatest total MAC, with the MAC of each pair; below one half a mode stays alone.
+    """Pair modes by greatest total MAC, and return the MAC of each pair; below one half a mode has no partner.
 
     Raises
     ------

@@ -223,7 +223,7 @@ def choose_modes(
 
 
 def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
-    """The thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures)."""
+    """Find the thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures)."""
     inside = known.beyond <= 0.0
     weakest = np.where(taken[..., None, :], known.logarithms, np.inf).min(axis=-1)
     strongest = np.where((~taken & inside)[..., None, :], known.logarithms, -np.inf).max(axis=-1)
@@ -240,7 +240,7 @@ def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
 
 
 def _best_choices(known: _Strengths, inside: IntArray, errors: FloatArray, thresholds: FloatArray) -> BoolArray:
-    """The modes of least cost for each row of thresholds, in order of frequency (dynamic programming).
+    """Choose the modes of least cost for each row of thresholds, in order of frequency (dynamic programming).
 
     Parameters
     ----------

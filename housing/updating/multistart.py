@@ -40,11 +40,11 @@ class Each(Protocol):
     """A map of work over tasks, parallel or not, that yields the results in the tasks' order as they come."""
 
     def __call__(self, work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterable[Any]:
-        """The results."""
+        """Yield the results of the work."""
 
 
 def serial_map(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
-    """Serial :class:`Each`."""
+    """Map work over tasks one after the other; a serial :class:`Each`."""
     return map(work, tasks)
 
 
@@ -67,7 +67,7 @@ class Meshes(Generic[AnyDesign]):
     light: Callable[[AnyDesign], AnyDesign] = lambda design: design
 
     def judge(self, coordinates: FloatArray, near: AnyDesign | None = None) -> AnyDesign:
-        """A design on the fine mesh, or on the only one."""
+        """Solve a design on the fine mesh, or on the only one."""
         return (self.coarse if self.fine is None else self.fine)(coordinates, None)
 
 
@@ -134,7 +134,7 @@ class _Run(Generic[AnyDesign]):
     on_fine: bool
 
     def __call__(self, runner: Runner[AnyDesign]) -> Ran[AnyDesign]:
-        """The search's new state, its misfit there, and its steps; the misfit is infinite where no model is sound."""
+        """Return the search's new state, its misfit, and its steps; the misfit is infinite where no model is valid."""
         solve = self.meshes.judge if self.on_fine else self.meshes.coarse
         try:
             begin = solve(runner.coordinates, None) if runner.design is None else runner.design
@@ -246,7 +246,7 @@ def _best(
     runners: Sequence[Runner[AnyDesign]],
     progress: Callable[[str], None],
 ) -> MultistartResult[AnyDesign]:
-    """The best of the previous best and of searches solved on the fine mesh."""
+    """Return the best of the previous best and of the searches solved on the fine mesh."""
     for runner in runners:
         best = _better(best, target, runner, progress)
     return best
@@ -255,7 +255,7 @@ def _best(
 def _better(
     best: MultistartResult[AnyDesign] | None, target: Target, runner: Runner[AnyDesign], progress: Callable[[str], None]
 ) -> MultistartResult[AnyDesign]:
-    """The better of the previous best and of a search solved on the fine mesh, by the penalties of the last round."""
+    """Return the better of the previous best and of one search on the fine mesh, by the penalties of the last round."""
     assert runner.judged is not None
     misfit = measure(replace(target, firmness=FIRMNESS[-1]), runner.judged, runner.coordinates, strict=True)
     met = is_met(target, misfit)
@@ -271,7 +271,7 @@ def _better(
 
 
 def _going(count: int) -> list[int]:
-    """Number of searches in each round."""
+    """Return the number of searches in each round."""
     going = [count]
     for few in _NEVER_PARTED:
         going.append(min(going[-1], max(few, (going[-1] + 1) // 2)))

@@ -91,7 +91,7 @@ class Part:
 
 
 def parts(mesh: Mesh, n_modes: int, changes: Sequence[Changes]) -> Iterator[Part]:
-    """The elements that some parameter concerns."""
+    """Yield the elements on which some parameter acts, in parts."""
     first = 0
     for block in mesh.blocks:
         straight = straight_elements(mesh.points, block)
@@ -340,7 +340,7 @@ class ModalSensitivities:
         return np.asarray(self.stiffness[:, diagonal, diagonal] - frequencies**2 * self.mass[:, diagonal, diagonal])
 
     def mixtures(self, frequencies: FloatArray) -> FloatArray:
-        """Derivatives of the shapes, c_ab of dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
+        """Return the derivatives of the shapes, c_ab of dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
 
         c_ab = φ_aᵀ (dK - λ_b dM) φ_b / (λ_b - λ_a) and c_bb = -½ φ_bᵀ dM φ_b (Fox and Kapoor 1968). Contributions of
         modes above those at hand are missing. For multiple modes that separate it has no meaning.

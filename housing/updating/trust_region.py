@@ -36,7 +36,7 @@ class Design(Protocol):
         """Its modes."""
 
     def surrogate(self) -> Surrogate:
-        """The surrogate about it."""
+        """Return the surrogate about the design."""
 
 
 AnyDesign = TypeVar("AnyDesign", bound=Design)
