@@ -1,9 +1,8 @@
 """Cylindrical bores on the surface of a mesh: search for all of them, and the facets of each.
 
-The corners of a bore's facets lie on its cylinder, however coarse the mesh, and the facets look towards its axis; the
-outside of a boss looks away from it. A fillet along the axis is no bore, for it goes round a quarter of the circle.
-
-Circles fitted to the surface of a mesh: candidates for bores, proposed by facets and their neighbours.
+Circles are fitted to the corners of facets; facets and their neighbours propose the candidates. The corners of a bore's
+facets lie on its cylinder, however coarse the mesh, and the facets look towards its axis; the outside of a boss looks
+away from it. A fillet along the axis is no bore, for it covers a quarter of the circle only.
 """
 
 from collections.abc import Sequence

@@ -1,11 +1,11 @@
-"""Finite element types: reference coordinates of their nodes, their edges and faces; and blocks of elements.
+"""Finite element types and blocks of elements: reference coordinates of nodes, edges, faces, and face topology.
 
 A kind has meshio's name and numbers its nodes as VTK does: corners, then the middles of edges, of faces, of the
 element. Edges, faces and their middle nodes all follow from the reference coordinates of the nodes.
 Solids are numbered so that the map from the reference element has a positive determinant: of a wedge, the triangle
 0 1 2 turns towards 3 4 5.
 
-Mesh topology: the table of element faces, and their sharing between elements.
+The topology of a mesh is the table of its element faces, which shows the faces that elements share.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,6 +1,6 @@
-"""Finite-element mesh: nodes, blocks of solid elements, named surfaces and volumes.
+"""Finite-element mesh: nodes, blocks of solid elements, named surfaces and volumes; and its defects.
 
-Mesh defects: name, severity, message, number and place.
+A mesh defect has a name, a severity, a message, a number and a place.
 """
 
 from collections.abc import Mapping

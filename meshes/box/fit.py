@@ -1,8 +1,6 @@
-"""Geometry checks of a box: walls, feet, ribs, fillets and bores; all misfits are reported at once.
+"""Geometry checks of a box: walls, feet, ribs, fillets and bores, and the cover with its flange and bolts.
 
-A misfit of a box: the dimension that does not fit, and what is expected of it.
-
-Geometry checks of a box's cover, its flange and its bolts.
+Each misfit names the dimension that does not fit and the value expected of it; all misfits are reported at once.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Solids of a CAD file in gmsh's OpenCASCADE kernel: read, sewn from surfaces where needed, made conforming.
 
-Unit of length of a CAD file: stated by the file, given by the user, and checked against the part's size.
+The unit of length is stated by the file or given by the user, and checked against the part's size.
 """
 
 import re

@@ -1,12 +1,7 @@
-"""Input decks of Abaqus and CalculiX: nodes, solid elements, sets and surfaces.
+"""Input decks of Abaqus and CalculiX: keyword cards; reader and writer of nodes, solid elements, sets and surfaces.
 
 meshio reads these files too, but gives an element set to the wrong block of elements where some blocks have none, and
-knows no ``*SURFACE``. Read here are flat decks, and those of one
-part and one instance.
-
-Keyword cards of an Abaqus or CalculiX input deck.
-
-Writer of input decks of Abaqus and CalculiX.
+knows no ``*SURFACE``. The reader takes flat decks, and decks of one part and one instance.
 """
 
 import re

@@ -1,6 +1,6 @@
 """Mesh files: read and write every format that meshio knows, and input decks of Abaqus and CalculiX.
 
-Nastran decks completed for meshio: framed bulk data, and every continuation marked.
+Nastran decks are completed for meshio: the bulk data are framed, and every continuation is marked.
 """
 
 import os
