@@ -1,14 +1,16 @@
-"""Comparison of model and measured modes: pairs, frequency errors, and confidence of the pairing.
+"""Comparison of model and measured modes: pairs, frequency errors, shape correlation, and confidence in the pairs.
 
-Shape correlation beyond the pairs: all MACs, unpaired and double modes, close modes, quality of the survey.
+Two comparisons:
 
-Pairing by dominance: measured frequencies without shapes, compared with the model's dominant modes.
+- by shapes (:func:`compare_by_shapes`): measured and model shapes are paired by :mod:`housing.correlation.pairing` and
+  judged by all criteria of shape correlation: the MAC of every pair, unpaired modes, modes that are alike, close modes,
+  orthogonality, quality of the survey;
+- by dominance (:func:`compare_by_dominance`): measured frequencies without shapes are paired with the model's dominant
+  modes (:mod:`housing.modes.dominance`).
 
 When 25 model modes fill 3 kHz, any measured frequency has one within a few per cent, so the nearest one proves
 nothing. Where the measurement gives frequencies alone, the n dominant modes of the model, in order of frequency,
-are paired with the n measured ones; see :mod:`housing.modes.dominance`.
-
-Comparison by shapes: pairing of measured and model shapes, with all correlation criteria.
+are therefore paired with the n measured ones.
 """
 
 from collections.abc import Sequence

@@ -1,19 +1,19 @@
-"""Modal assurance criterion (MAC) of mode shapes, auto-MAC, pole-weighted MAC, and modal scale factor.
+"""Modal assurance criterion (MAC) of mode shapes, auto-MAC, pole-weighted MAC, modal scale factor, and COMAC.
 
 The criterion is the squared cosine of the angle between two vectors (Allemang and Brown 1982),
 
     MAC(a, b) = |aᴴ b|² / (aᴴ a · bᴴ b),
 
-between 0 and 1, whatever complex number scales either. It weighs degrees of freedom as they come: a survey with most
+between 0 and 1, whatever complex number scales either. It weighs all degrees of freedom alike: a survey with most
 points on one wall judges mostly that wall, and one with too few points finds different modes alike (Allemang 2003).
 :func:`auto_mac` shows the second; :mod:`housing.correlation.orthogonality` weighs by mass instead.
 
-Sets of mode shapes as matrices: one row a mode, one column a degree of freedom.
+The coordinate criteria :func:`comac` and :func:`enhanced_comac` give the difference of paired shapes at each degree of
+freedom. Shapes of unknown scale are comparable at one degree of freedom only after they are scaled alike: here both
+shapes of a pair are scaled to unit norm (``comac``) or unit largest entry (``enhanced_comac``) over the degrees of
+freedom that both have.
 
-Coordinate assurance criteria (COMAC, enhanced COMAC): differences of paired shapes at each degree of freedom.
-
-Shapes to unknown scales cannot be compared at one place before they are scaled alike. Here both shapes of a pair are
-scaled to unit norm (``comac``) or unit largest entry (``enhanced_comac``) over the degrees of freedom that both have.
+A set of mode shapes is a matrix: one row a mode, one column a degree of freedom.
 """
 
 from typing import Any, TypeAlias

@@ -4,17 +4,15 @@ A measured mode j and a model mode i score
 
     s_ij = MAC_ij · exp(-½ (ln(ω_i / ω_j) / σ)²),
 
-nothing where ω_i / ω_j is beyond exp(±2σ) or the MAC below its least. The pairs are those with the largest sum of
-scores, each mode in one pair at most: choosing the largest MAC row by row would give one model mode to two measured
-ones. The frequency has a light weight (σ = 0.2: 5 % off costs 3 % of the score), because shapes are to decide and
-frequencies to be judged.
+nothing where ω_i / ω_j is beyond exp(±2σ) or the MAC below its least. The pairs are the linear assignment with the
+largest sum of scores, each mode in one pair at most: choosing the largest MAC row by row would give one model mode to
+two measured ones. The margin of an assignment is its lead over the next best one. The frequency has a light weight
+(σ = 0.2: 5 % off costs 3 % of the score), because shapes are to decide and frequencies to be judged.
 
 Close modes, of the model or of the test, mix. Each is then scored by the part of a shape that lies in the span of the
 other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
 group the members' own MACs decide where each is most of that score; where not, the members cannot be distinguished and
 the order of frequency is kept.
-
-Linear assignment of rows to columns by their scores, and its margin over the next best assignment.
 """
 
 from dataclasses import dataclass

@@ -1,10 +1,7 @@
 """Sparse LDLᵀ factorisation of a symmetric matrix as an object: factor once, solve many, read the inertia.
 
-Available memory, and the refusal of work that would exceed it.
-
-Sparse direct solvers behind :mod:`housing.fem.factorization`: rslab and SuperLU with one interface.
-
-Both factor a symmetric matrix that need not be definite, from its lower triangle, and report its inertia.
+Two direct solvers, rslab and SuperLU, have one interface. Both factor a symmetric matrix that need not be definite,
+from its lower triangle, and report its inertia. Work that would exceed the available memory is refused beforehand.
 """
 
 import os

@@ -1,6 +1,7 @@
-"""Sparse symmetric matrix by its lower triangle, the form that factorisations take.
+"""Linear algebra of sparse symmetric matrices: storage by the lower triangle, and products of block vectors.
 
-Block vectors: products of bases and blocks of vectors on all degrees of freedom.
+A sparse symmetric matrix is kept by its lower triangle, the form that factorisations take. Block vectors are bases and
+blocks of vectors on all degrees of freedom; their products run on several threads.
 """
 
 from collections.abc import Callable

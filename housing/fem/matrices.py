@@ -1,11 +1,8 @@
-"""Stiffness, mass and damping of a housing as sparse matrices of 3 x 3 blocks between pairs of nodes.
+"""Stiffness, mass and damping matrices of a housing: sparse, of 3 x 3 blocks between pairs of nodes.
 
-Sparse symmetric matrices of 3 x 3 blocks between pairs of nodes: additions of fixtures to the solid's matrices.
-
-Stiffness and mass on the free degrees of freedom, and the shifted matrix K - σM.
-
-Every shifted matrix K - σM of a search for modes has one sparsity pattern, so that the source of each entry is found
-once. A new shift is then one pass over the entries, and no sparse matrix is cut or converted.
+Fixtures add blocks to the matrices of the solid. On the free degrees of freedom stiffness and mass give the shifted
+matrix K - σM. Every shifted matrix of a search for modes has one sparsity pattern, so that the source of each entry is
+found once. A new shift is then one pass over the entries, and no sparse matrix is cut or converted.
 """
 
 from concurrent.futures import ThreadPoolExecutor

@@ -1,6 +1,6 @@
-"""Surface integration by quadrature, and the nearest point of the surface.
+"""Surface of a housing: integration by quadrature, nearest point, and the outer facets.
 
-Outer surface of a housing: the facets that are visible from outside, for sensors and hammer.
+The outer facets are those that are visible from outside, where sensors and the hammer reach.
 """
 
 from dataclasses import dataclass
@@ -192,7 +192,7 @@ class _Triangles:
         return cls(block, places, corners, centers, radii)
 
     def near(self, target: FloatArray) -> IntArray:
-        """Return the triangles that may be among the nearest: those whose ball is as near as the few nearest centres."""
+        """Return the triangles that may be among the nearest: their ball is as near as the few nearest centres."""
         apart = np.linalg.norm(self.centers - target, axis=1)
         few = min(_NEIGHBOURS, len(apart)) - 1
         reach = np.partition(apart, few)[few] * (1.0 + _ROUNDING)

@@ -1,6 +1,6 @@
 """Alignment of a survey's frame with the model's: by landmarks, or by the nearest points of the surface (ICP).
 
-Rigid registration by least squares: points to points (Kabsch), and points to planes.
+Both are rigid registrations by least squares: points to points (Kabsch), and points to planes.
 """
 
 from collections.abc import Iterator, Mapping

@@ -2,9 +2,8 @@
 
 The two estimators are those of sdypy-EMA (extra ``ema``): the least-squares complex frequency-domain method with a
 common denominator (P. Verboven, dissertation, Vrije Universiteit Brussel, 2002), and the least-squares frequency-domain
-residues. A rule decides here on the physical poles, in place of a person who reads a stabilisation chart.
-
-Stabilisation chart: the rule by which stable poles over rising orders are taken as modes.
+residues. In place of a person who reads a stabilisation chart, a rule takes poles that are stable over rising orders as
+modes.
 """
 
 from dataclasses import dataclass, field

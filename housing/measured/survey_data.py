@@ -1,10 +1,8 @@
-"""Survey data: content of one file of a modal survey.
+"""Survey data of a modal test: measuring points and directions, measured modes, frequency response functions.
 
-Measuring points of a modal survey, and the directions measured at each.
-
-Measured modes of a modal test: frequencies, and damping and shapes where they were measured.
-
-Measured frequency response functions: motions at the survey's degrees of freedom by forces at references.
+:class:`SurveyData` is the content of one file: the points with the directions measured at each
+(:class:`MeasuredGeometry`), frequencies with damping and shapes where they were measured (:class:`MeasuredModes`), and
+motions at the survey's degrees of freedom by forces at references (:class:`MeasuredResponses`).
 """
 
 from dataclasses import dataclass

@@ -1,11 +1,11 @@
-"""Sensor placement by effective independence, and driving points for the hammer.
+"""Survey planning: sensor placement by effective independence, driving points for the hammer, survey grid.
 
 Effective independence (D. C. Kammer, *J. Guidance, Control, and Dynamics* 14, 1991): the candidate that contributes
 least to the linear independence of the modes is removed, repeatedly. Its share is the diagonal of the projector on the
 shapes' space, E = diag Φ (Φᵀ Φ)⁻¹ Φᵀ, between 0 and 1: removing candidate i multiplies the determinant of the
 information Φᵀ Φ by (1 - E_i), so that a candidate of share 1 is indispensable.
 
-Survey grid: measuring points over the outer faces of a box, along the outward normal.
+The survey grid has measuring points over the outer faces of a box, along the outward normal.
 """
 
 from dataclasses import dataclass

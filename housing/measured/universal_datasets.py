@@ -1,14 +1,11 @@
-"""Datasets of a universal file, read by pyuff and each checked to be whole.
+"""Datasets of a universal file, read by pyuff and checked: points (15, 2411), mode shapes (55), responses (58).
 
 pyuff also reads files that break the format: a truncated block comes back as arrays of unlike lengths, a binary block
 of the other byte order as meaningless numbers, a last block without its end not at all. So everything is checked
 against the numbers that the file itself states.
 
-Points of a universal file, with the three directions of motion of each.
-
-Mode shapes of a universal file: dataset 55, real or complex.
-
-Frequency response functions of a universal file: dataset 58, ASCII or binary.
+Each point has three directions of motion. Mode shapes are real or complex, frequency response functions ASCII or
+binary.
 """
 
 import re

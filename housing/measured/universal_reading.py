@@ -1,6 +1,6 @@
 """Reader of universal files: points, shapes and responses of a survey, in SI and one frame.
 
-Coordinate systems of a universal file: Cartesian, cylindrical or spherical, resolved into the survey's frame.
+Cartesian, cylindrical and spherical coordinate systems of the file are resolved into the survey's frame.
 """
 
 from collections.abc import Mapping

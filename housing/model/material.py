@@ -1,8 +1,7 @@
-"""Material: linear elastic and isotropic; Lamé's constants, and the constants of each element of a mesh.
+"""Material of a housing: linear elastic and isotropic; Lamé's constants, and mass properties of a meshed solid.
 
-Enclosed volume and centroid of a meshed body from its boundary alone, by the divergence theorem.
-
-Mass properties of a meshed solid: mass and centre of mass from the geometry of the elements.
+Each element of a mesh has the constants of its material. Mass and centre of mass follow from the geometry of the
+elements; the enclosed volume and its centroid follow from the boundary alone, by the divergence theorem.
 """
 
 from collections.abc import Mapping

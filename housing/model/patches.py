@@ -1,6 +1,6 @@
-"""Patches of the surface, and the rigid motion of each as a port of the nodes' displacements.
+"""Patches of the surface: the rigid motion of each as a port of the nodes' displacements; rigid-body properties.
 
-Rigid body: rigid motions of points, and mass, centre of gravity and inertia from a mass matrix.
+Rigid motions of points, with a mass matrix, give mass, centre of gravity and inertia of the body.
 """
 
 from dataclasses import dataclass

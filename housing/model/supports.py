@@ -1,6 +1,6 @@
 """Supports: patches of the surface that are fixed, or on springs and dashpots to the ground.
 
-Grounding check: rigid motions that the supports leave free, and the stiffness of each support.
+The grounding check finds the rigid motions that the supports leave free, and the stiffness of each support.
 """
 
 from collections.abc import Sequence

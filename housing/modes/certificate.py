@@ -1,13 +1,11 @@
-"""Certificate of a set of modes: none is missing, none stands twice, and each is accurate.
+"""Certificate of a set of modes by Sylvester's law of inertia: none is missing, none stands twice, each is accurate.
 
-Inertia certificate (Sylvester): search for modes, repeated more widely until the count proves it complete.
-
-The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos (:mod:`housing.modes.eigensolver`) or
-scipy's ``eigsh`` (:mod:`housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative
-pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. A
-frequency limit is itself the shift, so that one factor both counts the modes below it and finds them. For a number of
-modes the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a
-second factor counts up to the gap behind the last.
+The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos or scipy's ``eigsh``
+(:mod:`housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
+K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. The search is
+repeated more widely until this count proves it complete. A frequency limit is itself the shift, so that one factor both
+counts the modes below it and finds them. For a number of modes the shift lies just below zero, which keeps the shifted
+matrix positive definite for a free body too, and a second factor counts up to the gap behind the last.
 """
 
 import time

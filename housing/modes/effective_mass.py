@@ -1,15 +1,14 @@
-"""Effective modal mass: share of each mode in the housing's mass under rigid motion of the ground.
+"""Effective modal mass, and modal damping by dashpots, mounts and joints.
 
-For a ground that moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that
-is the participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
+The effective mass is the share of each mode in the housing's mass under rigid motion of the ground. For a ground that
+moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that is the
+participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
 frequency that exerts the same force on the ground. Over all modes of the free degrees of freedom
 
     Σ_r L_r² = Rᵀ M R,
 
 by completeness, so that the share of the discarded modes is known. A free body's rigid modes carry all of it; elastic
 modes are M-orthogonal to R and carry none. A fixed patch moves with the ground: its own mass is in no mode.
-
-Modal damping: damping of the housing's modes by dashpots, mounts and joints.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
 """Natural modes of the housing, with the proof that none is missing (:mod:`housing.modes.certificate`).
 
-Residual attachment modes for an existing mode set, read from a file or solved for with other ports.
+Residual attachment modes can be added to an existing mode set, read from a file or solved for with other ports.
 """
 
 import time

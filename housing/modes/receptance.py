@@ -1,4 +1,4 @@
-"""Receptance between ports: residues, frequency response, and the selection of modes that carry it in a band.
+"""Receptance between ports: residues, frequency response, selection of modes that carry it, operating deflection shape.
 
 With mass-normalised shapes and damping ratios ζ the motion of port b by a unit load on port a at the circular
 frequency w is (Ewins, *Modal Testing*, 2000, chapter 2)
@@ -7,8 +7,9 @@ frequency w is (Ewins, *Modal Testing*, 2000, chapter 2)
 
 the sum running over the kept modes and, where the mode set has them, its residual modes: these supply the response of
 the modes above the limit, which is nearly static below it. Each term is symmetric in a and b, so that H is reciprocal.
+The modes to keep are selected by their part of H in a band.
 
-Operating deflection shape: motion of the housing at one line of its spectrum, as a sum of its modes.
+An operating deflection shape is the motion of the housing at one line of its spectrum, as a sum of its modes.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
-"""Drawn shapes: a housing's skin at rest, and its mode shapes or harmonic motions with captions.
+"""Drawn shapes: a housing's outer skin as triangles, and its mode shapes or harmonic motions with captions.
 
-Outer skin of a mesh as triangles for pictures and 3D models; scale and file names of drawn modes.
+Pictures, films and 3D models share the skin, the scale of the shapes, and the file names of drawn modes.
 """
 
 from collections.abc import Mapping, Sequence

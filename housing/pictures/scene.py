@@ -1,6 +1,6 @@
 """Scene: one housing before one camera, drawn off-screen shape by shape for pictures and films.
 
-Off-screen renderer: search for EGL or OSMesa, and PyVista set up for it.
+The off-screen renderer is PyVista on EGL, or on OSMesa where EGL is missing.
 """
 
 import ctypes

@@ -1,15 +1,12 @@
 """Mode file: a solved housing as labelled NetCDF4, written whole and read back with its proof.
 
-The file opens in xarray, ncdump and every other reader of NetCDF4 or HDF5. It holds the mesh, the modes with their
-certificate, the motions of bearing seats and sensors, the inputs of the solution, and a digest.
+The file opens in xarray, ncdump and every other reader of NetCDF4 or HDF5. It holds one :class:`ModeRecord`: the mesh,
+the modes with their certificate, the residual modes, the motions of bearing seats and sensors, the inputs of the
+solution, and a digest. Each part is converted to labelled arrays and back.
 
 The certificate was made with the stiffness and mass matrices at hand. The digest (SHA-256 over every array, label and
 attribute) proves on reading that the content is, bit for bit, that of the certified set. It detects damage; it is no
 signature against forgery.
-
-Residual modes in a mode file: conversion to labelled arrays and back.
-
-Mode record: a solved housing with its mesh, modes, seats, sensors and inputs, as labelled arrays of a mode file.
 """
 
 import json

@@ -1,10 +1,4 @@
-"""Sensitivities of stiffness and mass to parameters: integrals over elements, in modal coordinates.
-
-Most of the work is in products of all modes with all modes, once for each parameter. So elements are grouped by the
-parameters that concern them, σ : T is summed over the six components of the symmetric σ, and where div V is constant
-within straight elements their modal masses are computed once and scaled for every parameter.
-
-Sensitivities of modes to parameters: derivatives of stiffness and mass in modal coordinates, without assembly.
+"""Modal sensitivities: derivatives of stiffness and mass by the parameters in modal coordinates, without assembly.
 
 A parameter moves nodes, changes the elements' material, or changes fixtures. With nodes that move at
 the velocity V = dX/dp the gradient of a field that they carry changes by d(∂_j u_i) = -∂_l u_i ∂_j V_l and the volume
@@ -15,6 +9,10 @@ by div V, so that for two modes φ_a, φ_b of the stress σ = λ tr ε I + 2 μ 
 
 (the velocity form of shape sensitivities: Haug, Choi and Komkov 1986, chapter 3). With the elements' own quadrature
 these are the exact derivatives of the assembled matrices.
+
+Most of the work is in products of all modes with all modes, once for each parameter. So elements are grouped by the
+parameters that concern them, σ : T is summed over the six components of the symmetric σ, and where div V is constant
+within straight elements their modal masses are computed once and scaled for every parameter.
 """
 
 from collections.abc import Iterator, Sequence
