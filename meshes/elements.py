@@ -47,7 +47,7 @@ class ElementKind:
 
     @property
     def dimension(self) -> int:
-        """2 for facets, 3 for solids."""
+        """Dimension: 2 for facets, 3 for solids."""
         return len(self.places[0])
 
     @property
@@ -262,7 +262,7 @@ def facet_normals(points: FloatArray, facets: Facets) -> FloatArray:
 
 
 def pick_facets(facets: Facets, chosen: npt.NDArray[np.bool_]) -> Facets:
-    """Those facets for which ``chosen`` is true, shape (n_facets,), block after block; no empty blocks."""
+    """Select the facets for which ``chosen`` is true, shape (n_facets,), block after block; no empty blocks."""
     ends = np.cumsum([len(block) for block in facets])[:-1]
     parts = zip(facets, np.split(chosen, ends), strict=True)
     return tuple(ElementBlock(block.kind, block.nodes[mask]) for block, mask in parts if mask.any())

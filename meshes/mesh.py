@@ -193,7 +193,7 @@ class Mesh:
 
     @property
     def block_ends(self) -> IntArray:
-        """Where arrays over all elements split into the blocks, as numpy.split takes it."""
+        """Indices at which arrays over all elements split into the blocks, for numpy.split."""
         return np.asarray(np.cumsum([len(block) for block in self.blocks])[:-1])
 
     @property

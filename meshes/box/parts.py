@@ -241,37 +241,37 @@ class Box(Protocol):
 
     @property
     def wall(self) -> WallThickness:
-        """Of every wall [m]."""
+        """Thickness of every wall [m]."""
         ...
 
     @property
     def bores(self) -> tuple[Bore, ...]:
-        """Through the end walls."""
+        """Bores through the end walls."""
         ...
 
     @property
     def feet(self) -> Feet | None:
-        """Under the base."""
+        """Feet under the base."""
         ...
 
     @property
     def ribs(self) -> tuple[Rib, ...]:
-        """On the walls."""
+        """Ribs on the walls."""
         ...
 
     @property
     def cover(self) -> Cover | None:
-        """Of one face."""
+        """Cover of one face."""
         ...
 
     @property
     def fillets(self) -> Fillets:
-        """Of the edges."""
+        """Fillets of the edges."""
         ...
 
     @property
     def bolts(self) -> tuple[Bolt, ...]:
-        """Of the cover."""
+        """Bolts of the cover."""
         ...
 
     def end_wall(self, bore: Bore) -> Literal["back", "front"]:

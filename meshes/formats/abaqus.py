@@ -336,7 +336,7 @@ def _quoted(name: str) -> str:
 
 
 def _label(block: ElementBlock, face: int) -> str:
-    """S1, S2, ... of a face in our order."""
+    """Label S1, S2, ... of a face by its number here."""
     corners = {corner + 1 for corner in block.of.corner_faces[face]}
     labels = [{int(corner) for corner in label} for label in FACE_LABELS[block.of.corners]]
     return f"S{labels.index(corners) + 1}"

@@ -150,7 +150,7 @@ def _through_meshio(path: Path) -> MeshContent:
 
 
 def _check_ending(path: Path, known: Mapping[str, list[str]]) -> None:
-    """Refuse a file that no reader is chosen for."""
+    """Refuse a file whose ending has no reader."""
     endings = ["".join(path.suffixes[first:]).lower() for first in range(len(path.suffixes))]
     if not any(ending in known for ending in endings):
         raise GeometryError(
