@@ -52,8 +52,8 @@ class LookAlikes:
         Of one with the other.
     one_frequency : bool
         Whether they are as close in frequency as close modes are, or an estimate's scatter: then of a test they are
-        most likely one mode found twice. Otherwise the survey has too few points, or in the wrong places, to tell
-        them apart.
+        most likely one mode found twice. Otherwise the survey has too few points, or in the wrong places, to
+        distinguish them.
     """
 
     first: int
@@ -137,14 +137,14 @@ class ShapeCorrelation:
 
     @property
     def largest_model_likeness(self) -> float:
-        """Largest MAC between different modes of the model in the band: those far outside need not be told apart."""
+        """Largest MAC between different modes of the model in the band: those far outside need not be distinguished."""
         which = np.array(self.orthogonality_modes, dtype=np.int64) - 1
         return largest_off_diagonal(self.model_auto_mac[np.ix_(which, which)]) if which.size else 0.0
 
 
 @dataclass(frozen=True)
 class ModePair:
-    """A measured mode and the model's.
+    """Pair of a measured mode and a model mode.
 
     Attributes
     ----------

@@ -77,7 +77,7 @@ def two_sets(
 
 
 def filled(shapes: ShapeArray) -> tuple[ShapeArray, BoolArray]:
-    """Each shape over its largest entry, against overflow of squares, zero where not measured; and where it was."""
+    """Scale shapes to unit largest entry against overflow of squares; 0 where not measured; and mark those measured."""
     seen = ~np.isnan(shapes)
     known = np.where(seen, shapes, 0.0)
     largest = np.abs(known).max(axis=1, keepdims=True)

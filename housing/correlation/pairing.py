@@ -123,7 +123,7 @@ class PairingRule:
 
 @dataclass(frozen=True)
 class ShapePair:
-    """A measured mode and the model mode that it is.
+    """Pair of a measured mode and its model mode.
 
     Attributes
     ----------

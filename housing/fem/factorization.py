@@ -70,7 +70,7 @@ def _machine(system: Path) -> float:
 
 
 def _group(system: Path) -> float:
-    """Of the nearest control group and of those around it, in version 2 of the kernel's files or in version 1."""
+    """Memory left to the nearest control group and those around it, in version 1 or 2 of the kernel's files."""
     least = float("inf")
     for line in _lines(system / "proc" / "self" / "cgroup"):
         number, controllers, name = line.strip().split(":", 2)
@@ -129,11 +129,11 @@ class NumericFactor(Protocol):
 
     @property
     def fill(self) -> int:
-        """Entries."""
+        """Number of entries of the factor."""
 
     @property
     def negative(self) -> int:
-        """Negative eigenvalues of the matrix."""
+        """Number of negative eigenvalues of the matrix."""
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve for contiguous right-hand sides, shape (n,) or (n, m)."""
@@ -192,10 +192,10 @@ class SuperluSolver:
     """scipy's SuperLU without row exchanges, so that the signs of U's diagonal are the inertia."""
 
     def order(self, matrix: SymmetricMatrix) -> None:
-        """Nothing: SuperLU orders each matrix anew."""
+        """Do nothing: SuperLU orders each matrix anew."""
 
     def factor(self, matrix: SymmetricMatrix) -> "_SuperluFactor":
-        """Factor."""
+        """Factor a matrix."""
         handle = splu(
             matrix.full(),
             permc_spec="MMD_AT_PLUS_A",

@@ -54,18 +54,18 @@ class SymmetricMatrix:
 
     @classmethod
     def of(cls, matrix: sparse.csr_array) -> "SymmetricMatrix":
-        """From both triangles, of which the lower one is taken."""
+        """Take the lower triangle of a matrix with both."""
         lower = sparse.csc_array(sparse.tril(matrix, format="csc"))
         lower.sum_duplicates()
         return cls(lower.indptr.astype(np.int64), lower.indices.astype(np.int64), lower.data)
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(n, n)."""
+        """Rows and columns, (n, n)."""
         return len(self.pointer) - 1, len(self.pointer) - 1
 
     def diagonal(self) -> FloatArray:
-        """Shape (n,)."""
+        """Diagonal, shape (n,)."""
         return self.values[self.pointer[:-1]]
 
     @cached_property

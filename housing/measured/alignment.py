@@ -25,7 +25,7 @@ _ON_A_LINE = 1e-6  # second largest spread of points as a part of the largest, b
 
 @dataclass(frozen=True)
 class RigidMotion:
-    """From one frame to another: x' = R x + t.
+    """Rigid motion from one frame to another: x' = R x + t.
 
     Attributes
     ----------

@@ -75,7 +75,7 @@ class Bushing:
 
     @classmethod
     def along(cls, axis: Point, stiffness: Axial, damping: Axial | None = None) -> "Bushing":
-        """Springs and dashpots that are symmetric about an axis, given by a vector of any length; it becomes the own z.
+        """Springs and dashpots that are symmetric about an axis, given by a vector of any length, as their z.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Bushing:
         return np.asarray(turn.T @ np.diag(amounts) @ turn)
 
     def additions(self, port: sparse.csr_array, name: str) -> Additions:
-        """Matrices that it adds where it resists the six motions of a port of shape (6, 3 n_nodes)."""
+        """Matrices of the bushing on the six motions of a port of shape (6, 3 n_nodes)."""
         stiffness, damping = self.matrix(self.stiffness), self.matrix(self.damping)
         return port_fixture_matrices(port, name=name, stiffness=stiffness, damping=damping)
 

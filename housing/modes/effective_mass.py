@@ -90,22 +90,22 @@ class EffectiveMass:
 
     @property
     def mass(self) -> FloatArray:
-        """Of each mode, L² [kg, kg m²], shape (n_modes, 6)."""
+        """Effective mass of each mode, L² [kg, kg m²], shape (n_modes, 6)."""
         return self.participation**2
 
     @property
     def fractions(self) -> FloatArray:
-        """Of each mode as a part of the whole body's, shape (n_modes, 6)."""
+        """Effective mass of each mode as a part of the whole body's, shape (n_modes, 6)."""
         return np.asarray(self.mass / self.total)
 
     @property
     def captured(self) -> FloatArray:
-        """Of the modes together as a part of the whole body's, shape (6,)."""
+        """Effective mass of all modes together as a part of the whole body's, shape (6,)."""
         return np.asarray(self.mass.sum(axis=0) / self.total)
 
     @property
     def missing(self) -> FloatArray:
-        """Of the modes above the limit, as a part of the whole body's, shape (6,)."""
+        """Effective mass of the modes above the limit as a part of the whole body's, shape (6,)."""
         return np.asarray((self.free - self.mass.sum(axis=0)) / self.total)
 
 

@@ -45,7 +45,7 @@ class ModeSet:
         The eigenvalue about which the modes were searched [rad²/s²].
     threads : int
         Workers of the factorisation.
-    attachments : Attachments or None
+    residual_modes : ResidualModes or None
         Residual modes, which complete the static response to loads at the ports, where ports were given.
     """
 
@@ -60,7 +60,7 @@ class ModeSet:
 
     @property
     def frequencies_hz(self) -> FloatArray:
-        """[Hz], shape (n_modes,)."""
+        """Natural frequencies [Hz], shape (n_modes,)."""
         return self.frequencies / (2.0 * np.pi)
 
     def project(self, port: sparse.csr_array) -> FloatArray:
@@ -208,7 +208,7 @@ def add_residual_modes(
     modes : ModeSet
         Complete up to its limit; its own residual modes are replaced.
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-        Such as those of :func:`housing.seat_matrix`; the static compliance has their order.
+        Such as those of :func:`housing.model.seats.seat_matrix`; the static compliance has their order.
     factor, shift : Factorization and float, optional
         A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
         neither.

@@ -78,7 +78,7 @@ def receptance(
     port_b: sparse.csr_array,
     frequencies: FloatArray,
 ) -> ComplexArray:
-    """Motion of port b by unit loads on port a, modes and attachments together.
+    """Motion of port b by unit loads on port a, modes and residual modes together.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def select_modes(
 
 
 def _largest(values: ComplexArray) -> float:
-    """Of the norms over both ports' motions."""
+    """Return the largest norm over both ports' motions."""
     return float(np.linalg.norm(values, axis=(1, 2)).max())
 
 

@@ -22,7 +22,7 @@ Applications 29), so that with r loads r - 1 of these eigenvalues take no sweeps
 The span of X is then made a set of modes of its own: orthonormal in M to Φ and in itself, with a diagonal stiffness
 (Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2006, chapter 17, on residual attachment modes; after
 MacNeal 1971 and Rubin 1975). By Galerkin's argument its compliance at the ports errs by the square of the error
-of X. Modes and attachments side by side are a component with the unit mass, a diagonal stiffness and the exact static
+of X. Modes and residual modes together are a component with the unit mass, a diagonal stiffness and the exact static
 compliance at its ports.
 
 *Near the limit* the discarded modes no longer answer statically: their part in a receptance is Σ φ φᵀ / (λ - ω²), from
@@ -32,8 +32,8 @@ of A with σ at the limit gives the response there and its derivatives by ω²,
     X_1 = A⁻¹ F,    X_j = A⁻¹ M X_{j-1},        A = K - σM on the complement.                             (5)
 
 With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any point is exact at rest and at the limit
-(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The attachments of the lowest frequencies then
-come close to the modes just above the limit, as far as the ports drive them.
+(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The residual modes of the lowest frequencies
+then come close to the modes just above the limit, as far as the ports drive them.
 
 Computed modes have a residual, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness leaves out:
 an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode beside the
@@ -187,7 +187,7 @@ def residual_attachment_modes(
 
     Returns
     -------
-    attachments : Attachments
+    residual_modes : ResidualModes
     vectors : ndarray, shape (n, p)
         Φ, turned by Eq. (3).
 

@@ -110,7 +110,7 @@ class DrawnHousing:
 
     @property
     def diagonal(self) -> float:
-        """Of the box around it [m]."""
+        """Diagonal of the bounding box [m]."""
         return float(np.linalg.norm(np.ptp(self.rest, axis=0)))
 
 

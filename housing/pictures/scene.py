@@ -236,7 +236,7 @@ def check_view(view: str) -> None:
 
 
 def viewing_direction(view: str) -> FloatArray:
-    """From the housing towards the eye, a unit vector."""
+    """Return the viewing direction: the unit vector from the housing towards the eye."""
     check_view(view)
     towards = np.array(_VIEWS[view])
     return np.asarray(towards / np.linalg.norm(towards))

@@ -90,7 +90,7 @@ class Debiased(Generic[AnyDesign]):
 
     @property
     def coordinates(self) -> FloatArray:
-        """z, shape (n_parameters,)."""
+        """Coordinates z, shape (n_parameters,)."""
         return self.design.coordinates
 
     @cached_property
@@ -117,7 +117,7 @@ class Debiased(Generic[AnyDesign]):
 
     @property
     def state(self) -> ModalState:
-        """Its modes."""
+        """Modes of the design."""
         return self._state
 
     @cached_property

@@ -126,7 +126,7 @@ class Misfit:
         Modes below the limit of :class:`ModeCount`; 0 where none is given.
     mac : ndarray, shape (n,), or None
         Of each pair, where shapes were measured.
-    lacking : Lacking, or None
+    choice_shortfall : ChoiceShortfall, or None
         Shortfalls of the choice of modes from a clear one, where shapes do not decide.
     """
 

@@ -62,7 +62,7 @@ class ChoiceShortfall:
 
     @property
     def cost(self) -> float:
-        """Sum of squares."""
+        """Cost of the choice: sum of squares of the shortfalls."""
         return float(self.values @ self.values)
 
 
@@ -244,6 +244,7 @@ def _best_choices(known: _Strengths, inside: IntArray, errors: FloatArray, thres
 
     Parameters
     ----------
+    known : _Strengths
     inside : ndarray of int, shape (n_inside,)
         The modes in the band.
     errors : ndarray, shape (n, n_inside)

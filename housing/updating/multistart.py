@@ -191,18 +191,18 @@ def multistart_search(
     best = _better(None, target, first, lambda message: None)
     going = _going(count)
     steps = list[Step]()
-    for heat, number in enumerate(going):
-        on_fine = heat > 0
+    for index, number in enumerate(going):
+        on_fine = index > 0
         if best.is_met:
             break
-        solves = _FINE_SOLVES[heat - 1] if on_fine else max(1, effort.solves // count)
-        own = replace(effort, solves=solves, trust=TRUST[heat], starts=_STARTS)
-        weighed, off = replace(target, firmness=FIRMNESS[heat]), None if on_fine else bias
+        solves = _FINE_SOLVES[index - 1] if on_fine else max(1, effort.solves // count)
+        own = replace(effort, solves=solves, trust=TRUST[index], starts=_STARTS)
+        weighed, off = replace(target, firmness=FIRMNESS[index]), None if on_fine else bias
         run = _Run(meshes, weighed, tuple(parameters), own, off, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
         steps += [step for *_, own_steps in ran for step in own_steps]
         told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
-        progress(f"heat {heat + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
+        progress(f"round {index + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
         runners = [runner for runner, value, _ in ran if np.isfinite(value)]
         if on_fine:
             best = _best(best, target, runners, progress)
@@ -213,7 +213,7 @@ def multistart_search(
 
 def polish(
     solve: Solve[AnyDesign],
-    raced: MultistartResult[AnyDesign],
+    best: MultistartResult[AnyDesign],
     target: Target,
     parameters: Sequence[Parameter],
     effort: Effort,
@@ -227,12 +227,14 @@ def polish(
     ----------
     solve : callable
         On the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the result.
-    raced, target, parameters, effort, progress
+    best : MultistartResult
+        Result of :func:`multistart_search`.
+    target, parameters, effort, progress
         See :func:`multistart_search`.
     """
     firm = replace(target, firmness=FIRMNESS[-1])
-    own = replace(effort, solves=0 if raced.is_met else _POLISHED, trust=_REFINED)
-    begin = solve(raced.coordinates, None) if raced.design is None else raced.design
+    own = replace(effort, solves=0 if best.is_met else _POLISHED, trust=_REFINED)
+    begin = solve(best.coordinates, None) if best.design is None else best.design
 
     def is_enough(design: AnyDesign) -> bool:
         return is_met(target, measure(firm, design.state, design.coordinates, strict=True))

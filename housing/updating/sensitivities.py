@@ -192,7 +192,7 @@ def _add_stiffness(
     moving: dict[int, FloatArray],
     stiffness: FloatArray,
 ) -> None:
-    """By one product of all points' stresses with the parameter's changes of the gradients."""
+    """Add stiffness derivatives by one product of all stresses with the parameter's changes of the gradients."""
     n_modes = stiffness.shape[1]
     gradients = places.gradients(fields).reshape(*places.volumes.shape, 3, 3, n_modes)  # ..., j, i of ∂_j φ_i, mode
     strains = np.empty((*places.volumes.shape, 6, n_modes))
@@ -223,9 +223,9 @@ def _stresses(strains: FloatArray, volumes: FloatArray, lam: FloatArray, mu: Flo
 
 
 def _tilt(velocities: FloatArray) -> FloatArray:
-    """From ∇φ to T = ½ div V ∇φ - ∇φ ∇V as the stress works on it, from ∂_j V_l: shape (n, n_points, 6, 9).
+    """Matrix from ∇φ to the six strains of T = ½ div V ∇φ - ∇φ ∇V, by ∂_j V_l, shape (n, n_points, 6, 9).
 
-    The stress is symmetric: of a shear it takes T_ik + T_ki.
+    The stress is symmetric, so that the shears are T_ik + T_ki.
     """
     factor = 0.5 * np.einsum("eqjj->eq", velocities)[..., None, None] * np.eye(3) - velocities
     tilt = np.zeros((*factor.shape[:2], 6, 3, 3))  # component; j, i of ∂_j φ_i
@@ -238,7 +238,7 @@ def _tilt(velocities: FloatArray) -> FloatArray:
 
 
 def _is_even(divergence: FloatArray) -> bool:
-    """Whether it is the same at all points of each element."""
+    """Whether div V is the same at all points of each element."""
     return bool(np.ptp(divergence, axis=1).max() <= _EVEN * np.abs(divergence).max())
 
 
@@ -251,7 +251,7 @@ def _add_even_mass(
     divergences: dict[int, FloatArray],
     mass: FloatArray,
 ) -> None:
-    """Of straight elements with constant density rate and div V: each element's modal mass is scaled."""
+    """Add mass derivatives of straight elements with constant div V by scaling each element's modal mass."""
     points, weights = quadrature(part.kind.name, 2 * part.kind.order)
     values = shape_functions(part.kind.name, points)[0]
     n, n_modes = len(part.elements), mass.shape[1]
@@ -279,7 +279,7 @@ def _add_mass(
     changes: Sequence[Changes],
     mass: FloatArray,
 ) -> None:
-    """Of any elements, by matrices of scalar mass rates and the modes' quadratic forms in these."""
+    """Add mass derivatives of any elements by quadratic forms of the modes in scalar mass rates."""
     degree = 2 * part.kind.order
     places, n_modes = _Places.of(mesh, part, degree), mass.shape[1]
     values = shape_functions(part.kind.name, quadrature(part.kind.name, degree)[0])[0]
@@ -395,6 +395,6 @@ def modal_sensitivities(
 
 
 def _seen(rate: sparse.csr_array, flat: FloatArray) -> FloatArray:
-    """Φᵀ dA Φ of a fixture's matrix, which has few nodes."""
+    """Project the matrix of a fixture, which has few nodes, on the modes: Φᵀ dA Φ."""
     rows = np.flatnonzero(np.diff(rate.indptr))
     return np.asarray(flat[rows].T @ (rate[rows] @ flat)) if len(rows) else np.zeros((flat.shape[1],) * 2)

@@ -29,11 +29,11 @@ class Design(Protocol):
 
     @property
     def coordinates(self) -> FloatArray:
-        """z, shape (n_parameters,)."""
+        """Coordinates z, shape (n_parameters,)."""
 
     @property
     def state(self) -> ModalState:
-        """Its modes."""
+        """Modes of the design."""
 
     def surrogate(self) -> Surrogate:
         """Return the surrogate about the design."""
@@ -183,7 +183,7 @@ def search_surrogate(
 def descend(
     surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray, steps: int = _STEPS
 ) -> tuple[FloatArray, float]:
-    """Gauss and Newton's steps on the surrogate from a start, kept within the region."""
+    """Descend from a start by Gauss-Newton steps on the surrogate, within the region."""
     low, high = region
     near = surrogate.at(point)
     misfit = measure(target, near.state, point)
