@@ -35,7 +35,7 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
     Returns
     -------
     list of (ndarray of shape (3,), float)
-        A point of each one's axis and its radius [m].
+        A point of each circle's axis, and its radius [m].
     """
     boundary = mesh.boundary
     centers, normals = facet_centers(mesh.points, boundary), facet_normals(mesh.points, boundary)
@@ -235,7 +235,7 @@ def fits_circle(
     center : sequence of float
         A point of the axis [m].
     radius, slack : float
-        Of the cylinder, and how far a corner may be off it [m].
+        Radius of the cylinder, and largest distance of a corner from it [m].
     axis : ndarray, shape (3,)
         Unit vector.
     """

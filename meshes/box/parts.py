@@ -110,7 +110,7 @@ class Rib:
     along : {"x", "y", "z"}
         Axis along which it runs, one of the wall's own two.
     at : float
-        Place of its middle plane on the other of the two [m].
+        Position of its middle plane along the other axis [m].
     height, thickness : float
         [m]; the height is taken from the wall.
     side : {"outside", "inside"}
