@@ -31,9 +31,9 @@ class StabilityRule:
     orders : int
         Highest order: pairs of poles of the common denominator.
     frequency : float
-        Largest change from one order to the next, as a part.
+        Largest change of the frequency from one order to the next, as a part.
     damping : float
-        The same of the damping ratio.
+        Largest change of the damping ratio from one order to the next, as a part.
     largest_damping : float
         Ratios of poles lie between 0 and this.
     share : float
@@ -57,7 +57,7 @@ class StabilityRule:
 
 @dataclass
 class PoleLine:
-    """Poles that continue each other over the orders; it grows while they are gone through.
+    """Line of a stabilisation chart: poles that continue each other over the orders, added one by one.
 
     Attributes
     ----------

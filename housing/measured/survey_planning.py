@@ -147,7 +147,7 @@ class SurveyPlan:
         Candidates for the hammer: the best single one, the best one to add to it, and so on.
     residues : ndarray, shape (n_places,)
         With the places up to each: the least over the modes of the best driving-point residue, as a part of the largest
-        that the mode has anywhere. Near 0 a mode is hardly excited from any of them.
+        of the mode over all candidates. Near 0 a mode is hardly excited from any of them.
     """
 
     sensors: IntArray
@@ -169,7 +169,7 @@ def plan_survey(shapes: FloatArray, count: int) -> SurveyPlan:
     A blow at candidate i excites mode r by its driving-point residue, φ_ir² / (2 ω_r) for mass-normalised shapes (D. J.
     Ewins, *Modal Testing*, 2000). Divided by the largest that the mode has at any candidate, ω_r drops out; the best
     place is where the least of these over the modes is largest: no mode is missed there. Further places are added
-    one by one so that, with the best of all for each mode, the least is largest.
+    one by one so that the least over the modes, each at its best place, is largest.
 
     Parameters
     ----------

@@ -229,7 +229,7 @@ def read_shapes(
     directions : ndarray, shape (n_points, 3, 3)
         The directions, as rows, that the three components of a point stand along.
     remarks : list of str
-        Is added to.
+        Remarks for the user; the reader appends to it.
 
     Raises
     ------
@@ -319,7 +319,7 @@ def read_functions(
     length, force : float
         Metres and newtons in the file's units; an axis that names its own unit goes before them.
     remarks : list of str
-        Is added to.
+        Remarks for the user; the reader appends to it.
 
     Raises
     ------
@@ -384,7 +384,7 @@ def _motion(datasets: list[Dataset], remarks: list[str]) -> Motion:
 
 
 def _factor(dataset: Dataset, length: float, force: float, remarks: list[str]) -> float:
-    """From the function's unit to SI."""
+    """Factor from the function's unit to SI."""
     factors = []
     for axis, by_system in (("ordinate", length), ("orddenom", force)):
         label = str(dataset.get(f"{axis}_axis_units_lab", "")).strip().lower().replace(" ", "").replace("**", "^")

@@ -36,7 +36,7 @@ class LeftOutMode:
     deviation : float
         Relative standard deviation of the prediction, by the posterior of the others and the mode's own noise.
     prior_deviation : float
-        The same before the fit, at the start design.
+        Standard deviation of the prediction before the fit, at the start design.
     start : float
         Frequency of the start design [rad/s].
     rms_percent : float
@@ -112,7 +112,7 @@ class Procedure(Generic[AnyDesign]):
     count: int
 
     def __call__(self, target: Target) -> tuple[Misfit, Posterior]:
-        """Misfit of the result, by dominant modes, and posterior of the parameters."""
+        """Run the search: misfit of the result, by dominant modes, and posterior of the parameters."""
         meshes = Meshes(self.solve, None)
         best = multistart_search(meshes, target, self.parameters, self.start, None, self.effort, self.count)
         found = polish(self.solve, best, target, self.parameters, self.effort)
@@ -128,7 +128,7 @@ def leave_one_out(
     each: Each = serial_map,
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[LeftOutMode]:
-    """Leave-one-out: fit to all measured modes but one, from the start, and predict that one; for each of them.
+    """Leave-one-out: for each measured mode fit all others from the start, and predict it.
 
     The number of dominant modes stays known, so that the pairing is the same as when all are fitted.
 

@@ -49,7 +49,7 @@ class ModeCount:
 
 @dataclass(frozen=True)
 class Target:
-    """Measured modes and their uncertainties.
+    """Target of updating: measured modes and their uncertainties.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Target:
     gap : float
         Least gap ln(strength of the weakest chosen / strongest left out); not asked for where shapes were measured.
     margin : float
-        The same of the other two measures; not asked for by default.
+        Least gap by the other two measures of dominance; not asked for by default.
     count : ModeCount, optional
     firmness : float
         Factor on the penalties, before they are squared. Soft penalties let a search pass obstacles; firm ones leave no
@@ -121,7 +121,7 @@ class Misfit:
         ln(strength of the weakest paired / strongest of the others in the band): negative where the modes paired are
         not the dominant ones, infinite where shapes decide.
     margin : float
-        The least of the same by the other two measures of dominance.
+        Least gap by the other two measures of dominance.
     count : int
         Modes below the limit of :class:`ModeCount`; 0 where none is given.
     mac : ndarray, shape (n,), or None

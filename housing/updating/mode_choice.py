@@ -151,7 +151,7 @@ def choice_shortfall(
     gap : float
         ln of the least ratio of strengths between chosen and other modes, by acceleration.
     margin : float
-        The same by the other two measures; negative infinity where it is not asked for.
+        Least ratio by the other two measures; negative infinity where it is not asked for.
     firmness : float
         Factor on the penalties, before they are squared.
     """

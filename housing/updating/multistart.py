@@ -57,7 +57,7 @@ class Meshes(Generic[AnyDesign]):
     coarse : callable
         See :data:`housing.updating.Solve`.
     fine : callable
-        The same on the fine mesh, made anew at each design; None where there is one mesh only.
+        Solver on the fine mesh, which is made anew at each design; None where there is one mesh only.
     light : callable
         Reduces a design of that mesh for the next round, so that it is not solved again.
     """
@@ -100,7 +100,7 @@ class MultistartResult(Generic[AnyDesign]):
     coordinates : ndarray, shape (n_parameters,)
         Of the best design on the fine mesh.
     misfit : Misfit
-        Its misfit there.
+        Misfit of that design.
     is_met : bool
         Whether it meets the target.
     steps : tuple of Step
@@ -169,7 +169,7 @@ def multistart_search(
     start : Design
         Solved on the coarse mesh.
     judged : ModalState, or None
-        The fine mesh's modes of the same; None where there is one mesh only.
+        Modes of the start on the fine mesh; None where there is one mesh only.
     effort : Effort
         Its solves are those of all searches in the round on the coarse mesh.
     count : int

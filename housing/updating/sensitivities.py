@@ -48,7 +48,7 @@ class Changes:
     velocity : ndarray, shape (n_nodes, 3), or None
         Velocity of the nodes [m] per unit of the parameter.
     constants : ndarray, shape (3, n_elements), or None
-        Rates of λ, μ [Pa] and ρ [kg/m³].
+        Derivatives of λ, μ [Pa] and ρ [kg/m³].
     """
 
     velocity: FloatArray | None
@@ -308,9 +308,9 @@ class ModelSensitivity:
     velocity : ndarray, shape (n_nodes, 3), optional
         Velocity of the nodes [m].
     constants : ndarray, shape (3, n_elements), optional
-        Rates of λ, μ [Pa] and ρ [kg/m³] of each element.
+        Derivatives of λ, μ [Pa] and ρ [kg/m³] of each element.
     stiffness, mass : scipy.sparse array, shape (3 n_nodes, 3 n_nodes), optional
-        Rates of the fixtures' matrices.
+        Derivatives of the fixtures' matrices.
     """
 
     velocity: FloatArray | None = None
@@ -365,7 +365,7 @@ def modal_sensitivities(
         λ, μ [Pa] and ρ [kg/m³].
     shapes : ndarray, shape (n_modes, n_nodes, 3)
         Mass-normalised.
-    rates : sequence of ModelRate
+    rates : sequence of ModelSensitivity
 
     Raises
     ------

@@ -120,7 +120,7 @@ def search(
 
     Returns
     -------
-    Found
+    SearchResult
         The best of all designs solved, the start among them; or the first at which the search may end.
     """
     bounds = coordinate_bounds(parameters)
@@ -166,7 +166,7 @@ def search(
 def search_surrogate(
     surrogate: Surrogate, target: Target, region: FloatArray, starts: int, generator: np.random.Generator
 ) -> tuple[FloatArray, float]:
-    """Least misfit of the surrogate within a region, shape (2, n), and its coordinates."""
+    """Minimise the misfit of the surrogate within a region, shape (2, n): least misfit and its coordinates."""
     low, high = region
     center = np.clip(surrogate.center, low, high)
     points = [center, *(low + (high - low) * generator.random((starts, len(low))))]
