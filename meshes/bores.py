@@ -15,6 +15,8 @@ from meshes.elements import Facets, FloatArray, IntArray, facet_centers, facet_c
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
 
+BoolArray = npt.NDArray[np.bool_]
+
 SIDEWAYS = 0.5  # largest cosine between the axis and a facet's normal: chords of coarse meshes are askew
 SLACK = 0.01  # corners of a bore may be off its circle by this part of its diameter
 _SHARPEST = np.cos(np.radians(75.0))  # neighbours of a bore of five or more facets turn by less
@@ -133,8 +135,6 @@ def plane_axes(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     first /= np.linalg.norm(first)
     return first, np.cross(axis, first)
 
-
-BoolArray = npt.NDArray[np.bool_]
 
 _FACING = 0.5  # least cosine between a facet's normal and the direction to the axis
 _ARC_STEPS = 720
