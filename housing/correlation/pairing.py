@@ -27,6 +27,7 @@ from housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
 
 
 def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:
@@ -73,8 +74,6 @@ def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
     lost = kept - sum(scores[i, j] for i, j in best_assignment(without))
     return float(np.clip(lost / own, 0.0, 1.0))
 
-
-IntArray = npt.NDArray[np.int64]
 
 _CLEAR = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
 _LEAST_FREEDOMS = 2

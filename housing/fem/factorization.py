@@ -20,6 +20,8 @@ from scipy.sparse.linalg import splu
 from housing.errors import FactorizationError
 from housing.fem.linear_algebra import SymmetricMatrix
 
+FloatArray = npt.NDArray[np.float64]
+
 
 def available_memory(*, system: Path = Path("/")) -> float:
     """Memory that this process can still allocate: the least of the machine's, its control group's and its own limit.
@@ -119,9 +121,6 @@ def _lines(path: Path) -> list[str]:
         return path.read_text(encoding="ascii", errors="replace").splitlines()
     except OSError:
         return []
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class NumericFactor(Protocol):

@@ -20,6 +20,7 @@ from housing.fem.linear_algebra import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+Int32Array = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -135,9 +136,6 @@ class Additions:
             self.damping + other.damping,
             np.union1d(self.fixed, other.fixed),
         )
-
-
-Int32Array = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)

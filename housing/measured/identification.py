@@ -16,6 +16,7 @@ from housing.errors import HousingError, MeasuredDataError
 from housing.measured.survey_data import MeasuredModes, MeasuredResponses
 
 ComplexArray = npt.NDArray[np.complex128]
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -142,8 +143,6 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
             found.append(line)
     return sorted(found, key=lambda line: abs(line.pole))
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _TURNS = 200  # of the two least-squares problems
 _NOTHING = 1e-12  # of a weight, below which nothing was measured

@@ -15,6 +15,7 @@ from housing.errors import HousingError, MeasuredDataError
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _UNIT = 1e-6  # largest deviation of a unit vector's length from one: files carry six digits
 
@@ -65,9 +66,6 @@ class MeasuredGeometry:
         if np.any(np.abs(lengths - 1.0) > _UNIT):
             worst = int(np.argmax(np.abs(lengths - 1.0)))
             raise HousingError(f"direction {worst} of the survey has length {lengths[worst]:g}; expected a unit vector")
-
-
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from meshes import Mesh
 from meshes.elements import Facets, facet_centers, facet_normals, pick_facets
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 # Columns and rows of points on each face. The rig's survey had 116 points (TM-104434, "Experimental study"), laid
 # out in a way not printed; here they cover the five faces that are within reach, at nearly even density:
@@ -122,8 +123,6 @@ def survey_grid(
         matrix=sparse.csr_array(entries),
     )
 
-
-IntArray = npt.NDArray[np.int64]
 
 _PLACES = 3  # for the hammer
 _DEPENDENT = 1e-8  # smallest singular value of the shapes as a part of the largest, below which two are one

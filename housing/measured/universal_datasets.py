@@ -20,6 +20,8 @@ import numpy.typing as npt
 from housing.errors import MeasuredDataError
 from housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, Motion
 
+FloatArray = npt.NDArray[np.float64]
+
 Dataset = dict[str, Any]
 
 USED = {15: "points", 2411: "points", 18: "coordinate systems", 2420: "coordinate systems", 82: "trace lines"}
@@ -168,9 +170,6 @@ def _is_sane(numbers: npt.NDArray[Any], size: int) -> bool:
     sizes = np.abs(numbers[numbers != 0.0])
     limit = _SANE[size]
     return bool(np.all(np.isfinite(sizes)) and np.all((sizes < limit) & (sizes > 1.0 / limit)))
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,8 @@ from housing.errors import HousingError
 from meshes import Mesh
 from meshes.shape_functions import element_moments, quadrature, shape_functions
 
+FloatArray = npt.NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class Material:
@@ -83,8 +85,6 @@ def element_constants(mesh: Mesh, material: Material, materials: Mapping[str, Ma
         constants[:, members] = np.array([*own.lame, own.density])[:, None]
     return constants
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _DEGREE = 6  # of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
 

@@ -17,6 +17,8 @@ from housing.model.patches import Patch, rigid_motions, spread
 from meshes import Mesh
 from meshes.elements import Facets, facet_nodes
 
+FloatArray = npt.NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class Support:
@@ -81,8 +83,6 @@ def fixed_freedoms(mesh: Mesh, supports: Sequence[Support]) -> IntArray:
     ]
     return np.unique(np.concatenate(held)) if held else np.empty(0, dtype=np.int64)
 
-
-FloatArray = npt.NDArray[np.float64]
 
 RIGID_MOTIONS = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 

@@ -22,6 +22,8 @@ from housing.fem.linear_algebra import BlockAlgebra
 from housing.fem.matrices import FreeSystem
 from housing.modes.eigensolver import DEFAULT_SOLVER, TOLERANCE, Solver, arpack_modes, block_lanczos
 
+FloatArray = npt.NDArray[np.float64]
+
 RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
 NOT_COUNTED = -1
@@ -59,8 +61,6 @@ class Certificate:
         proved = self.max_residual < RESIDUAL_BOUND and self.max_overlap < OVERLAP_BOUND
         return self.expected == self.found and proved
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _ATTEMPTS = 3
 _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away from a mode beside it

@@ -21,6 +21,7 @@ from housing.model.patches import rigid_body, rigid_motions
 from housing.modes.natural_modes import ModeSet
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
 def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
@@ -62,9 +63,6 @@ def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatAr
     added = np.zeros_like(ratios)
     added[elastic] = damping.diagonal()[: len(ratios)][elastic] / (2.0 * frequencies[elastic])
     return np.asarray(ratios + added)
-
-
-IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+ComplexArray = npt.NDArray[np.complex128]
 
 DRAWN_SCALE = 0.07
 """Largest displacement drawn, as a part of the housing's diagonal."""
@@ -84,8 +85,6 @@ def check_numbers(modes: ModeSet, numbers: Sequence[int]) -> None:
     if missing or not numbers:
         raise HousingError(f"modes {missing or 'none'} asked for; give numbers from 1 to {len(modes.shapes)}")
 
-
-ComplexArray = npt.NDArray[np.complex128]
 
 MODE_QUANTITY = "Displacement / largest"
 

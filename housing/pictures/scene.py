@@ -15,6 +15,8 @@ import numpy.typing as npt
 from housing.errors import HousingError, RendererUnavailableError
 from housing.pictures.drawn_shapes import DRAWN_SCALE, MODE_QUANTITY, DrawnHousing, DrawnShape, Skin
 
+FloatArray = npt.NDArray[np.float64]
+
 _LIBRARIES = (
     ("libEGL.so.1", "vtkEGLRenderWindow"),
     ("libOSMesa.so.8", "vtkOSOpenGLRenderWindow"),
@@ -57,7 +59,6 @@ def load_pyvista() -> Any:
     return pyvista
 
 
-FloatArray = npt.NDArray[np.float64]
 Image = npt.NDArray[np.uint8]
 
 _VIEWS = {

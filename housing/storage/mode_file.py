@@ -28,6 +28,8 @@ from housing.storage.mesh_arrays import mesh_arrays, mesh_from_arrays
 from housing.storage.netcdf import LabelledArray, canonical_json, content_key, digest, read_netcdf, write_netcdf
 from meshes import Mesh
 
+FloatArray = npt.NDArray[np.float64]
+
 _ONE = ("attachment",)
 _PORTS = ("loaded_motion", "moved_motion")
 
@@ -82,8 +84,6 @@ def residual_modes_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> Resi
         return ResidualModes(np.empty(0), np.empty((0, n_nodes, 3)), proof)
     return ResidualModes(arrays["attachment_circular_frequency"].values, arrays["attachment_shape"].values, proof)
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _MODE = ("mode",)
 _EXTRA = "extra_"
