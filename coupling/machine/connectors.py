@@ -87,6 +87,7 @@ class GapLaw:
     gap: float = 0.0
 
     def __post_init__(self) -> None:
+        """Require a positive force and depth, an exponent of 1 or more and no negative gap."""
         for what in ("force", "depth"):
             value = getattr(self, what)
             if not (math.isfinite(value) and value > 0.0):
@@ -211,6 +212,7 @@ class LinearConnector:
     axes: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
+        """Require stiffness and damping of shape (d, d) for d directions."""
         d = self.directions.shape[1]
         for what, matrix in (("stiffness", self.stiffness), ("damping", self.damping)):
             if matrix.shape != (d, d):
@@ -275,6 +277,7 @@ class NonlinearConnector:
     speed: float
 
     def __post_init__(self) -> None:
+        """Require an axis for each direction, and a stiffness of shape (d, d)."""
         d = self.directions.shape[1]
         if self.axes.shape != (d,) or self.stiffness.shape != (d, d):
             raise CouplingError(
@@ -356,7 +359,7 @@ class ContactConnector:
         return self.phase + self.rate * time + _JUST_AFTER
 
     def event_times(self, start: float, end: float) -> FloatArray:
-        """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
+        """Return times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
 
         The force may jump at the former; at the latter its rate and the power of the turning teeth do. With friction
         also those at which a pair passes the pitch point.

@@ -89,6 +89,7 @@ class TorqueRipple:
     frequency: float | None = None
 
     def __post_init__(self) -> None:
+        """Require either an order or a frequency."""
         if (self.order is None) == (self.frequency is None):
             raise CouplingError(
                 f"a torque ripple on {self.rotor!r} of order {self.order} and frequency {self.frequency}; "
@@ -177,7 +178,7 @@ class MachineCoordinates:
         self._numbers = {part.name: i for i, part in enumerate(components)}
 
     def rotor(self, name: str) -> RotorComponent:
-        """The rotor of this name."""
+        """Return the rotor of this name."""
         part = self.components[self._numbers[name]] if name in self._numbers else None
         if not isinstance(part, RotorComponent):
             known = sorted(part.name for part in self.components if isinstance(part, RotorComponent))
@@ -202,7 +203,7 @@ class MachineCoordinates:
         return np.asarray(x - 1j * y)
 
     def add_unbalance(self, loads: Loads, unbalance: Unbalance) -> None:
-        """m e Ω² (cos, sin)(Ω t + phase) on x and y: y lags x by a quarter turn, in the sense of rotation."""
+        """Add the unbalance force m e Ω² (cos, sin)(Ω t + phase): y lags x by a quarter turn, in the sense of rotation."""
         speed = self.speeds[unbalance.rotor]
         rotating = self.rotating_force(unbalance.rotor, unbalance.at)
         if speed == 0.0 or unbalance.moment == 0.0:
@@ -218,7 +219,7 @@ class MachineCoordinates:
         loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
 
     def add_torque(self, loads: Loads, torque: AnyTorque) -> None:
-        """A torque that is constant, tabled over time, harmonic, or a slope over the speed."""
+        """Add a torque: constant, tabled over time, harmonic, or a slope over the speed."""
         row = self.rotation(torque.rotor, torque.at)
         match torque:
             case Torque():
@@ -268,7 +269,7 @@ class MachineCoordinates:
 
 
 def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
-    """A torque's slope over speed as a dashpot of minus the slope."""
+    """Replace a torque's slope over speed by a dashpot of minus the slope."""
     damping = -slope.slopes.reshape(-1, 1, 1)
     none = np.zeros_like(damping)
     table = SpeedTable(slope.rates, none, damping) if np.ptp(slope.slopes) > 0.0 else None
@@ -311,6 +312,7 @@ class BaseHistory:
     values: FloatArray
 
     def __post_init__(self) -> None:
+        """Require six accelerations for each time, and times that ascend."""
         if self.values.shape != (len(self.times), 6) or not len(self.times) or np.any(np.diff(self.times) <= 0.0):
             raise CouplingError(
                 f"a base's accelerations of shape {self.values.shape} at {len(self.times)} times; expected six for "

@@ -107,7 +107,7 @@ def friction_of(
 
 
 def with_balanced_friction(system: CoupledSystem) -> CoupledSystem:
-    """The system with friction orthogonal to the rigid-body motions, whose speed is prescribed."""
+    """Return the system with friction orthogonal to the rigid-body motions, whose speed is prescribed."""
     if all(contact.sliding is None for contact in system.contacts):
         return system
     free = system.rigid_body_motions[0]
