@@ -69,7 +69,7 @@ def likeness(one: ModesAtSpeed, other: ModesAtSpeed) -> FloatArray:
 
 
 def _products(one: ModesAtSpeed, other: ModesAtSpeed) -> ComplexArray:
-    """The likeness with its phase: over modes of one eigenvalue it may be added up, whatever vectors they have."""
+    """Correlate modes by biorthogonality, with the phase: over modes of one eigenvalue the products add up."""
     sums = one.values[:, None] + other.values[None, :]
     there = sums * (one.left.conj() @ other.right.T) + one.left.conj() @ one.damping @ other.right.T
     back = sums * (one.right @ other.left.conj().T) + one.right @ other.damping.T @ other.left.conj().T
@@ -356,7 +356,7 @@ class _Described:
 
 
 def _described(machine: CoupledMachine, speed: float, limit: float, contact: ContactState) -> _Described:
-    """The oscillating modes below a limit at a speed."""
+    """Return the oscillating modes below a limit at a speed."""
     system = machine.at_speed(speed).system
     modes = coupled_modes(system, contact)
     damping = linear_matrices(system, contact)[1]

@@ -120,7 +120,7 @@ def mode_shares(
 
 
 def _groups(eigenvalues: ComplexArray) -> list[slice]:
-    """Runs of modes, ascending in frequency, whose eigenvalues agree to rounding; rigid motions stand alone."""
+    """Group modes, ascending in frequency, whose eigenvalues agree to rounding; rigid motions stand alone."""
     size = np.abs(eigenvalues)
     apart = np.abs(np.diff(eigenvalues)) > _SAME * np.minimum(size[1:], size[:-1])
     edges = [0, *(np.flatnonzero(apart | (size[1:] == 0.0) | (size[:-1] == 0.0)) + 1).tolist(), len(eigenvalues)]

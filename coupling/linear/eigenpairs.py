@@ -241,7 +241,7 @@ def pair_residuals(
 def refine_pair(
     stiffness: FloatArray, damping: FloatArray, value: complex, vector: ComplexArray, steps: int = 6
 ) -> tuple[complex, ComplexArray, float]:
-    """An eigenpair near a given one, with its residual, by Newton's method on (λ² I + λ C + K) q = 0, uᴴ q = 1.
+    """Refine an eigenpair by Newton's method on (λ² I + λ C + K) q = 0, uᴴ q = 1; return it with its residual.
 
     The bordered matrix stays regular at the eigenvalue, so no digits are lost there.
     """

@@ -442,7 +442,7 @@ def _sensor_responses(machine: CoupledMachine, frequencies: FloatArray) -> dict[
 
 
 def _excitations(machine: CoupledMachine) -> FloatArray:
-    """Unit loads of the excitations, shape (e, n): along each line of action; without gears, at each bearing."""
+    """Return unit loads, shape (e, n): along each line of action; without gears, at each bearing."""
     drives = [contact.direction for contact in machine.system.contacts if contact.drives]
     if drives:
         return np.array(drives)
