@@ -155,7 +155,7 @@ def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
 
 
 def first_elements(trace: Trace, count: int) -> Trace:
-    """The elements that a trace holds, in its own memory."""
+    """Copy the elements that a trace holds."""
     return Trace._make(rows[:count] for rows in trace)
 
 

@@ -93,7 +93,7 @@ class ResponseCurve:
         return self.told()
 
     def told(self, unit: float = 1.0, name: str = "") -> str:
-        """The same with speeds divided by a named unit."""
+        """Return the response curve with speeds divided by a named unit."""
         start, last, aim = (value / unit for value in (self.speeds[0], self.speeds[-1], self.aim))
         name = name and f" {name}"
         way = f"followed from {start:.6g} to {last:.6g}{name}: {len(self.speeds)} points, {len(self.folds)} folds"
@@ -135,7 +135,7 @@ class ResponseCurve:
         return np.array([response.contact_loss for response in self.responses])
 
     def motion(self, index: int) -> PeriodicResponse:
-        """The whole motion of a point, integrated again from the starts of its segments."""
+        """Integrate the periodic motion of a point again, from the starts of its segments."""
         kept = self.responses[index]
         return integrated_again(self.system_at(float(self.speeds[index])), self._period(kept.period), kept)
 
@@ -161,7 +161,7 @@ class ResponseCurve:
         return [response for _, response in sorted(found, key=lambda one: one[0])]
 
     def _between(self, index: int, part: float, speed: float, tolerance: float) -> PeriodicResponse:
-        """The motion at a speed that is a part of the way from one point to the next."""
+        """Solve for the motion at a speed that is a part of the way from one point to the next."""
         before, after = self.responses[index], self.responses[index + 1]
         # Rates are compared in their own period.
         length = 1.0 / (1.0 / before.period + part * (1.0 / after.period - 1.0 / before.period))
@@ -238,7 +238,7 @@ class _Follower:
                 return "end" if position == 1.0 else "start"
 
     def _held(self) -> Point | None:
-        """A step at a given speed."""
+        """Take a continuation step at a given speed."""
         here = self.recent[-1]
         among = self.recent[-1 - self.order :]
         position = self.position(here.speed) + self.sense * self.stride
@@ -256,7 +256,7 @@ class _Follower:
         return there
 
     def _failed(self) -> None:
-        """A shorter step, or one along the branch."""
+        """Shorten the continuation step, or change to pseudo-arclength."""
         self.stride *= 0.5
         self.order = min(self.order, 1)
         self.failures += 1
@@ -271,7 +271,7 @@ class _Follower:
             self.ds = min(self.stride / max(pace, 1e-9), _FARTHEST * self._motion(here))
 
     def _along(self) -> Point | None:
-        """A step along the branch."""
+        """Take a pseudo-arclength step along the branch."""
         here = self.recent[-1]
         forwards = 1.0 if here.towards is not None else self.sense * np.sign(self.end - self.start)
         level = self.branch.level

@@ -267,7 +267,7 @@ def advance(decay: FloatArray, source: FloatArray, z: FloatArray, excess: FloatA
 
 @uncounted(forceinline=True)
 def interpolated(values: FloatArray, a: int, u: float) -> float:
-    """The polynomial through values (ORDER + 2, c) at the points, at u."""
+    """Evaluate at u the polynomial through values (ORDER + 2, c) at the Gauss points."""
     above, below = 0.0, 0.0
     for i in range(ORDER + 2):
         apart = u - POINTS[i]

@@ -143,7 +143,7 @@ class LinearPart:
         return len(self.right)
 
     def own_response(self, time: float) -> tuple[FloatArray, FloatArray]:
-        """The reference's own displacements and rates at a time, shape (n,) each."""
+        """Evaluate the linear reference's displacements and rates at a time, shape (n,) each."""
         turned = self.amplitudes * np.exp(1j * self.frequencies * time)[:, None]
         return self.mean + turned.real.sum(axis=0), -(self.frequencies[:, None] * turned.imag).sum(axis=0)
 

@@ -32,7 +32,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def product(pieces: FloatArray) -> FloatArray:
-    """The monodromy of pieces (K, 2 N, 2 N) that follow each other, shape (2 N, 2 N)."""
+    """Multiply the monodromy matrices of successive segments, shape (K, 2 N, 2 N), to that of all, shape (2 N, 2 N)."""
     whole = pieces[0]
     for piece in pieces[1:]:
         whole = piece @ whole
@@ -226,7 +226,7 @@ class Pass:
 
 
 def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
-    """Times at which a pair of teeth enters or leaves contact or a relief begins, and the nodes [s].
+    """Return times at which a pair of teeth enters or leaves contact or a relief begins, and the nodes [s].
 
     The last node is the period. An event next to a node is that node.
     """

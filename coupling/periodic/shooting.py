@@ -57,7 +57,7 @@ def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
 
 
 def common_period(system: CoupledSystem, period: float | None = None) -> float:
-    """The shortest time in which every driving frequency makes whole cycles [s].
+    """Return the common period: the shortest time in which every driving frequency makes whole cycles [s].
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
 
 
 def _common_factor(ratios: list[Fraction]) -> int:
-    """Number of times that all repeat within that."""
+    """Return the least common multiple: the number of times that all repeat within a common period."""
     cycles = lcm(*(ratio.denominator for ratio in ratios))
     return int(np.gcd.reduce([int(ratio * cycles) for ratio in ratios]))
 
@@ -202,13 +202,13 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
 
 
 def _segments(system: CoupledSystem, period: float) -> int:
-    """Number of segments: a mesh period each, or several where there are many."""
+    """Count the segments of multiple shooting: a mesh period each, or several where there are many."""
     cycles = round(period * max([abs(contact.rate) for contact in system.contacts], default=0.0))
     return max(1, math.ceil(cycles / math.ceil(cycles / _MOST_SEGMENTS))) if cycles else 1
 
 
 def _followed(system: CoupledSystem) -> Condensed:
-    """The condensed system, as in the transient; see :mod:`coupling.time.condensation`."""
+    """Condense the system, as in the transient; see :mod:`coupling.time.condensation`."""
     if system.resolved.all():
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     return condensed(system)
@@ -279,7 +279,7 @@ def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicRespo
 def response_near(
     system: CoupledSystem, period: float | None, start: tuple[FloatArray, FloatArray], level: int, tolerance: float
 ) -> PeriodicResponse:
-    """The motion next to states at the starts of all segments, unstable ones too, with elements of a known level.
+    """Solve for the periodic motion near states at the starts of all segments, unstable ones too, at an element level.
 
     Raises
     ------
@@ -294,7 +294,7 @@ def response_near(
 
 
 def integrated_again(system: CoupledSystem, period: float | None, kept: BranchMotion) -> PeriodicResponse:
-    """The whole motion again, integrated from the starts of its segments."""
+    """Integrate the whole motion again from the starts of its segments."""
     ready = problem(system, period)
     states = _states(ready, (kept.displacements, kept.velocities))
     found = one_pass(ready.part, ready.contacts, ready.elements(kept.level), states)
