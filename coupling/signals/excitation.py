@@ -185,7 +185,7 @@ def _label(modes: CoupledModes, mode: int) -> str:
 
 
 def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int | None:
-    """Number of the mode nearest to a frequency; None where none is near. Local compliance is no mode."""
+    """Return the number of the mode nearest to a frequency; None where none is near. Local compliance is no mode."""
     if modes is None:
         return None
     w = 2.0 * np.pi * frequency
@@ -203,7 +203,7 @@ def _nearest(names: list[str]) -> list[str]:
 
 
 def _whole_order(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:
-    """A multiple of a shaft's speed, the slowest multiple first."""
+    """Return a multiple of a shaft's speed, the slowest multiple first."""
     found = []
     for name, speed in machine.speeds.items():
         each = abs(speed) / (2.0 * np.pi)

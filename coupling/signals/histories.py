@@ -91,7 +91,7 @@ class Histories:
         return np.concatenate([np.empty((count, 0)), *parts], axis=1)
 
     def with_columns(self, times: FloatArray, columns: FloatArray) -> "Histories":
-        """The same signals with other samples, from columns as in :attr:`columns`."""
+        """Return the same signals with other samples, from columns as in :attr:`columns`."""
         groups: list[dict[str, FloatArray]] = []
         column = 0
         for name in _GROUPS:
@@ -375,7 +375,7 @@ class ModalRecord:
         return np.concatenate([*moved, self.housing_acceleration], axis=1)
 
     def with_columns(self, columns: FloatArray) -> "ModalRecord":
-        """The same signals with other samples, from columns as in :attr:`columns`."""
+        """Return the same signals with other samples, from columns as in :attr:`columns`."""
         coordinates = {name: columns[:, i] for i, name in enumerate(self.coordinates)}
         return ModalRecord(coordinates, columns[:, len(coordinates) :])
 
@@ -383,7 +383,7 @@ class ModalRecord:
 def with_modal_rows(
     machine: CoupledMachine, outputs: TransientOutputs, count: int = 0, *, housing: bool = True
 ) -> TransientOutputs:
-    """Outputs and, after them, the accelerations of the housing's modes, and the first modal coordinates of each part.
+    """Append outputs: accelerations of the housing's modes and the first modal coordinates of each part.
 
     Parameters
     ----------
@@ -412,7 +412,7 @@ def modal_record(machine: CoupledMachine, result: MotionRecord, count: int = 0, 
 
 
 def _coordinate_rows(machine: CoupledMachine, count: int) -> dict[str, FloatArray]:
-    """The first rows of each kind of each part, by name."""
+    """Return the first rows of each kind of each part, by name."""
     if count == 0:
         return {}
     named = {}

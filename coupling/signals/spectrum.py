@@ -231,7 +231,7 @@ class SignalParts:
 
 
 def signal_parts(signal: FloatArray) -> SignalParts:
-    """The d.c. and the a.c. part of a signal of shape (..., s)."""
+    """Split a signal of shape (..., s) into its d.c. and its a.c. part."""
     mean = signal.mean(axis=-1)
     varying = signal - mean[..., None]
     return SignalParts(mean, np.asarray(np.sqrt((varying**2).mean(axis=-1))), np.abs(varying).max(axis=-1))
