@@ -162,7 +162,7 @@ def _bearing(connector: NonlinearConnector, deflection: FloatArray, time: float)
 
 
 def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
-    """Initial rates with which rigid-body motions oscillate under harmonic loads without a drift, shape (n,).
+    """Return initial velocities, shape (n,): rigid-body motions then oscillate under harmonic loads without drift.
 
     The response of such a motion to Re(F e^{iwt}) has the velocity Re(F e^{iwt} / (iw)). From rest a drift would be
     added to it. ``rate`` is the speed as a part of the nominal one.
@@ -200,7 +200,7 @@ def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
 
 
 def with_loaded_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> CoupledSystem:
-    """The system with back flanks as its drive flanks where the mean torque pulls the drive flanks apart.
+    """Exchange drive and back flanks where the mean torque pulls the drive flanks apart.
 
     ``backs`` has, for each of the first contacts, the number of its back flanks, or None where these never meet.
     """
