@@ -121,7 +121,7 @@ def _reduced(contact: ContactConnector, recovery: FloatArray) -> ContactConnecto
 
 
 def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
-    """A component reduced to some of its coordinates."""
+    """Reduce a component to some of its coordinates."""
     square = np.ix_(among, among)
     return Component(
         component.name,

@@ -56,7 +56,7 @@ def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
 
 @inner()
 def solve_part_in_place(matrix: FloatArray, right: FloatArray, n: int, columns: int) -> None:
-    """The same for the first n rows and columns of a matrix and the first columns of ``right``."""
+    """Solve with the first n rows and columns of a matrix and the first columns of ``right`` alone, in place."""
     for column in range(n):
         pivot = column
         for row in range(column + 1, n):

@@ -119,7 +119,7 @@ class CollocationRecord:
         samples.acceleration[rows] = z @ self._acceleration[0].T - force @ self._acceleration[1].T
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
-        """The state with the work, the losses and the contact figures of a trace added."""
+        """Add the work, the losses and the contact figures of a trace to the state."""
         from coupling.periodic.integration_kernels import add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
@@ -150,7 +150,7 @@ _CUTS = 400  # room for switches in a chunk, besides four for each element
 def integration_method(
     system: CoupledSystem, settings: TransientSettings, turning: SpeedProfile
 ) -> Literal["newmark", "exact"]:
-    """Method of time integration: the given one, or by ``auto`` the exact one wherever it applies.
+    """Choose the method of time integration: the given one, or by ``auto`` the exact one wherever it applies.
 
     Raises
     ------
@@ -188,7 +188,7 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Spee
 
 
 def steady_part(system: CoupledSystem) -> LinearPart:
-    """The linear part, its rates in units of the fastest mesh, load or mode."""
+    """Return the linear part, its rates in units of the fastest mesh, load or mode."""
     rates = [2.0 * np.pi * abs(contact.rate) for contact in system.contacts]
     rates += [abs(load.frequency) for load in system.harmonic_loads]
     return linear_part(system, max(rates, default=0.0) or system.highest_frequency or 1.0, repeats=False)
@@ -233,7 +233,7 @@ class CollocationStepper:
             self._record.add(state, trace, self._steps, self._free)
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
-        """Number of stretches between ``bounds`` to attempt at once."""
+        """Return the number of stretches between ``bounds`` to attempt at once."""
         elements = np.cumsum(_pieces(bounds, step))
         return min(max(1, min(self._most_stretches, int(np.searchsorted(elements, _ELEMENTS)))), len(bounds) - 1)
 
@@ -247,7 +247,7 @@ class CollocationStepper:
         return Attempt(q, v, local, len(error), float((np.diff(bounds) / pieces).min()))
 
     def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
-        """The state after the last attempt, with its work, contact figures and samples."""
+        """Return the state after the last attempt, with its work, contact figures and samples."""
         after = self._record.add(state, self._chunk, self._steps, self._free)
         if done > self._settings.record_from:
             times = self._times_until(done, state.sample)
@@ -261,7 +261,7 @@ class CollocationStepper:
         return self._record.contact_figures(state, self._chunk)[:, 3], done
 
     def _times_until(self, done: float, first: int) -> FloatArray:
-        """Times of the samples from number ``first`` on that are no later than ``done`` [s]."""
+        """Return times of the samples from number ``first`` on that are no later than ``done`` [s]."""
         settings = self._settings
         # One more than rounding may leave out.
         count = int((done - settings.record_from) / settings.sample_interval) + 2 - first
@@ -295,7 +295,7 @@ class CollocationStepper:
 
 
 def _pieces(bounds: FloatArray, size: float) -> IntArray:
-    """Number of equal elements, no larger than ``size`` [s], in each stretch between the bounds."""
+    """Count equal elements, no larger than ``size`` [s], in each stretch between the bounds."""
     return np.maximum(np.ceil(np.diff(bounds) / size - 1e-9), 1.0).astype(np.int64)
 
 

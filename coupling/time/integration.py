@@ -49,7 +49,7 @@ def same_time(step: float) -> float:
 
 
 def block_ends(duration: float, interval: float, step: float, samples: int = SAMPLES_PER_BLOCK) -> FloatArray:
-    """Ends of blocks with a limited number of samples and coarsest steps, from 0 to the duration [s].
+    """Return ends of blocks with a limited number of samples and coarsest steps, from 0 to the duration [s].
 
     Raises
     ------
@@ -89,7 +89,7 @@ def boundaries(
 
 
 def _known_times(system: CoupledSystem, turning: SpeedProfile) -> Iterator[FloatArray]:
-    """Times at which loads and speeds change their slope [s]."""
+    """Yield times at which loads and speeds change their slope [s]."""
     if len(turning.times) > 1:
         yield turning.times
         # Connectors change their slope over speed where these speeds are passed.
@@ -168,13 +168,13 @@ class Checkpoint:
 
     @staticmethod
     def from_arrays(arrays: Mapping[str, npt.NDArray[Any]]) -> "Checkpoint":
-        """The checkpoint of which :meth:`as_arrays` gave these arrays."""
+        """Restore the checkpoint from the arrays of :meth:`as_arrays`."""
         values: dict[str, Any] = {field.name: np.asarray(arrays[field.name]) for field in fields(Checkpoint)}
         return Checkpoint(**{name: value if value.ndim else value.item() for name, value in values.items()})
 
 
 def sample_times(settings: TransientSettings, first: int, count: int) -> FloatArray:
-    """Times of ``count`` samples from number ``first`` on [s]."""
+    """Return times of ``count`` samples from number ``first`` on [s]."""
     return np.asarray(
         settings.record_from + settings.sample_interval * np.arange(first, first + count, dtype=np.float64)
     )
@@ -231,13 +231,13 @@ class Stepper(Protocol):
         """Prepare for a block; ``compiles`` where the kernels are to be compiled before the clock starts."""
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
-        """Number of stretches between ``bounds`` to attempt at once, with steps of at most ``step`` [s]."""
+        """Return the number of stretches between ``bounds`` to attempt at once, with steps of at most ``step`` [s]."""
 
     def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
         """Step through the stretches between ``bounds``."""
 
     def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
-        """The state after the last attempt, with its work, contact figures and samples, up to the time ``done`` [s]."""
+        """Return the state after the last attempt, with its work, contact figures and samples, up to ``done`` [s]."""
 
     def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
         """Time of the last touch of each contact before a divergence, shape (c,), and the end of what is known [s]."""
@@ -261,7 +261,7 @@ class Integration:
         self.reach = float(_resting(system, turning, pushed, settings.duration).max(initial=0.0))
 
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
-        """Static equilibrium under the initial loads, coasting where nothing resists; or a given state."""
+        """Start from static equilibrium under the initial loads, coasting where nothing resists, or a given state."""
         system, (_, rates, swings) = self.system, self.turning.at(0.0)
         load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.acceleration_load)
         resting = system if np.array_equal(load, system.load) else replace(system, load=load)

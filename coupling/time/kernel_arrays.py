@@ -233,5 +233,5 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
 
 
 def _ball_shape(row: BallRow) -> tuple[float, ...]:
-    """A, v₀, |v₀|² − A², the inner centres' radius and place, and K; see `rotors.rolling_bearings.element_contacts`."""
+    """Return A, v₀, |v₀|² - A², inner centres (radius, place), K; see `rotors.rolling_bearings.element_contacts`."""
     return row.groove_distance, *row.groove_offset, row.groove_excess, *row.inner_groove_centre, row.stiffness

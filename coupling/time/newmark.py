@@ -385,7 +385,7 @@ def _add_drive_load(q: FloatArray, dynamics: Dynamics, alpha: float, scratch: Sc
 
 @inner(forceinline=True)
 def _connector_forces(matrices: StepMatrices, slot: int, tq: FloatArray, tv: FloatArray, scratch: Scratch) -> None:
-    """Forces of the connectors at displacements and rates along them: K_t Uᵀq + C_t Uᵀv."""
+    """Evaluate connector forces at displacements and rates along the connectors: K_t Uᵀq + C_t Uᵀv."""
     project(matrices.connector_stiffness[slot], tq, scratch.connector_force)
     project(matrices.connector_damping[slot], tv, scratch.response)
     for j in range(tq.size):
@@ -465,7 +465,7 @@ def _contact_response(
     speed: float,
     scratch: Scratch,
 ) -> bool:
-    """Forces of the laws by Newton's iteration, and the accelerations with them; returns whether it converged."""
+    """Solve for the contact forces by Newton's iteration, with the accelerations; return whether it converged."""
     displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
     free, da, push, delta, rate = scratch.free, scratch.da, scratch.push, scratch.delta_free, scratch.rate_free
     if delta.size == 0:

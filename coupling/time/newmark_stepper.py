@@ -52,7 +52,7 @@ class NewmarkStepper:
         self._quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self._pushing)) ** 2
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
-        """Number of stretches between ``bounds`` to attempt at once."""
+        """Return the number of stretches between ``bounds`` to attempt at once."""
         return min(_SEGMENTS_PER_CHUNK, len(bounds) - 1)
 
     def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
@@ -66,7 +66,7 @@ class NewmarkStepper:
         return Attempt(self._after.q, self._after.v, error, steps, smallest)
 
     def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
-        """The state after the last attempt: the kernel has counted work and contacts and written the samples."""
+        """Return the state after the last attempt: the kernel has counted work and contacts and written the samples."""
         return self._after
 
     def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
@@ -74,7 +74,7 @@ class NewmarkStepper:
         return state.contact_totals[:, 3], begin
 
     def _run(self, state: Checkpoint, segments: Segments, samples: Samples) -> tuple[Checkpoint, float, float]:
-        """The kernel on copies of what it changes."""
+        """Run the kernel on copies of what it changes."""
         from coupling.time.newmark import newmark_steps
 
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
