@@ -1,4 +1,12 @@
-"""Assembly of the coupled system: components, connectors of bearings and gear pairs, and loads."""
+"""Assembly of the coupled system by component mode synthesis: components, bearings (5x5 stiffness), gear pairs, loads.
+
+Each component enters in its own modal coordinates (:mod:`coupling.machine.components`: projection onto free modes, and
+residual attachment modes in place of the constraint modes of Craig and Bampton). Connectors join them: the 5x5
+stiffness and damping matrices of bearings over x, y, z and the rotations about x and y, tooth contacts along the lines
+of action, dashpots of couplings (:mod:`coupling.machine.connectors`). The equation of motion is stated in
+:class:`coupling.machine.coupled_system.CoupledSystem`; loaded flanks and mean mesh stiffness come from
+:mod:`coupling.statics`.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

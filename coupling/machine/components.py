@@ -1,4 +1,4 @@
-"""Components for mode synthesis: each part of the machine in mass-normalised modal coordinates.
+"""Components for component mode synthesis: each part of the machine projected onto its modes, mass-normalised.
 
 Component mode synthesis here takes the free modes of a part and, for the static response of the truncated ones,
 residual attachment modes (MacNeal 1971, Rubin 1975), in place of the fixed-interface and constraint modes of Craig and

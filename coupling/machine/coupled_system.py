@@ -1,4 +1,4 @@
-"""Coupled system: components, connectors and loads in one set of coordinates, with its matrices."""
+"""Coupled system: components, connectors and loads in one set of modal coordinates, with its stiffness and damping."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,12 +1,13 @@
-"""Loads on a machine: unbalance, shaft bow, torques; on its parts by name, and on the coordinates.
+"""Loads on a machine: unbalance, shaft bow, torques, base excitation and gravity, as loads on the coordinates.
 
-Base excitation and gravity: inertia loads on coordinates that are relative to a moving base.
+Loads act on parts by name. Base excitation and gravity are inertia loads on coordinates that are relative to a moving
+base.
 
-With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where
-P = ∫ φ R dm is their participation and a the acceleration, three components along and three about x, y and z.
-Rotations of the base are small: terms quadratic in them, and Coriolis forces on the vibration, are neglected. The
-gyroscopic moment of a shaft that turns at Ω on a base that tilts at the rates ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on
-the x plane and Ω ∫ β dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
+With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where P = ∫ φ R
+dm is their participation and a the acceleration, three components along and three about x, y and z. Rotations of the
+base are small: terms quadratic in them, and Coriolis forces on the vibration, are neglected. The gyroscopic moment of a
+shaft that rotates at Ω on a base that tilts at the rates ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on the x plane and Ω ∫ β
+dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
 """
 
 from collections.abc import Mapping, Sequence
@@ -203,7 +204,7 @@ class MachineCoordinates:
         return np.asarray(x - 1j * y)
 
     def add_unbalance(self, loads: Loads, unbalance: Unbalance) -> None:
-        """Add the unbalance force m e Ω² (cos, sin)(Ω t + phase): y lags x by a quarter turn, in the sense of rotation."""
+        """Add an unbalance m e Ω² (cos, sin)(Ω t + phase): y lags x by a quarter turn, in the sense of rotation."""
         speed = self.speeds[unbalance.rotor]
         rotating = self.rotating_force(unbalance.rotor, unbalance.at)
         if speed == 0.0 or unbalance.moment == 0.0:
