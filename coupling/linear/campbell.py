@@ -1,6 +1,6 @@
-"""The Campbell diagram of the whole machine: coupled modes over speed, and where the excitations meet them.
+"""Campbell diagram of the whole machine: coupled modes followed over speed, and their crossings with excitations.
 
-Coupled modes followed from speed to speed, through places where they cross and where they veer.
+Modes are followed from speed to speed, through places where they cross and where they veer.
 
 Two modes of neighbouring speeds are held for one where both of their left and right vectors say so. With the
 normalisation pᴴ (2 λ I + C) q = 1 the modes of one speed have pᵢᴴ ((λᵢ + λⱼ) I + C) qⱼ = δᵢⱼ, so that
@@ -11,7 +11,8 @@ of a mode (λ, q, p) of C and one (μ, r, s) of D is 1 for one and the same and 
 assurance criterion of damped, gyroscopic modes. Where it decides nothing, speeds are put between: near enough to each
 other, modes that veer change their shapes little by little, and those that cross keep them.
 
-Crossing of an excitation order with a coupled mode, refined between two speeds of a branch to ten digits.
+The crossing of an excitation order with a coupled mode (critical speed) is refined between two speeds of a branch to
+ten digits.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,6 +1,7 @@
-"""Complex modes of the coupled system: damped natural frequencies and mode shapes about a linearised contact.
+"""Complex modes of the coupled system: natural frequencies, damping, mode shapes, energy shares and stability.
 
-Modal energy shares: kinetic energy, strain energy and damping of a mode by component, bearing and gear mesh.
+The modes are those about a linearised contact. Their energy shares are kinetic energy, strain energy and damping by
+component, bearing and gear mesh.
 
 A mode λ = σ + iω with shape q has a quadratic form in each matrix: m = qᴴ q, c = qᴴ C q and k = qᴴ K q. The
 symmetric parts of C and K give their real parts; gyroscopic terms do no work, and the circulatory part of K, that of
@@ -13,7 +14,7 @@ a sum over all parts of the machine: each one's part in the damping ratio -σ/|�
 Shapes of eigenvalues that agree to rounding are any basis of the space that they span, and so would be their shares.
 Each mode of such a group has the group's means over an orthonormal basis: traces, which do not depend on the basis.
 
-Stability of the coupled modes: growing modes, their growth rates, and the parts that feed energy into them.
+A mode with σ > 0 is unstable: it grows at the rate σ, and the parts whose share of σ is positive feed energy into it.
 """
 
 from dataclasses import dataclass
