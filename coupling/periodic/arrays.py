@@ -1,13 +1,10 @@
-"""Plain arrays for the kernels of exponential collocation, by name.
+"""Plain arrays for the kernels of exponential collocation: Gauss points, quadrature weights, elements, scratch.
 
 Amplitudes are kept as 2 m real numbers, the real parts and then the imaginary ones. c contacts, s Gauss points in an
 element, h harmonics, k sizes of elements.
 
-Gauss collocation on one element of time: Gauss points, polynomials and quadrature weights.
-
-Gauss points, here called places, and polynomials are in u, which runs from 0 to 1 over the element.
-
-Scratch arrays of a collocation element.
+An element of time is solved by Gauss collocation. Gauss points, here called places, and polynomials are in u, which
+runs from 0 to 1 over the element.
 """
 
 import math

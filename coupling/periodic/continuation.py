@@ -1,7 +1,8 @@
-"""Continuation of the periodic motion over speed, through folds, by Keller's pseudo-arclength method.
+"""Continuation of the periodic motion over speed, through folds, by Keller's pseudo-arclength method: response curve.
 
-Where contact is lost several motions exist at one speed, and the branch of motions turns back in speed at folds: there
-a machine that is run up or down jumps.
+A response curve is a branch of periodic motions over speed, with its bifurcations. Where contact is lost several
+motions exist at one speed, and the branch of motions turns back in speed at folds: there a machine that is run up or
+down jumps.
 
 Away from folds the speed is given: the polynomial through the last motions predicts the next one, and the monodromy of
 the prediction corrects it; the exact monodromy of the corrected motion decides its stability. The order of the
@@ -18,8 +19,6 @@ difference.
 
 - H. B. Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems", *Applications of Bifurcation
   Theory*, 1977.
-
-Response curve: a branch of periodic motions over speed, with its bifurcations.
 """
 
 from collections.abc import Callable

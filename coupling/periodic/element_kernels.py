@@ -1,8 +1,7 @@
-r"""Matrices of a collocation element, compiled: exponentials and their integrals with the element's polynomials.
+r"""Collocation element of time, compiled: its matrices, contact forces at its Gauss points, defect of their polynomial.
 
-Importing this module imports numba.
-
-Collocation element of time, compiled: contact forces at its Gauss points, and the defect of their polynomial.
+The matrices are exponentials of the modes and their integrals with the element's polynomials, see
+:mod:`coupling.periodic.integration_kernels`.
 
 Importing this module imports numba.
 """

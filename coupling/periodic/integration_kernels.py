@@ -1,6 +1,4 @@
-r"""Exponential collocation from element to element, compiled, with exactly placed switches of contact.
-
-Importing this module imports numba.
+r"""Exponential collocation from element to element, compiled, with exactly placed switches of contact; dense output.
 
 The linear machine with its teeth at their mean stiffness k̄ and damping c̄ has eigenvalues λ, and in its amplitudes z
 the whole machine is
@@ -21,11 +19,8 @@ that moment, found to rounding. Up to there and a little beyond, the motion is s
 whose last place is just before the switch, and the same integral to a part of it, which may be a little more than 1,
 gives the state at the switch.
 
-Dense output of exponential collocation, compiled: the motion between the Gauss points of a trace.
-
-Importing this module imports numba.
-
-Energy balance of exponential collocation, compiled: work, losses and contact figures of a trace.
+Dense output is the motion between the Gauss points of a trace. The energy balance sums work, losses and contact figures
+over a trace.
 
 Importing this module imports numba.
 """

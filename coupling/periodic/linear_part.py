@@ -7,11 +7,10 @@ e and clearances taken to the loads, the reference
 
 has a periodic response in closed form, by a solution at each frequency (its receptance). The teeth's excess over the
 mean acts through its eigenvalues. Motions that nothing resists, such as gears that roll together, take no part in
-either: they swing freely under the harmonic loads, about a mean position of zero.
+either: they oscillate freely under the harmonic loads, about a mean position of zero.
 
-Eigenvector perturbation: eigenvectors of a matrix from those of a neighbouring one.
-
-With right vectors X and left ones Y = X⁻¹ of the neighbour, B = Y A X is all but diagonal, and to the first order
+Over speed, eigenvectors follow from those of the neighbouring matrix by perturbation. With right vectors X and left
+ones Y = X⁻¹ of the neighbour, B = Y A X is all but diagonal, and to the first order
 
     X ← X (1 + E),    Y ← (1 + E)⁻¹ Y,        E_ij = B_ij / (B_jj - B_ii),    i ≠ j,
 

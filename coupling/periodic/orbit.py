@@ -1,6 +1,4 @@
-r"""Period map: integration over one period, segment by segment, with the monodromy of each segment.
-
-Multiple shooting: Newton's correction of a motion in segments, condensed to the state at its start.
+r"""Multiple shooting: period map segment by segment, monodromy of each segment, and Newton correction of all starts.
 
 A period of many mesh periods is integrated segment by segment, each from a state of its own. With the pieces
 A_k = ∂(end of segment k) / ∂(its start) and the closure errors r_k = end of k - start of k + 1, the corrections d_k

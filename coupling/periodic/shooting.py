@@ -12,7 +12,7 @@ once; see :mod:`coupling.periodic.orbit`.
 While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
 motions are found as well as stable ones.
 
-Common period of the excitations of a machine.
+The period is the common period of all excitations of the machine (`common_period`).
 """
 
 import math
