@@ -1,6 +1,4 @@
-"""Excitation orders of a machine: shaft orders, mesh harmonics and sidebands.
-
-Names of spectral lines: mesh harmonic, shaft order, sideband, or free vibration of a mode.
+"""Excitation orders of a machine: shaft orders, mesh harmonics and sidebands; names of spectral lines by them.
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
 low order of a shaft, a sideband, any other whole order. A line at none of these is free vibration, named after its

@@ -1,10 +1,11 @@
-"""Time histories of a transient or a periodic response, by the names of sensors, gears, bearings and gear pairs.
+"""Time histories of a transient or a periodic response, by name of sensor, gear, bearing, gear pair and mode.
 
-Modal coordinates of rotors and housing in a coupled motion.
+`histories` gives the signals of sensors, gears, bearings and gear pairs, `modal_record` the modal coordinates of rotors
+and housing in a coupled motion.
 
-A component's own coordinates are those of the shaft freed of its bearings. The modes of TM-101442, Eqs. 7 to 10, are
-those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free shaft.
-Both span the same motions. With the component's lateral coordinates q, whose shapes are the columns of Φᵀ V,
+A component's own coordinates are those of the shaft freed of its bearings. The modes of NASA TM-101442, Eqs. 7 to 10,
+are those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free
+shaft. Both span the same motions. With the component's lateral coordinates q, whose shapes are the columns of Φᵀ V,
 
     A = V q,    V = `RotorComponent.mixture`, orthogonal,
 
