@@ -5,7 +5,8 @@ contact under its mean force F is replaced by its mean curve δ̄(F), the loaded
 and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the torques alone
 give F; where meshes share a torque, their stiffness and deviations divide it.
 
-Linearised tooth contacts: mesh stiffness and damping about the mean load, or at an instant.
+Linear analyses take the tooth contacts as mesh stiffness and damping about the mean load, or at an instant
+(`ContactState`).
 """
 
 from dataclasses import dataclass, replace

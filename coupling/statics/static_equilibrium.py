@@ -1,6 +1,10 @@
-"""Static equilibrium of the coupled system under its mean loads, by Newton's method.
+"""Static equilibrium of the coupled system under its mean loads, by Newton's method; loaded flanks.
 
-Loaded flanks: drive flanks, or back flanks of a machine that coasts, by the mean mesh force.
+Sought are coordinates q at which the residual F - K q - Σ d f(dᵀ q) is zero, with the tooth contacts at their mesh
+phases and rolling bearings at their cage angles of one time.
+
+The sign of the mean mesh force decides which flanks are loaded: the drive flanks, or the back flanks of a machine that
+coasts.
 """
 
 from collections.abc import Sequence
