@@ -1,9 +1,8 @@
 r"""Rolling-bearing law, compiled: forces and tangent stiffness by the ring's deflections and the cage angle.
 
-The law of a ball at the azimuth ψ is that of :mod:`rotors.rolling_bearings.element_contacts`, the law of a roller's
-slice that of :mod:`rotors.rolling_bearings.element_contacts`. Added is the slope of the energy over ψ, by which the
-rotating cage does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the
-ring's,
+The laws of a ball at the azimuth ψ and of a roller's slice are those of
+:mod:`rotors.rolling_bearings.element_contacts`. Added is the slope of the energy over ψ, by which the rotating cage
+does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 

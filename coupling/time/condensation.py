@@ -10,7 +10,7 @@ which takes K, C, the contacts' directions and the loads to Tᵀ K T and so on (
 MacNeal's residual flexibility without its mass), and keeps the static compliance exact. The error by dampers that act
 on q_r is w C/K of its bearing at a circular frequency w, and the square of that in the retained coordinates.
 
-Low-rank matrices: the common subspace in which several square matrices act.
+The condensed connectors' matrices are of low rank: they are kept on the common subspace in which they act.
 """
 
 from collections.abc import Iterator

@@ -1,10 +1,9 @@
-"""Small dense linear systems, compiled: Gaussian elimination with row exchanges.
+"""Small dense linear algebra, compiled: Gaussian elimination with row exchanges, products with few rows.
+
+Linear systems are as small as the number of contacts. Products with a few rows of a matrix are most of the arithmetic
+of a time step. The functions are inlined, as passing their arrays would cost as much again.
 
 Importing this module imports numba.
-
-Products with a few rows of a matrix, compiled: most of the arithmetic of a time step.
-
-Importing this module imports numba. The functions are inlined, as passing their arrays would cost as much again.
 """
 
 import numpy as np

@@ -16,7 +16,7 @@ size. Carried through the propagator,
 it is the error of the state at the element's end, of the true order 2 s + 1; its largest, relative to the amplitudes'
 root mean square, is kept below the tolerance by the number of elements between events.
 
-Record of exponential collocation: states, samples and energy balance, from the trace of its elements.
+The record (states, samples and energy balance) is read from the trace of the elements.
 """
 
 from dataclasses import replace

@@ -1,12 +1,10 @@
 """Time integration: the driver that carries a coupled system from event to event, whatever method steps it.
 
-Time is cut at every event (a pair of teeth entering or leaving contact), so no step crosses a jump of the mesh
-stiffness. The stretches between events are cut into equal steps by a stepper: Newmark's method
-(:mod:`coupling.time.newmark_stepper`) or exponential collocation (:mod:`coupling.time.exponential_collocation`). The
-driver takes a chunk of stretches at a time, accepts it where the stepper's local error is below the tolerance, and
+Time is cut at every event (a pair of teeth entering or leaving contact, a load or speed changing its slope), so no step
+crosses a jump of the mesh stiffness. The stretches between events are cut into equal steps by a stepper: Newmark's
+method (:mod:`coupling.time.newmark_stepper`) or exponential collocation (:mod:`coupling.time.exponential_collocation`).
+The driver takes a chunk of stretches at a time, accepts it where the stepper's local error is below the tolerance, and
 repeats it with finer steps otherwise.
-
-Event times: bounds between which a time integration steps, so that no step crosses a jump of the stiffness.
 """
 
 import time

@@ -4,7 +4,7 @@ n coordinates, c contacts, r connector directions, h harmonic loads; :mod:`coupl
 a coupled system. Nonlinear laws act along k directions: those of the contacts, then those of b nonlinear bearings, e
 in all, then two for each contact with friction.
 
-Rolling-bearing and gap laws as plain arrays for the compiled kernels.
+Rolling-bearing and gap laws are plain arrays too.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,6 +1,4 @@
-r"""Newmark-β time step in modal coordinates with tooth contacts, compiled.
-
-Importing this module imports numba.
+r"""Newmark's method (Newmark-β): the time step in modal coordinates with tooth contacts, compiled.
 
 One step of size h from (q, v, a), with the mass the identity and the contacts' directions D:
 
@@ -18,15 +16,8 @@ along directions of its own, columns of D whose deflections no law needs. The pr
 recurrence as q. s is the turned time of :class:`coupling.SpeedProfile`, α = s'' the angular acceleration. With β =
 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear system.
 
-Loads at a time, compiled; s is the turned time, s' the speed and α = s'' the angular acceleration.
-
-Importing this module imports numba.
-
-Energy balance of a time step, compiled: powers of loads, losses and rotation, and stored energy.
-
-Importing this module imports numba.
-
-Samples within a step of Newmark's method, compiled: interpolation of the output rows.
+The step evaluates the loads at its end, adds to the energy balance (powers of loads, losses and rotation, and stored
+energy) and interpolates the output rows at the samples within it.
 
 Importing this module imports numba.
 """

@@ -9,9 +9,8 @@ speeds would turn through the same angle, so that all functions of the angle are
 At steady nominal speed s = t. The speed is piecewise linear here, s piecewise quadratic: angles, and the times at
 which the teeth come into contact and leave it, are exact.
 
-Free speed of a machine: run-up of the rigid train under motor and load torque.
-
-The nominal rotation, about which the coordinates move, is that of the rigid train,
+The free speed of a machine is the run-up of the rigid train under motor and load torque. The nominal rotation, about
+which the coordinates move, is that of the rigid train,
 
     J dω/dt = T_motor(ω) - T_load(ω),
 

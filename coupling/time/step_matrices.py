@@ -1,6 +1,6 @@
 """Newmark step matrices: the coupled system as arrays for the kernels, and the matrices of each step size.
 
-Stored energy at the start of a time integration, in plain Python as it is evaluated once.
+`stored_energy` at the start of a time integration is in plain Python, as it is evaluated once.
 """
 
 from typing import NamedTuple

@@ -1,13 +1,11 @@
 """Transient simulation: time integration from static equilibrium, its record and its energy balance.
 
-Digest of the inputs of a computation: equal only where all of them are equal bit for bit.
-
-Time integration in blocks: the samples of each block, with the checkpoint from which the next one continues.
+`simulate` returns the whole record. `integrate_blocks` yields it in blocks: the samples of each block, with the
+checkpoint from which the next one continues. `fingerprint` is the digest of the inputs of a computation, equal only
+where all of them are equal bit for bit. `Motion` holds the simulated motion of a machine as a labelled dataset.
 
 The driver is in :mod:`coupling.time.integration`; its steppers are in :mod:`coupling.time.newmark_stepper` and
 :mod:`coupling.time.exponential_collocation`.
-
-Simulated motion of a machine as a labelled dataset.
 """
 
 import hashlib
