@@ -284,14 +284,18 @@ def system_campbell(
     ModesError
         Where a mode fails its proof.
     """
-    turning = np.asarray(speeds, dtype=np.float64)
-    one_sense = turning.ndim == 1 and turning.size >= 2 and bool(np.all(np.diff(np.abs(turning)) > 0.0))
-    if not (one_sense and np.all(turning * turning[-1] >= 0.0)):
-        raise CouplingError(f"speeds {turning.tolist()} rad/s; expected two or more of one sense, ascending in size")
+    leading_speeds = np.asarray(speeds, dtype=np.float64)
+    one_sense = (
+        leading_speeds.ndim == 1 and leading_speeds.size >= 2 and bool(np.all(np.diff(np.abs(leading_speeds)) > 0.0))
+    )
+    if not (one_sense and np.all(leading_speeds * leading_speeds[-1] >= 0.0)):
+        raise CouplingError(
+            f"speeds {leading_speeds.tolist()} rad/s; expected two or more of one sense, ascending in size"
+        )
     if not frequency_limit > 0.0:
         raise CouplingError(f"a frequency limit of {frequency_limit:g} rad/s; expected it above 0")
     chosen = excitation_lines(machine) if lines is None else tuple(lines)
-    stand_in = np.where(turning == 0.0, _AT_REST * turning[-1], turning)
+    stand_in = np.where(leading_speeds == 0.0, _AT_REST * leading_speeds[-1], leading_speeds)
     limit = _ABOVE * frequency_limit
     state = mean_contact(machine.system) if contact is None else contact
 
@@ -322,8 +326,8 @@ def system_campbell(
             if found is None:
                 unsettled.append(
                     f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
-                    f"{turning[left]:.6g} and {turning[left + 1]:.6g} rad/s, but where does not settle; more speeds "
-                    "about there would tell"
+                    f"{leading_speeds[left]:.6g} and {leading_speeds[left + 1]:.6g} rad/s, "
+                    "but the crossing does not converge; take more speeds about there"
                 )
                 continue
             speed, value = found
@@ -332,7 +336,7 @@ def system_campbell(
                 named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
                 crossings.append(SystemCrossing(speed, line, value, int(branch), *named))
     return SystemCampbell(
-        speeds=turning,
+        speeds=leading_speeds,
         eigenvalues=eigenvalues,
         kinds=kinds,
         where=where,

@@ -172,7 +172,7 @@ def _work(
 COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "pedestal", "residual")
 
 _MESH_SHARE = 0.3  # a mode with a larger share of its strain energy in the teeth is a mesh mode
-_TIED = 1e-6  # shares that differ by less are equal: rounding must not choose between them
+_EQUAL_SHARES = 1e-6  # shares that differ by less are equal: rounding must not choose between them
 _WHIRLS = 0.01  # least share of the kinetic energy in a rotor's bending for which its whirl is given
 
 
@@ -345,7 +345,7 @@ def _kind(share: dict[str, float]) -> str:
     if share["mesh"] > _MESH_SHARE:
         return "mesh"
     most = max(share[kind] for kind in COORDINATE_KINDS)
-    return next(kind for kind in COORDINATE_KINDS if share[kind] >= most - _TIED)
+    return next(kind for kind in COORDINATE_KINDS if share[kind] >= most - _EQUAL_SHARES)
 
 
 def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list[str]:
@@ -366,7 +366,7 @@ def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list
 
 def _largest(values: FloatArray) -> int:
     """Index of the largest share; the first of those that are equal but for rounding."""
-    return int(np.flatnonzero(values >= values.max() - _TIED)[0])
+    return int(np.flatnonzero(values >= values.max() - _EQUAL_SHARES)[0])
 
 
 _NEUTRAL = 1e-9  # damping ratios below this are rounding

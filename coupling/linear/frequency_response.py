@@ -359,11 +359,11 @@ def _named(
         loads[connector.name][:, list(connector.axes or range(deflection.shape[1]))] = (
             deflection @ connector.stiffness.T + (rate[:, None] * deflection) @ connector.damping.T
         )
-    pressed = {}
+    mesh_forces = {}
     for number, tooth in enumerate(system.contacts):
         if state.stiffness[number] != 0.0 or state.damping[number] != 0.0:
             compression = moved @ tooth.direction - (1.0 if number == erring else 0.0)
-            pressed[tooth.name] = (state.stiffness[number] + rate * state.damping[number]) * compression
+            mesh_forces[tooth.name] = (state.stiffness[number] + rate * state.damping[number]) * compression
     return FrequencyResponse(
         excitation=excitation,
         unit=unit,
@@ -371,7 +371,7 @@ def _named(
         coordinates=moved,
         sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in machine.sensor_rows.items()},
         bearing_load=loads,
-        mesh_force=pressed,
+        mesh_force=mesh_forces,
     )
 
 

@@ -59,7 +59,7 @@ from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
-# Part of the normal module: the clearance between tip and root. Teeth pressed in by more would touch there, and no
+# Part of the normal module: the clearance between tip and root. Teeth compressed by more would touch there, and no
 # steel bends so far.
 _GREATEST_COMPRESSION = 0.25
 

@@ -360,7 +360,7 @@ class ContactConnector:
     def event_times(self, start: float, end: float) -> FloatArray:
         """Return times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
 
-        The force may jump at the former; at the latter its rate and the power of the turning teeth do. With friction
+        The force may jump at the former; at the latter its rate and the power of the rotating teeth do. With friction
         also those at which a pair passes the pitch point.
         """
         turns = () if self.sliding is None else self.sliding.friction.event_phases

@@ -101,7 +101,7 @@ def friction_of(
         friction.path_end,
     )
     pushed = friction.coefficient * force
-    # A pair slides one way before the pitch point and the other way behind it, so the sense of turning cancels here.
+    # A pair slides one way before the pitch point and the other way behind it, so the sense of rotation cancels here.
     power = np.sign(nominal[1]) * pushed * (shares @ nominal) * rates
     return np.column_stack([pushed * shares[:, 0], power])
 

@@ -125,7 +125,7 @@ class Trace(NamedTuple):
     compression: FloatArray  # (e, s, c)
     force: FloatArray  # (e, s, c)
     loss: FloatArray  # (e, s, c) power that the contacts' damping takes [W]
-    turning: FloatArray  # (e, s, c) change of the teeth's energy with the phase [J per mesh period]
+    phase_slope: FloatArray  # (e, s, c) change of the teeth's energy with the phase [J per mesh period]
     energy: FloatArray  # (e, 2) held in the teeth just after the start and just before the end [J]
     apart: FloatArray  # (e, c) 1 where the flanks are apart
     error: FloatArray  # (e, 2) square of the error of the modes' amplitudes at the end; square of the amplitudes
@@ -144,7 +144,7 @@ def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
         compression=np.empty(places),
         force=np.empty(places),
         loss=np.empty(places),
-        turning=np.empty(places),
+        phase_slope=np.empty(places),
         energy=np.empty((room, 2)),
         apart=np.empty((room, c)),
         error=np.empty((room, 2)),

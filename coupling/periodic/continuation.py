@@ -205,7 +205,7 @@ class _Follower:
         self.seen = seen
         self.recent = [first]  # since the speed last turned
         self.sense, self.stride, self.order = 1.0, 0.3 * self.largest, 1
-        self.failures, self.turning, self.ds = 0, False, 0.0
+        self.failures, self.by_arclength, self.ds = 0, False, 0.0
         self._keep(first)
 
     def position(self, speed: float) -> float:
@@ -225,10 +225,10 @@ class _Follower:
                 return "points"
             if self.tries >= self.most_tries:
                 return "tries"
-            if self.turning and self.ds < _SHORTEST * self.largest:
+            if self.by_arclength and self.ds < _SHORTEST * self.largest:
                 return "lost"
             self.tries += 1
-            there = self._along() if self.turning else self._held()
+            there = self._along() if self.by_arclength else self._held()
             if there is None:
                 continue
             position = self.position(there.speed)
@@ -266,7 +266,7 @@ class _Follower:
             except (PeriodicError, np.linalg.LinAlgError):
                 # No motion beside it, or a fold: only shorter steps are left.
                 pace = 1.0
-            self.turning, self.failures = True, 0
+            self.by_arclength, self.failures = True, 0
             self.ds = min(self.stride / max(pace, 1e-9), _FARTHEST * self._motion(here))
 
     def _along(self) -> Point | None:
@@ -293,7 +293,7 @@ class _Follower:
             self.ds *= 1.5
         self.ds = min(self.ds, _FARTHEST * self._motion(there))
         if not turned and gone > max(self.stride, _SMALL * self.largest) and len(self.recent) > 2:
-            self.turning, self.order = False, 1
+            self.by_arclength, self.order = False, 1
             self.stride = min(gone, self.largest)
         return there
 

@@ -113,7 +113,7 @@ def write_element(
             trace.force[count, i, a] = work.laws[row, FORCE]
             trace.compression[count, i, a] = work.delta[i + 1, a]
             trace.loss[count, i, a] = work.laws[row, DAMPING] * v * v
-            trace.turning[count, i, a] = work.laws[row, PHASE_SLOPE]
+            trace.phase_slope[count, i, a] = work.laws[row, PHASE_SLOPE]
     trace.energy[count, 0] = held_energy(work.laws, n, c)
     u = part - INSIDE
     for a in range(c):
@@ -392,7 +392,7 @@ def add_contacts(
             touching = False
             for i in range(ORDER):
                 force = trace.force[element, i, a]
-                power = contacts.rate[a] * trace.turning[element, i, a]
+                power = contacts.rate[a] * trace.phase_slope[element, i, a]
                 for m in range(contacts.errors.shape[1]):
                     w = contacts.errors[a, m, 1]
                     angle = w * (trace.start[element] + h * PLACES[i]) + contacts.errors[a, m, 2]

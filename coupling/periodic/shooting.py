@@ -96,7 +96,7 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
             raise CouplingError(
                 f"{what} at {frequency:.9g} Hz and {first} at {frequencies[first]:.9g} Hz have no common period: their "
                 f"ratio {exact:.12g} is no fraction of whole numbers up to {_LARGEST_NUMBER}; the motion does not "
-                "repeat, leave one of them out or march through time"
+                "repeat, leave one of them out or integrate in time"
             )
         ratios.append(ratio)
     # Cycles of the first in which all make whole ones.
@@ -189,8 +189,8 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     if not system.is_smooth:
         what = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
         raise PeriodicError(
-            f"the periodic response does not know {what}; expected a system without: leave that out, or march it "
-            "through time until it settles"
+            f"the periodic response does not know {what}; expected a system without: leave that out, or "
+            "integrate in time until the motion is steady"
         )
     length = common_period(system, period)
     followed = _followed(system)

@@ -237,7 +237,7 @@ def superposed_response(
         if contact.drives and (mean is None or mean.force <= 0.0):
             raise PeriodicError(
                 f"mesh {contact.name!r} carries no mean force, so its flanks part and it is not linear about a mean; "
-                "expected a torque through every mesh, or march it through time until it settles"
+                "expected a torque through every mesh, or a time integration until the motion is steady"
             )
         means.append(MeanMesh(0.0, 0.0, 0.0, 0.0) if mean is None or not contact.drives else mean)
     linear = tuple(_linear_mesh(contact, mean) for contact, mean in zip(system.contacts, means, strict=True))
@@ -321,12 +321,12 @@ def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
             for rate in rates
         ):
             continue
-        turning = [
+        rotating = [
             component.name
             for component, speed in zip(system.components, system.speeds, strict=True)
             if speed != 0.0 and abs(abs(speed) - frequency) <= 1e-6 * frequency
         ]
         names.append(
-            f"rotation of {' and '.join(turning)}" if turning else f"load at {frequency / (2.0 * np.pi):.6g} Hz"
+            f"rotation of {' and '.join(rotating)}" if rotating else f"load at {frequency / (2.0 * np.pi):.6g} Hz"
         )
     return ", ".join(names)

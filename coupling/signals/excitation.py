@@ -139,7 +139,7 @@ def line_names(
     """
     if not tolerance > 0.0:
         raise CouplingError(f"names of lines within {tolerance} Hz; expected more than 0")
-    turning = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
+    shaft_frequency = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
     highest = max(frequencies, default=0.0)
     meshes = [abs(contact.rate) for contact in machine.system.contacts if contact.drives and contact.rate]
     excited = excitation_lines(
@@ -150,7 +150,7 @@ def line_names(
     )
     found = []
     for frequency in frequencies:
-        order = frequency / turning
+        order = frequency / shaft_frequency
         mode = _near(modes, frequency, tolerance)
         if frequency <= 0.5 * tolerance:
             found.append(LineName("mean", "mean", order, None))
@@ -159,7 +159,7 @@ def line_names(
             kind: [
                 line.name
                 for line in excited
-                if line.kind == kind and abs(line.order * turning - frequency) <= tolerance
+                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= tolerance
             ]
             for kind in ("mesh", "shaft", "sideband")
         }

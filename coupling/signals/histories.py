@@ -239,14 +239,14 @@ def empty_record(machine: CoupledMachine, outputs: TransientOutputs) -> MotionRe
     return MotionRecord(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
-def histories(machine: CoupledMachine, result: MotionRecord, turning: SpeedProfile | None = None) -> Histories:
+def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfile | None = None) -> Histories:
     """Time histories by name of a transient or a periodic response with :func:`transient_outputs`.
 
-    ``turning`` is the speed over time, by default the nominal one.
+    ``profile`` is the speed over time, by default the nominal one.
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
-    turned, rates, _ = (turning or SpeedProfile.steady()).at(result.times)
+    turned, rates, _ = (profile or SpeedProfile.steady()).at(result.times)
     nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0

@@ -66,10 +66,10 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     q: FloatArray = np.asarray(
         np.linalg.solve(system.mean_stiffness + penalty, system.load + closing), dtype=np.float64
     )
-    pressing = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
+    loading = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
     residual, tangent = _out_of_balance(system, penalty, q, time)
     for _ in range(_STEPS):
-        if np.linalg.norm(residual) <= 1e-10 * pressing:
+        if np.linalg.norm(residual) <= 1e-10 * loading:
             return q
         step = np.linalg.lstsq(tangent, residual, rcond=1e-15)[0]
         for halving in range(_HALVINGS if system.nonlinear else 1):
@@ -77,14 +77,14 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
             if np.linalg.norm(trial) < np.linalg.norm(residual):
                 break
         q, residual, tangent = q + 0.5**halving * step, trial, slope
-    _require_pressed(system, penalty)
+    _require_closed_flanks(system, penalty)
     raise TransientError(
         f"no static equilibrium of teeth and bearings after {_STEPS} Newton steps; the torque may be too small to "
         "close the mesh, or the play of a bearing leave its shaft loose"
     )
 
 
-def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
+def _require_closed_flanks(system: CoupledSystem, penalty: FloatArray) -> None:
     """Raise `CouplingError` where the mean torque opens flanks without back flanks."""
     q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
     for contact in system.contacts:

@@ -156,13 +156,13 @@ def bearing_force(
         kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
         angle = bearings.cage[row, 0] + bearings.cage[row, 1] * turned
         if kind == BALLS:
-            added, turning = _balls(shape, count, angle, q, force, tangent)
+            added, by_angle = _balls(shape, count, angle, q, force, tangent)
         elif kind == ROLLERS:
-            added, turning = _rollers(shape, bearings.slices[row], count, angle, q, force, tangent)
+            added, by_angle = _rollers(shape, bearings.slices[row], count, angle, q, force, tangent)
         else:
-            added, turning = _gap(shape, q, force, tangent), 0.0
+            added, by_angle = _gap(shape, q, force, tangent), 0.0
         energy += added
-        slope += turning * bearings.cage[row, 1]
+        slope += by_angle * bearings.cage[row, 1]
     preload = bearings.preload[number]
     force[2] -= preload
     return energy - preload * q[2], slope

@@ -148,7 +148,7 @@ _CUTS = 400  # room for switches in a chunk, besides four for each element
 
 
 def integration_method(
-    system: CoupledSystem, settings: TransientSettings, turning: SpeedProfile
+    system: CoupledSystem, settings: TransientSettings, profile: SpeedProfile
 ) -> Literal["newmark", "exact"]:
     """Choose the method of time integration: the given one, or by ``auto`` the exact one wherever it applies.
 
@@ -157,10 +157,10 @@ def integration_method(
     TransientError
         Where the exact method is given and does not apply, with the reason.
     """
-    return "newmark" if exact_part(condensed(system).system, settings, turning) is None else "exact"
+    return "newmark" if exact_part(condensed(system).system, settings, profile) is None else "exact"
 
 
-def exact_part(system: CoupledSystem, settings: TransientSettings, turning: SpeedProfile) -> LinearPart | None:
+def exact_part(system: CoupledSystem, settings: TransientSettings, profile: SpeedProfile) -> LinearPart | None:
     """Linear part of the exact method; None for Newmark's method.
 
     Raises
@@ -171,7 +171,7 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Spee
     if settings.method == "newmark":
         return None
     reason = ""
-    if not turning.is_steady:
+    if not profile.is_steady:
         reason = "the speed varies, and with it the machine"
     elif system.timed_loads:
         reason = "a load is a table over time"
@@ -183,7 +183,7 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Spee
         except PeriodicError as error:
             reason = str(error)
     if settings.method == "exact":
-        raise TransientError(f"the exact march does not apply: {reason}; march by Newmark's method")
+        raise TransientError(f"exponential collocation does not apply: {reason}; use Newmark's method")
     return None
 
 
@@ -202,12 +202,12 @@ class CollocationStepper:
     too_fine = "elements below {step:.1e} s; raise the tolerance"
 
     def __init__(
-        self, part: LinearPart, settings: TransientSettings, outputs: TransientOutputs, turning: SpeedProfile
+        self, part: LinearPart, settings: TransientSettings, outputs: TransientOutputs, profile: SpeedProfile
     ) -> None:
         self.system, self._part, self._settings = part.system, part, settings
         self.arrays = kernel_arrays(part.system, outputs, settings.beta, settings.gamma)
         self.coarsen_below = _MUCH_BETTER * settings.tolerance
-        self._coarsest = ORDER * coarsest_step(part.system, turning, settings.largest_step)
+        self._coarsest = ORDER * coarsest_step(part.system, profile, settings.largest_step)
         self._record = CollocationRecord(part, outputs, self.arrays.contacts)
         self._steps = element_sizes(part, np.zeros(_SIZES), self._coarsest, inner=True)
         self._shape = part.reference.eigenvalue.size, ORDER, len(part.system.contacts)
@@ -238,7 +238,7 @@ class CollocationStepper:
         return min(max(1, min(self._most_stretches, int(np.searchsorted(elements, _ELEMENTS)))), len(bounds) - 1)
 
     def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
-        """March through the stretches between ``bounds``, each cut into equal elements."""
+        """Integrate over the stretches between ``bounds``, each cut into equal elements."""
         pieces = _pieces(bounds, step)
         self._chunk, self._end = self._elements(bounds, pieces)
         q, v = self._record.motion(self._end, self._free, float(bounds[-1]))

@@ -133,12 +133,12 @@ def evaluate_powers(
         for i in range(tv.size):
             for j in range(tv.size):
                 lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
-    turning = scratch.held[0, 1] * speed
+    rotating = scratch.held[0, 1] * speed
     for k in range(laws.shape[0]):
-        turning += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * scratch.slip[k]
+        rotating += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * scratch.slip[k]
         lost += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
     powers = scratch.powers
-    powers[0], powers[1], powers[2], powers[3], powers[4] = given, lost, turning, 0.0, square
+    powers[0], powers[1], powers[2], powers[3], powers[4] = given, lost, rotating, 0.0, square
     if scratch.push.size > scratch.delta.size:
         _add_friction(contacts, speed, scratch)
 

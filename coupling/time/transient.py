@@ -151,14 +151,14 @@ def integration_key(
     """
     run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
     start = run.start(initial).as_arrays()
-    return fingerprint(settings, run.turning, run.arrays, run.base, run.ends, run.reach, run.bounds(0), start)
+    return fingerprint(settings, run.profile, run.arrays, run.base, run.ends, run.reach, run.bounds(0), start)
 
 
 def _prepared(
     system: CoupledSystem,
     settings: TransientSettings,
     outputs: TransientOutputs,
-    turning: SpeedProfile | None,
+    profile: SpeedProfile | None,
     initial: tuple[FloatArray, FloatArray] | None,
     samples_per_block: int,
 ) -> tuple[Integration, tuple[FloatArray, FloatArray] | None]:
@@ -170,14 +170,14 @@ def _prepared(
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
         outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
         initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    turning = turning or SpeedProfile.steady()
-    part = exact_part(system, settings, turning)
+    profile = profile or SpeedProfile.steady()
+    part = exact_part(system, settings, profile)
     stepper = (
-        NewmarkStepper(system, settings, outputs, turning)
+        NewmarkStepper(system, settings, outputs, profile)
         if part is None
-        else CollocationStepper(part, settings, outputs, turning)
+        else CollocationStepper(part, settings, outputs, profile)
     )
-    return Integration(stepper, settings, turning, samples_per_block), initial
+    return Integration(stepper, settings, profile, samples_per_block), initial
 
 
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
@@ -279,7 +279,7 @@ def simulate(
     system : CoupledSystem
     settings : TransientSettings
     outputs : TransientOutputs
-    turning : Turning, optional
+    turning : SpeedProfile, optional
         Speed over time; by default the nominal one.
     initial : tuple of ndarray, optional
         Coordinates and rates at t = 0, shape (n,) each; by default static equilibrium at rest.
@@ -293,10 +293,10 @@ def simulate(
 
     See Also
     --------
-    march_blocks : The same in blocks, for runs that are long or must be able to continue.
+    coupling.time.transient.integrate_blocks : The same in blocks, for runs that are long or continued later.
     """
-    marched = integrate_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
-    blocks = list(marched)
+    integrated = integrate_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
+    blocks = list(integrated)
     figures = transient_figures(settings, blocks[-1].after)
     record: dict[str, Any] = {name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED}
     return TransientResult(**vars(figures), **record)

@@ -248,7 +248,7 @@ def face_loads(
             return _loads(slices, gap, touching, compression[:, None], fixed, rising)
         touching[unsettled] = touches
         fixed[unsettled], rising[unsettled] = _fields(slices, base[unsettled], gap[unsettled], touches)
-    raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+    raise ContactAccuracyError("the iteration for the touching slices of the face does not converge; take fewer slices")
 
 
 def face_equilibrium(
@@ -314,7 +314,9 @@ def face_equilibrium(
         moved[owner[changed]] = True
         unsettled = np.nonzero(moved[owner])[0]
     else:
-        raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+        raise ContactAccuracyError(
+            "the iteration for the touching slices of the face does not converge; take fewer slices"
+        )
     loads = _loads(slices, gap, touching, touched[owner, None], fixed, rising)
     carried = np.bincount(owner, loads.force, meshes)
     rounding = 1e-9 * (force + stiffness * np.abs(touched)) + 1e-300
