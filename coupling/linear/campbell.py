@@ -215,7 +215,7 @@ class SystemCampbell:
     eigenvalues : ndarray of complex, shape (s, b)
         λ [1/s].
     kinds, where : ndarray of str, shape (s, b)
-        As in :class:`coupling.CoupledModes`.
+        As in :class:`coupling.linear.complex_modes.CoupledModes`.
     whirl : ndarray, shape (s, b)
         Sense of the bending of the rotor that whirls most, about +z.
     teeth : ndarray, shape (s, b)
@@ -271,9 +271,9 @@ def system_campbell(
     frequency_limit : float
         Branches below it at some speed are followed [rad/s].
     lines : sequence of ExcitationLine, optional
-        Those of :func:`coupling.excitation_lines` where not given.
+        Those of :func:`coupling.signals.excitation.excitation_lines` where not given.
     contact : ContactState, optional
-        At every speed; that of :func:`coupling.mean_contact` under the machine's load where not given.
+        At every speed; :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load where not given.
     progress : callable
         Told the part done.
 

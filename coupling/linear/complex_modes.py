@@ -268,7 +268,8 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
     ----------
     system : CoupledSystem
     contact : ContactState, optional
-        :func:`coupling.mean_contact`, where it is not given, or :func:`coupling.contact_at` an instant.
+        :func:`coupling.statics.mean_mesh.mean_contact`, where it is not given, or
+        :func:`coupling.statics.mean_mesh.contact_at` an instant.
 
     Raises
     ------
@@ -384,7 +385,7 @@ class GrowingMode:
     eigenvalue : complex
         λ [1/s]; real for a divergence without oscillation.
     kind, where : str
-        As in :class:`coupling.CoupledModes`.
+        As in :class:`coupling.linear.complex_modes.CoupledModes`.
     feeders : tuple of (Part, float)
         Parts that feed energy into it, the strongest first, with their negative parts of the damping ratio. For a
         divergence by negative stiffness, those parts with minus their shares of the strain energy.

@@ -1,7 +1,7 @@
 """Assembly of the coupled system by component mode synthesis: components, bearings (5x5 stiffness), gear pairs, loads.
 
 Each component enters in its own modal coordinates (:mod:`coupling.machine.components`: projection onto free modes, and
-residual attachment modes in place of the constraint modes of Craig and Bampton). Connectors join them: the 5x5
+residual attachment modes in place of the constraint modes of the Craig-Bampton method). Connectors join them: the 5x5
 stiffness and damping matrices of bearings over x, y, z and the rotations about x and y, tooth contacts along the lines
 of action, dashpots of couplings (:mod:`coupling.machine.connectors`). The equation of motion is stated in
 :class:`coupling.machine.coupled_system.CoupledSystem`; loaded flanks and mean mesh stiffness come from
@@ -466,7 +466,8 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
 
     With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
     whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
-    e_err = -e (ε_k - ε_i): the same first-order runout as :func:`coupling.gears.runout_error`.
+    e_err = -e (ε_k - ε_i): the same first-order runout as
+    :func:`coupling.gears.geometry.pitch_deviations.runout_error`.
 
     A helical driver of hand h (+1 for a right-hand helix) that moves along z leaves the contact as if it had turned
     back by z tan β_b / R_k, so δ gains -s h tan β_b (w_k - w_i), w the axial motions where the teeth touch: at the

@@ -1,8 +1,8 @@
 """Components for component mode synthesis: each part of the machine projected onto its modes, mass-normalised.
 
 Component mode synthesis here takes the free modes of a part and, for the static response of the truncated ones,
-residual attachment modes (MacNeal 1971, Rubin 1975), in place of the fixed-interface and constraint modes of Craig and
-Bampton. A component's own equation of motion, with no connector attached, is
+residual attachment modes (MacNeal 1971, Rubin 1975), in place of the fixed-interface and constraint modes of the
+Craig-Bampton method. A component's own equation of motion, with no connector attached, is
 
     q'' + (C + Ω G) q' + K q = f,
 

@@ -7,8 +7,8 @@ of the pair says, and their faces overlap along the shafts. A train at constant 
 Gear pairs that share gears have related mesh phases. Each gear is fitted to its shaft so that the first pair it belongs
 to begins a mesh period at t = 0. The phase of every further pair of the same gear follows from the gear's teeth: as
 gears roll without slip, tooth 0 of driver and driven gear lie at angles that are linear in the pair's phase
-(`coupling.gears.meshing_rotations`), and an angle that is known already gives the phase. Gears that close a loop must
-fit: where teeth would clash, they cannot be assembled.
+(`coupling.gears.geometry.profile.meshing_rotations`), and an angle that is already known gives the phase. Gears that
+close a loop must fit: where teeth would clash, they cannot be assembled.
 """
 
 import math

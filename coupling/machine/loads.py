@@ -36,7 +36,7 @@ class Unbalance:
 
 @dataclass(frozen=True)
 class BowReactions:
-    """Shaft bow as forces on the straight shaft that rotate with it, see :func:`rotors.bow_shape`.
+    """Shaft bow as forces on the straight shaft that rotate with it, see :func:`rotors.analyses.unbalance.bow_shape`.
 
     Attributes
     ----------

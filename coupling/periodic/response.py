@@ -253,9 +253,9 @@ def _near_peaks(trace: Trace) -> npt.NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False)
 class BranchMotion:
-    """Summary of a :class:`coupling.PeriodicResponse`; n coordinates, c contacts, K segments.
+    """Summary of a :class:`coupling.periodic.PeriodicResponse`; n coordinates, c contacts, K segments.
 
-    The whole motion takes a hundred times the memory; :meth:`coupling.ResponseCurve.motion` computes it again.
+    The whole motion takes a hundred times the memory; :meth:`coupling.periodic.ResponseCurve.motion` computes it again.
 
     Attributes
     ----------
