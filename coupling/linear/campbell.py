@@ -275,7 +275,7 @@ def system_campbell(
     contact : ContactState, optional
         At every speed; :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load where not given.
     progress : callable
-        Told the part done.
+        Called with the finished part, from 0 to 1.
 
     Raises
     ------

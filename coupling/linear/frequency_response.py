@@ -2,7 +2,7 @@
 
 A transmission error e = e^{iwt} at one mesh compresses its contact by δ = dᵀq - e. It drives the coordinates with the
 load (k + iwc) d e, and every contact carries F = (k + iwc)(dᵀq - e), the error being its own alone: the dynamic mesh
-force by unit error, d.c. limit k of the mesh in series with all that gives way behind it.
+force by unit error, d.c. limit k of the mesh in series with the dynamic compliance of the machine behind it.
 
 The receptance H of the coupled system about a contact state is found by direct solution or by mode superposition: q =
 H(s) f, H(s) = (s² I + s C + K)⁻¹ and s = iw. Superposition uses the expansion of :mod:`coupling.linear.eigenpairs`,
