@@ -1,19 +1,29 @@
-"""Coupled machine: housing modes, rotor modes and gears in one modal system, and its motion.
+"""Coupled machine by component mode synthesis: housing, rotors and gears in one modal system, and its motion.
 
-- :class:`Machine` lists :class:`Shaft`, :class:`ShaftGear`, gear pairs, :class:`MountedBearing` and a housing; it
-  derives speeds, torques, axes and mesh phases and refuses a machine that cannot exist.
+- :class:`Machine` lists :class:`Shaft`, :class:`ShaftGear`, ``coupling.gears.GearPair``, :class:`MountedBearing` and a
+  housing; it derives speeds, torques, axes and mesh phases and refuses a machine that cannot exist.
 - :func:`assemble_machine` makes the :class:`CoupledMachine` and its :class:`CoupledSystem`: components in
-  mass-normalised coordinates, tied by connectors.
-- :func:`static_equilibrium` finds the position of rest under the mean load.
+  mass-normalised modal coordinates, joined by connectors.
+- :func:`static_equilibrium` finds the static equilibrium under the mean load.
 - :func:`coupled_modes` finds the complex natural modes, :func:`stability` which of them grow,
   :func:`system_campbell` their course over speed, and :func:`receptance` the frequency response.
 - :func:`simulate` integrates a transient by Newmark's method or by exact exponential steps.
 - :func:`periodic_response` finds the steady state by shooting, :func:`response_curve` its branch over speed.
 - :func:`amplitude_spectrum` evaluates signals.
 
-Sub-packages: ``coupling.machine`` (description, assembly), ``coupling.gears`` (geometry, stiffness, contact),
-``coupling.statics``, ``coupling.linear``, ``coupling.time``, ``coupling.periodic``, ``coupling.signals``. numba is
-imported when a motion or an equilibrium is computed, not before.
+Sub-packages:
+
+- ``coupling.machine``: description, assembly, components (projection onto modes), connectors (5x5 bearing stiffness),
+  loads.
+- ``coupling.gears``: geometry, choice of the tooth model, tooth stiffness, tooth contact force, loaded transmission
+  error.
+- ``coupling.statics``: static equilibrium, mean mesh stiffness.
+- ``coupling.linear``: complex modes, stability, Campbell diagram, frequency response.
+- ``coupling.time``: Newmark's method, exponential collocation, speed profiles, energy balance.
+- ``coupling.periodic``: shooting, Floquet multipliers, continuation over speed.
+- ``coupling.signals``: time histories, spectra, order tracking, sidebands, transfer paths.
+
+numba is imported when a motion or an equilibrium is computed, not before.
 """
 
 from coupling.errors import CouplingError as CouplingError

@@ -12,9 +12,9 @@ Each step is usable alone:
 1.7898
 
 Sub-packages: ``coupling.gears.geometry``, ``coupling.gears.stiffness`` (tooth models, ISO 6336),
-``coupling.gears.contact`` (contact law, face slices, kernels), ``coupling.gears.loaded`` (mesh under load). Positions
-along the path of contact are in base pitches, phases in mesh periods, everything else in SI. Only the kernels import
-numba.
+``coupling.gears.contact`` (tooth contact force, face slices, kernels), ``coupling.gears.loaded`` (mesh under load).
+:func:`stiffness_model` chooses a tooth model of :data:`STIFFNESS_MODELS` by name. Positions along the path of contact
+are in base pitches, phases in mesh periods, everything else in SI. Only the kernels import numba.
 """
 
 from coupling.gears.contact.contact_law import ToothContact as ToothContact

@@ -1,10 +1,9 @@
-"""Piecewise cubics: smooth functions in plain arrays that a compiled kernel can hold.
+"""Interpolation by piecewise cubics, in plain arrays that a compiled kernel can hold, and at Chebyshev points.
 
-On each interval ``f = c0 + c1 u + c2 u^2 + c3 u^3`` with ``u`` running from 0 to 1.
+A piecewise cubic is on each interval ``f = c0 + c1 u + c2 u^2 + c3 u^3`` with ``u`` running from 0 to 1.
 
-Chebyshev interpolation: a smooth function from its values at few points, where each value is expensive.
-
-The interpolant through n + 1 Chebyshev points converges geometrically with n to an analytic function (Trefethen,
+Chebyshev interpolation gives a smooth function from its values at few points, where each value is expensive. The
+interpolant through n + 1 Chebyshev points converges geometrically with n to an analytic function (Trefethen,
 Approximation Theory and Approximation Practice, 2013). Its coefficients are the discrete cosine transform of the
 values.
 """

@@ -1,6 +1,6 @@
-"""The Campbell diagram of the whole machine: coupled modes over speed, and where the excitations meet them.
+"""Campbell diagram of the whole machine: coupled modes followed over speed, and their crossings with excitations.
 
-Coupled modes followed from speed to speed, through places where they cross and where they veer.
+Modes are followed from speed to speed, through places where they cross and where they veer.
 
 Two modes of neighbouring speeds are held for one where both of their left and right vectors say so. With the
 normalisation pᴴ (2 λ I + C) q = 1 the modes of one speed have pᵢᴴ ((λᵢ + λⱼ) I + C) qⱼ = δᵢⱼ, so that
@@ -11,7 +11,8 @@ of a mode (λ, q, p) of C and one (μ, r, s) of D is 1 for one and the same and 
 assurance criterion of damped, gyroscopic modes. Where it decides nothing, speeds are put between: near enough to each
 other, modes that veer change their shapes little by little, and those that cross keep them.
 
-Crossing of an excitation order with a coupled mode, refined between two speeds of a branch to ten digits.
+The crossing of an excitation order with a coupled mode (critical speed) is refined between two speeds of a branch to
+ten digits.
 """
 
 from collections.abc import Callable, Sequence
@@ -69,7 +70,7 @@ def likeness(one: ModesAtSpeed, other: ModesAtSpeed) -> FloatArray:
 
 
 def _products(one: ModesAtSpeed, other: ModesAtSpeed) -> ComplexArray:
-    """The likeness with its phase: over modes of one eigenvalue it may be added up, whatever vectors they have."""
+    """Correlate modes by biorthogonality, with the phase: over modes of one eigenvalue the products add up."""
     sums = one.values[:, None] + other.values[None, :]
     there = sums * (one.left.conj() @ other.right.T) + one.left.conj() @ one.damping @ other.right.T
     back = sums * (one.right @ other.left.conj().T) + one.right @ other.damping.T @ other.left.conj().T
@@ -214,7 +215,7 @@ class SystemCampbell:
     eigenvalues : ndarray of complex, shape (s, b)
         λ [1/s].
     kinds, where : ndarray of str, shape (s, b)
-        As in :class:`coupling.CoupledModes`.
+        As in :class:`coupling.linear.complex_modes.CoupledModes`.
     whirl : ndarray, shape (s, b)
         Sense of the bending of the rotor that whirls most, about +z.
     teeth : ndarray, shape (s, b)
@@ -270,11 +271,11 @@ def system_campbell(
     frequency_limit : float
         Branches below it at some speed are followed [rad/s].
     lines : sequence of ExcitationLine, optional
-        Those of :func:`coupling.excitation_lines` where not given.
+        Those of :func:`coupling.signals.excitation.excitation_lines` where not given.
     contact : ContactState, optional
-        At every speed; that of :func:`coupling.mean_contact` under the machine's load where not given.
+        At every speed; :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load where not given.
     progress : callable
-        Told the part done.
+        Called with the finished part, from 0 to 1.
 
     Raises
     ------
@@ -283,14 +284,18 @@ def system_campbell(
     ModesError
         Where a mode fails its proof.
     """
-    turning = np.asarray(speeds, dtype=np.float64)
-    one_sense = turning.ndim == 1 and turning.size >= 2 and bool(np.all(np.diff(np.abs(turning)) > 0.0))
-    if not (one_sense and np.all(turning * turning[-1] >= 0.0)):
-        raise CouplingError(f"speeds {turning.tolist()} rad/s; expected two or more of one sense, ascending in size")
+    leading_speeds = np.asarray(speeds, dtype=np.float64)
+    one_sense = (
+        leading_speeds.ndim == 1 and leading_speeds.size >= 2 and bool(np.all(np.diff(np.abs(leading_speeds)) > 0.0))
+    )
+    if not (one_sense and np.all(leading_speeds * leading_speeds[-1] >= 0.0)):
+        raise CouplingError(
+            f"speeds {leading_speeds.tolist()} rad/s; expected two or more of one sense, ascending in size"
+        )
     if not frequency_limit > 0.0:
         raise CouplingError(f"a frequency limit of {frequency_limit:g} rad/s; expected it above 0")
     chosen = excitation_lines(machine) if lines is None else tuple(lines)
-    stand_in = np.where(turning == 0.0, _AT_REST * turning[-1], turning)
+    stand_in = np.where(leading_speeds == 0.0, _AT_REST * leading_speeds[-1], leading_speeds)
     limit = _ABOVE * frequency_limit
     state = mean_contact(machine.system) if contact is None else contact
 
@@ -321,8 +326,8 @@ def system_campbell(
             if found is None:
                 unsettled.append(
                     f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
-                    f"{turning[left]:.6g} and {turning[left + 1]:.6g} rad/s, but where does not settle; more speeds "
-                    "about there would tell"
+                    f"{leading_speeds[left]:.6g} and {leading_speeds[left + 1]:.6g} rad/s, "
+                    "but the crossing does not converge; take more speeds about there"
                 )
                 continue
             speed, value = found
@@ -331,7 +336,7 @@ def system_campbell(
                 named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
                 crossings.append(SystemCrossing(speed, line, value, int(branch), *named))
     return SystemCampbell(
-        speeds=turning,
+        speeds=leading_speeds,
         eigenvalues=eigenvalues,
         kinds=kinds,
         where=where,
@@ -356,7 +361,7 @@ class _Described:
 
 
 def _described(machine: CoupledMachine, speed: float, limit: float, contact: ContactState) -> _Described:
-    """The oscillating modes below a limit at a speed."""
+    """Return the oscillating modes below a limit at a speed."""
     system = machine.at_speed(speed).system
     modes = coupled_modes(system, contact)
     damping = linear_matrices(system, contact)[1]

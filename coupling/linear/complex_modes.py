@@ -1,6 +1,7 @@
-"""Complex modes of the coupled system: damped natural frequencies and mode shapes about a linearised contact.
+"""Complex modes of the coupled system: natural frequencies, damping, mode shapes, energy shares and stability.
 
-Modal energy shares: kinetic energy, strain energy and damping of a mode by component, bearing and gear mesh.
+The modes are those about a linearised contact. Their energy shares are kinetic energy, strain energy and damping by
+component, bearing and gear mesh.
 
 A mode λ = σ + iω with shape q has a quadratic form in each matrix: m = qᴴ q, c = qᴴ C q and k = qᴴ K q. The
 symmetric parts of C and K give their real parts; gyroscopic terms do no work, and the circulatory part of K, that of
@@ -13,7 +14,7 @@ a sum over all parts of the machine: each one's part in the damping ratio -σ/|�
 Shapes of eigenvalues that agree to rounding are any basis of the space that they span, and so would be their shares.
 Each mode of such a group has the group's means over an orthonormal basis: traces, which do not depend on the basis.
 
-Stability of the coupled modes: growing modes, their growth rates, and the parts that feed energy into them.
+A mode with σ > 0 is unstable: it grows at the rate σ, and the parts whose share of σ is positive feed energy into it.
 """
 
 from dataclasses import dataclass
@@ -120,7 +121,7 @@ def mode_shares(
 
 
 def _groups(eigenvalues: ComplexArray) -> list[slice]:
-    """Runs of modes, ascending in frequency, whose eigenvalues agree to rounding; rigid motions stand alone."""
+    """Group modes, ascending in frequency, whose eigenvalues agree to rounding; rigid motions stand alone."""
     size = np.abs(eigenvalues)
     apart = np.abs(np.diff(eigenvalues)) > _SAME * np.minimum(size[1:], size[:-1])
     edges = [0, *(np.flatnonzero(apart | (size[1:] == 0.0) | (size[:-1] == 0.0)) + 1).tolist(), len(eigenvalues)]
@@ -171,7 +172,7 @@ def _work(
 COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "pedestal", "residual")
 
 _MESH_SHARE = 0.3  # a mode with a larger share of its strain energy in the teeth is a mesh mode
-_TIED = 1e-6  # shares that differ by less are equal: rounding must not choose between them
+_EQUAL_SHARES = 1e-6  # shares that differ by less are equal: rounding must not choose between them
 _WHIRLS = 0.01  # least share of the kinetic energy in a rotor's bending for which its whirl is given
 
 
@@ -267,7 +268,8 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
     ----------
     system : CoupledSystem
     contact : ContactState, optional
-        :func:`coupling.mean_contact`, where it is not given, or :func:`coupling.contact_at` an instant.
+        :func:`coupling.statics.mean_mesh.mean_contact`, where it is not given, or
+        :func:`coupling.statics.mean_mesh.contact_at` an instant.
 
     Raises
     ------
@@ -344,7 +346,7 @@ def _kind(share: dict[str, float]) -> str:
     if share["mesh"] > _MESH_SHARE:
         return "mesh"
     most = max(share[kind] for kind in COORDINATE_KINDS)
-    return next(kind for kind in COORDINATE_KINDS if share[kind] >= most - _TIED)
+    return next(kind for kind in COORDINATE_KINDS if share[kind] >= most - _EQUAL_SHARES)
 
 
 def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list[str]:
@@ -365,7 +367,7 @@ def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list
 
 def _largest(values: FloatArray) -> int:
     """Index of the largest share; the first of those that are equal but for rounding."""
-    return int(np.flatnonzero(values >= values.max() - _TIED)[0])
+    return int(np.flatnonzero(values >= values.max() - _EQUAL_SHARES)[0])
 
 
 _NEUTRAL = 1e-9  # damping ratios below this are rounding
@@ -383,7 +385,7 @@ class GrowingMode:
     eigenvalue : complex
         λ [1/s]; real for a divergence without oscillation.
     kind, where : str
-        As in :class:`coupling.CoupledModes`.
+        As in :class:`coupling.linear.complex_modes.CoupledModes`.
     feeders : tuple of (Part, float)
         Parts that feed energy into it, the strongest first, with their negative parts of the damping ratio. For a
         divergence by negative stiffness, those parts with minus their shares of the strain energy.

@@ -1,18 +1,17 @@
-"""Quadratic eigenvalue problem λ² q + λ C q + K q = 0: eigenvalues with right and left vectors, every one proved.
+"""Quadratic eigenvalue problem λ² q + λ C q + K q = 0: eigenvalues with right and left vectors, every one verified.
 
 The vectors are normalised so that pᴴ (2 λ I + C) q = 1 with |q| = 1 (Tisseur and Meerbergen 2001). The inverse of the
-dynamic stiffness is then, with X the drift of :mod:`coupling.linear.eigenpairs`,
+dynamic stiffness is then, with X the part of the rigid-body drifts,
 
     (s² I + s C + K)⁻¹ = X (1/s² ) - (Σ q pᴴ) (1/s) + Σ q pᴴ / (s - λ),
 
 the sums over all eigenvalues but zero. Its behaviour at large s, where it is 1/s², gives the sum rule
 Σ λ q pᴴ + X = I. One eigenpair wrong, missing or twice breaks it.
 
-Rigid-body motions, removed from the quadratic eigenvalue problem before it is solved.
-
-With λ² q + λ C q + K q = 0 every q with K q = 0 is an eigenvector of λ = 0, mostly a double one: an offset, and a
-drift at constant speed. An eigensolver splits such a double root into ± the square root of its rounding, which
-hides the root and slow motions beside it. Here ranks decide, of matrices whose rows are scaled to one size:
+Rigid-body motions are removed before the problem is solved. Every q with K q = 0 is an eigenvector of λ = 0, mostly a
+double one: an offset, and a drift at constant speed. An eigensolver splits such a double root into ± the square root of
+its rounding, which hides the root and slow motions beside it. Here ranks decide, of matrices whose rows are scaled to
+one size:
 
 - R, the null space of K, and L, that of Kᵀ. Offsets along R are left out of the state: with U the orthogonal
   complement of R and b = Uᵀ q, the state (v = q', b) of order 2n - r obeys v' = -C v - K U b, b' = Uᵀ v, and r zeros
@@ -241,7 +240,7 @@ def pair_residuals(
 def refine_pair(
     stiffness: FloatArray, damping: FloatArray, value: complex, vector: ComplexArray, steps: int = 6
 ) -> tuple[complex, ComplexArray, float]:
-    """An eigenpair near a given one, with its residual, by Newton's method on (λ² I + λ C + K) q = 0, uᴴ q = 1.
+    """Refine an eigenpair by Newton's method on (λ² I + λ C + K) q = 0, uᴴ q = 1; return it with its residual.
 
     The bordered matrix stays regular at the eigenvalue, so no digits are lost there.
     """

@@ -1,23 +1,20 @@
-"""Frequency response of a machine: gear forces, bearing loads and sensors under harmonic excitation.
+"""Frequency response of a machine: receptance, mesh forces, bearing loads and sensors under harmonic excitation.
 
-A transmission error e = e^{iwt} at one mesh presses its contact by δ = dᵀq - e. It drives the coordinates with the load
-(k + iwc) d e, and every contact carries F = (k + iwc)(dᵀq - e), the error being its own alone: the dynamic mesh force
-by unit error, d.c. limit k of the mesh in series with all that gives way behind it.
+A transmission error e = e^{iwt} at one mesh compresses its contact by δ = dᵀq - e. It drives the coordinates with the
+load (k + iwc) d e, and every contact carries F = (k + iwc)(dᵀq - e), the error being its own alone: the dynamic mesh
+force by unit error, d.c. limit k of the mesh in series with the dynamic compliance of the machine behind it.
 
-Receptance of the coupled system about a contact state, by direct solution or by mode superposition.
-
-With q = H(s) f, H(s) = (s² I + s C + K)⁻¹ and s = iw. Superposition uses the expansion of
-:mod:`coupling.linear.eigenpairs`,
+The receptance H of the coupled system about a contact state is found by direct solution or by mode superposition: q =
+H(s) f, H(s) = (s² I + s C + K)⁻¹ and s = iw. Superposition uses the expansion of :mod:`coupling.linear.eigenpairs`,
 
     H(s) = X / s² - (Σ q pᴴ) / s + Σ q pᴴ / (s - λ),
 
 over all modes, rigid-body motions included, so that both ways give one function; nothing is truncated.
 
-Modal truncation error of frequency responses, estimated from two modal bases of one machine.
-
-The error of a basis is estimated from another basis that differs from it by the part least well represented. Both are
-coupled to the same bearings, teeth and loads, and excited alike: with the response H by the one and H' by the other at
-a frequency w, the relative error of a sensor's line there is about
+The modal truncation error of frequency responses is estimated from two modal bases of one machine: the error of a basis
+is estimated from another basis that differs from it by the part least well represented. Both are coupled to the same
+bearings, teeth and loads, and excited alike: with the response H by the one and H' by the other at a frequency w, the
+relative error of a sensor's line there is about
 
     u(w) = max(2 max |H'(v) - H(v)| / |H(v)|, 0.5 %),        v within 1.5 % of w,
 
@@ -362,11 +359,11 @@ def _named(
         loads[connector.name][:, list(connector.axes or range(deflection.shape[1]))] = (
             deflection @ connector.stiffness.T + (rate[:, None] * deflection) @ connector.damping.T
         )
-    pressed = {}
+    mesh_forces = {}
     for number, tooth in enumerate(system.contacts):
         if state.stiffness[number] != 0.0 or state.damping[number] != 0.0:
             compression = moved @ tooth.direction - (1.0 if number == erring else 0.0)
-            pressed[tooth.name] = (state.stiffness[number] + rate * state.damping[number]) * compression
+            mesh_forces[tooth.name] = (state.stiffness[number] + rate * state.damping[number]) * compression
     return FrequencyResponse(
         excitation=excitation,
         unit=unit,
@@ -374,7 +371,7 @@ def _named(
         coordinates=moved,
         sensor_acceleration={name: -(frequencies**2) * (moved @ row) for name, row in machine.sensor_rows.items()},
         bearing_load=loads,
-        mesh_force=pressed,
+        mesh_force=mesh_forces,
     )
 
 
@@ -442,7 +439,7 @@ def _sensor_responses(machine: CoupledMachine, frequencies: FloatArray) -> dict[
 
 
 def _excitations(machine: CoupledMachine) -> FloatArray:
-    """Unit loads of the excitations, shape (e, n): along each line of action; without gears, at each bearing."""
+    """Return unit loads, shape (e, n): along each line of action; without gears, at each bearing."""
     drives = [contact.direction for contact in machine.system.contacts if contact.drives]
     if drives:
         return np.array(drives)

@@ -1,1 +1,1 @@
-"""The machine: its description, components, connectors and loads, and the coupled system assembled of them."""
+"""Machine: its description, components, connectors and loads, and the assembly of the coupled system."""

@@ -1,4 +1,12 @@
-"""Assembly of the coupled system: components, connectors of bearings and gear pairs, and loads."""
+"""Assembly of the coupled system by component mode synthesis: components, bearings (5x5 stiffness), gear pairs, loads.
+
+Each component enters in its own modal coordinates (:mod:`coupling.machine.components`: projection onto free modes, and
+residual attachment modes in place of the constraint modes of the Craig-Bampton method). Connectors join them: the 5x5
+stiffness and damping matrices of bearings over x, y, z and the rotations about x and y, tooth contacts along the lines
+of action, dashpots of couplings (:mod:`coupling.machine.connectors`). The equation of motion is stated in
+:class:`coupling.machine.coupled_system.CoupledSystem`; loaded flanks and mean mesh stiffness come from
+:mod:`coupling.statics`.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -51,7 +59,7 @@ from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
-# Part of the normal module: the clearance between tip and root. Teeth pressed in by more would touch there, and no
+# Part of the normal module: the clearance between tip and root. Teeth compressed by more would touch there, and no
 # steel bends so far.
 _GREATEST_COMPRESSION = 0.25
 
@@ -123,7 +131,7 @@ class CoupledMachine:
         return {sensor: self.rows(name, row) for sensor, row in self.housing.sensors.items()}
 
     def at_speed(self, speed: float) -> "CoupledMachine":
-        """The machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
+        """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
 
         Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; the components
         keep their modes, which are a basis at any speed.
@@ -273,7 +281,7 @@ def assemble_machine(
 
 
 def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:
-    """Number of the contact of each mesh's back flanks, which follow all drive flanks; None where they never meet."""
+    """Return the number of each mesh's back-flank contact, after all drive flanks; None where they never meet."""
     after = len(meshes) + np.cumsum([mesh.backlash is not None for mesh in meshes]) - 1
     return [None if mesh.backlash is None else int(at) for mesh, at in zip(meshes, after, strict=True)]
 
@@ -285,7 +293,7 @@ def _bearing(
     mounted: MountedBearing,
     rates: tuple[float, float],
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
-    """A bearing between its shaft and its seat, pedestal or the ground; with the connector of a law of its own."""
+    """Assemble a bearing between shaft and seat, pedestal or ground: its 5x5 stiffness and damping, or its own law."""
     rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
     law = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, rates)
@@ -321,7 +329,7 @@ def _bearing(
 def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
-    """The drive flanks of a mesh, or its back flanks; the driver turns in the given sense."""
+    """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
     rate = abs(coordinates.speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
     name, law, clearance = mesh.name, mesh.contact, 0.0
     if back:
@@ -378,7 +386,7 @@ def _loads(
 def _with_shuttling(
     system: CoupledSystem, coordinates: MachineCoordinates, flanks: Sequence[tuple[GearMesh, int]]
 ) -> CoupledSystem:
-    """The system with the moments of load shuttling; ``flanks`` are mesh and sense of each of its contacts."""
+    """Return the system with the moments of load shuttling; ``flanks`` are mesh and sense of each of its contacts."""
     if all(contact.contact.faces is None for contact in system.contacts):
         return system
     constant, harmonics = system.load.copy(), list(system.harmonic_loads)
@@ -399,7 +407,7 @@ def _with_shuttling(
 
 
 def _push(mesh: GearMesh, sense: int) -> tuple[tuple[float, float], float]:
-    """Unit vector e in the x-y plane along which the driver pushes on one side of the teeth, and the axial part."""
+    """Return the line of action: unit vector e in the x-y plane along which the driver pushes, and the axial part."""
     angle = mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense)
     return (float(np.cos(angle)), float(np.sin(angle))), -sense * float(np.tan(mesh.geometry.driver.base_helix_angle))
 
@@ -423,7 +431,7 @@ def _require_thrust_carried(
 
 
 def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:
-    """A bearing's law between two speeds, as parts of a nominal one [rad/s]; None where it does not change.
+    """Tabulate a bearing's law between two speeds, parts of a nominal one [rad/s]; None where it is constant.
 
     Its monotone cubic is cut into straight pieces.
     """
@@ -458,7 +466,8 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
 
     With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
     whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
-    e_err = -e (ε_k - ε_i): the same first-order runout as :func:`coupling.gears.runout_error`.
+    e_err = -e (ε_k - ε_i): the same first-order runout as
+    :func:`coupling.gears.geometry.pitch_deviations.runout_error`.
 
     A helical driver of hand h (+1 for a right-hand helix) that moves along z leaves the contact as if it had turned
     back by z tan β_b / R_k, so δ gains -s h tan β_b (w_k - w_i), w the axial motions where the teeth touch: at the

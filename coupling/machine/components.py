@@ -1,8 +1,8 @@
-"""Components for mode synthesis: each part of the machine in mass-normalised modal coordinates.
+"""Components for component mode synthesis: each part of the machine projected onto its modes, mass-normalised.
 
 Component mode synthesis here takes the free modes of a part and, for the static response of the truncated ones,
-residual attachment modes (MacNeal 1971, Rubin 1975), in place of the fixed-interface and constraint modes of Craig and
-Bampton. A component's own equation of motion, with no connector attached, is
+residual attachment modes (MacNeal 1971, Rubin 1975), in place of the fixed-interface and constraint modes of the
+Craig-Bampton method. A component's own equation of motion, with no connector attached, is
 
     q'' + (C + Ω G) q' + K q = f,
 
@@ -84,7 +84,7 @@ class HousingComponent(Component):
     seat_axes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def seat_motions(self, seat: str, z: float) -> FloatArray:
-        """A seat's rigid motion, taken at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n)."""
+        """Return a seat's rigid motion at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n)."""
         x, y, along, about_x, about_y = self.seats[seat].T[:5]
         arm = z - self.seat_z[seat]
         # A rotation about y moves a point above the centre towards +x, one about x towards -y.
@@ -162,7 +162,7 @@ def housing_component(
     seat_axes: Mapping[str, tuple[float, float]] | None = None,
     name: str = "housing",
 ) -> HousingComponent:
-    """The housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
+    """Assemble the housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ def housing_component(
 
 
 def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingComponent:
-    """The housing from its natural modes, see :meth:`housing.Housing.modes`."""
+    """Make the housing's component from its natural modes, see :meth:`housing.Housing.modes`."""
     seats = {seat.name: seat.center for seat in modes.housing.seats}
     return housing_component(
         modes.mode_set,
@@ -240,7 +240,7 @@ class PedestalComponent(Component):
 
 
 def pedestal_component(name: str, pedestal: Pedestal) -> PedestalComponent:
-    """A pedestal as a component of two coordinates.
+    """Make a pedestal's component of two coordinates.
 
     Raises
     ------
@@ -280,7 +280,7 @@ def rotor_component(
     damping_ratio: float = 0.0,
     axis: tuple[float, float] = (0.0, 0.0),
 ) -> RotorComponent:
-    """A rotor from its modes, freed of the springs that its planar basis was found on.
+    """Project a rotor onto its modes, freed of the springs that its planar basis was found on.
 
     The planar modes are those at averaged support stiffness k̄ (TM-101442 Eq. 7). The springs come back with the
     bearings' connectors, so they are taken out here, K = diag(ω²) - Σ k̄ φ(z_b) φ(z_b)ᵀ in each plane (the

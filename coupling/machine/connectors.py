@@ -1,21 +1,20 @@
-r"""Connectors between components: bearings, couplings and tooth contacts.
+r"""Connectors between components: bearings (5x5 stiffness), nonlinear bearing laws, shaft couplings, tooth contacts.
 
 A connector is a matrix of directions D, shape (n, d), that turns the n coordinates of the whole system into
 relative deflections δ = Dᵀ q, and a law that turns deflections, rates and phase into forces f. It adds -D f to the
 equations of motion, so the two sides feel equal and opposite forces, whatever the law.
 
-Nonlinear bearing laws: rolling elements with clearance, and gaps that close.
+The law of a linear bearing is its stiffness and damping matrix, at most 5x5 over x, y, z and the rotations about x and
+y. Nonlinear bearing laws are rolling elements with clearance, and gaps that close: such a law turns the deflections δ
+of the shaft against its seat (x, y, z and the rotations about x and y) into the forces of the shaft on the seat;
+:mod:`coupling.time.bearing_kernels` is its compiled form.
 
-A law turns the deflections δ of the shaft against its seat (x, y, z and the rotations about x and y) into the forces of
-the shaft on the seat; :mod:`coupling.time.bearing_kernels` is its compiled form.
+`MountedBearing`, `MountedGear` and `GearMesh` give bearings and gears their places in the machine.
 
-Mounted bearings and gears: their places in the machine, and gear pairs in mesh.
-
-Dashpots of flexible shaft couplings: internal damping, which rotates with the shaft.
-
-A coupling of length L yields by the sway of its right end over its left one, δ = u_r - u_l - L (φ_l + φ_r)/2 across the
-axis, by the tilt φ_r - φ_l, and along and about the axis by the differences of its ends. Dashpots resist the rates of
-these in the rotating shaft. Across the axis that is, in the frame at rest and at a speed Ω,
+Dashpots of flexible shaft couplings are internal damping, which rotates with the shaft. A coupling of length L yields
+by the sway of its right end over its left one, δ = u_r - u_l - L (φ_l + φ_r)/2 across the axis, by the tilt φ_r - φ_l,
+and along and about the axis by the differences of its ends. Dashpots resist the rates of these in the rotating shaft.
+Across the axis that is, in the frame at rest and at a speed Ω,
 
     f = c (δ' + Ω (δ_y, -δ_x)),
 
@@ -87,6 +86,7 @@ class GapLaw:
     gap: float = 0.0
 
     def __post_init__(self) -> None:
+        """Require a positive force and depth, an exponent of 1 or more and no negative gap."""
         for what in ("force", "depth"):
             value = getattr(self, what)
             if not (math.isfinite(value) and value > 0.0):
@@ -211,6 +211,7 @@ class LinearConnector:
     axes: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
+        """Require stiffness and damping of shape (d, d) for d directions."""
         d = self.directions.shape[1]
         for what, matrix in (("stiffness", self.stiffness), ("damping", self.damping)):
             if matrix.shape != (d, d):
@@ -275,6 +276,7 @@ class NonlinearConnector:
     speed: float
 
     def __post_init__(self) -> None:
+        """Require an axis for each direction, and a stiffness of shape (d, d)."""
         d = self.directions.shape[1]
         if self.axes.shape != (d,) or self.stiffness.shape != (d, d):
             raise CouplingError(
@@ -356,9 +358,9 @@ class ContactConnector:
         return self.phase + self.rate * time + _JUST_AFTER
 
     def event_times(self, start: float, end: float) -> FloatArray:
-        """Times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
+        """Return times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
 
-        The force may jump at the former; at the latter its rate and the power of the turning teeth do. With friction
+        The force may jump at the former; at the latter its rate and the power of the rotating teeth do. With friction
         also those at which a pair passes the pitch point.
         """
         turns = () if self.sliding is None else self.sliding.friction.event_phases

@@ -1,4 +1,4 @@
-"""Coupled system: components, connectors and loads in one set of coordinates, with its matrices."""
+"""Coupled system: components, connectors and loads in one set of modal coordinates, with its stiffness and damping."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -55,13 +55,14 @@ class TimedLoad:
     direction: FloatArray
 
     def __post_init__(self) -> None:
+        """Require a value for each time, and times that ascend."""
         if self.times.shape != self.values.shape or self.times.ndim != 1 or not self.times.size:
             raise CouplingError(f"a load of {self.values.shape} values at {self.times.shape} times; expected as many")
         if np.any(np.diff(self.times) <= 0.0):
             raise CouplingError("the times of a load do not ascend")
 
     def at(self, time: float) -> FloatArray:
-        """The load at a time, shape (n,)."""
+        """Interpolate the load at a time, shape (n,)."""
         return np.asarray(np.interp(time, self.times, self.values) * self.direction)
 
 
@@ -101,6 +102,7 @@ class CoupledSystem:
     nonlinear: tuple[NonlinearConnector, ...] = ()
 
     def __post_init__(self) -> None:
+        """Require a speed for each component, and loads of shape (n,); loads that are not given are zero."""
         if len(self.speeds) != len(self.components):
             raise CouplingError(f"{len(self.speeds)} speeds for {len(self.components)} components; expected as many")
         for what in ("load", "acceleration_load"):

@@ -101,6 +101,7 @@ class Machine:
     torque_at: float = 0.0
 
     def __post_init__(self) -> None:
+        """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         require_names(self)
         require_stations(self)
         require_seats(self, self.housing_component)
@@ -186,11 +187,11 @@ class Machine:
         return self.train.pair_torques(along)
 
     def shaft(self, name: str) -> Shaft:
-        """The shaft of this name."""
+        """Return the shaft of this name."""
         return next(shaft for shaft in self.shafts if shaft.name == name)
 
     def rotor(self, name: str) -> Rotor:
-        """A shaft's rotor with its gears as discs."""
+        """Return a shaft's rotor with its gears as discs."""
         rotor = self.shaft(name).rotor
         rigid = [(gear.at, *gear.mass_and_inertias) for gear in self.gears if gear.shaft == name]
         discs = [Disc(*one) for one in rigid if any(one[1:])]

@@ -1,15 +1,14 @@
-"""Gear train: speed ratios, senses of rotation, power flow through the pairs; checks that a train can exist.
+"""Gear train: speed ratios, senses of rotation, power flow, mesh phases; checks that a train can exist.
 
 External gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂; their shafts are as far apart as the geometry
 of the pair says, and their faces overlap along the shafts. A train at constant speed takes as much power as it gives,
 Σ T ω = 0 over its shafts.
 
-Mesh phases of gear pairs that share gears.
-
-Each gear is fitted to its shaft so that the first pair it belongs to begins a mesh period at t = 0. The phase of
-every further pair of the same gear follows from the gear's teeth: as gears roll without slip, tooth 0 of driver and
-driven gear lie at angles that are linear in the pair's phase (`coupling.gears.meshing_rotations`), and an angle that is
-known already gives the phase. Gears that close a loop must fit: where teeth would clash, they cannot be assembled.
+Gear pairs that share gears have related mesh phases. Each gear is fitted to its shaft so that the first pair it belongs
+to begins a mesh period at t = 0. The phase of every further pair of the same gear follows from the gear's teeth: as
+gears roll without slip, tooth 0 of driver and driven gear lie at angles that are linear in the pair's phase
+(`coupling.gears.geometry.profile.meshing_rotations`), and an angle that is already known gives the phase. Gears that
+close a loop must fit: where teeth would clash, they cannot be assembled.
 """
 
 import math

@@ -1,12 +1,13 @@
-"""Loads on a machine: unbalance, shaft bow, torques; on its parts by name, and on the coordinates.
+"""Loads on a machine: unbalance, shaft bow, torques, base excitation and gravity, as loads on the coordinates.
 
-Base excitation and gravity: inertia loads on coordinates that are relative to a moving base.
+Loads act on parts by name. Base excitation and gravity are inertia loads on coordinates that are relative to a moving
+base.
 
-With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where
-P = ∫ φ R dm is their participation and a the acceleration, three components along and three about x, y and z.
-Rotations of the base are small: terms quadratic in them, and Coriolis forces on the vibration, are neglected. The
-gyroscopic moment of a shaft that turns at Ω on a base that tilts at the rates ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on
-the x plane and Ω ∫ β dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
+With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where P = ∫ φ R
+dm is their participation and a the acceleration, three components along and three about x, y and z. Rotations of the
+base are small: terms quadratic in them, and Coriolis forces on the vibration, are neglected. The gyroscopic moment of a
+shaft that rotates at Ω on a base that tilts at the rates ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on the x plane and Ω ∫ β
+dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
 """
 
 from collections.abc import Mapping, Sequence
@@ -35,7 +36,7 @@ class Unbalance:
 
 @dataclass(frozen=True)
 class BowReactions:
-    """Shaft bow as forces on the straight shaft that rotate with it, see :func:`rotors.bow_shape`.
+    """Shaft bow as forces on the straight shaft that rotate with it, see :func:`rotors.analyses.unbalance.bow_shape`.
 
     Attributes
     ----------
@@ -89,6 +90,7 @@ class TorqueRipple:
     frequency: float | None = None
 
     def __post_init__(self) -> None:
+        """Require either an order or a frequency."""
         if (self.order is None) == (self.frequency is None):
             raise CouplingError(
                 f"a torque ripple on {self.rotor!r} of order {self.order} and frequency {self.frequency}; "
@@ -177,7 +179,7 @@ class MachineCoordinates:
         self._numbers = {part.name: i for i, part in enumerate(components)}
 
     def rotor(self, name: str) -> RotorComponent:
-        """The rotor of this name."""
+        """Return the rotor of this name."""
         part = self.components[self._numbers[name]] if name in self._numbers else None
         if not isinstance(part, RotorComponent):
             known = sorted(part.name for part in self.components if isinstance(part, RotorComponent))
@@ -202,7 +204,7 @@ class MachineCoordinates:
         return np.asarray(x - 1j * y)
 
     def add_unbalance(self, loads: Loads, unbalance: Unbalance) -> None:
-        """m e Ω² (cos, sin)(Ω t + phase) on x and y: y lags x by a quarter turn, in the sense of rotation."""
+        """Add an unbalance m e Ω² (cos, sin)(Ω t + phase): y lags x by a quarter turn, in the sense of rotation."""
         speed = self.speeds[unbalance.rotor]
         rotating = self.rotating_force(unbalance.rotor, unbalance.at)
         if speed == 0.0 or unbalance.moment == 0.0:
@@ -218,7 +220,7 @@ class MachineCoordinates:
         loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
 
     def add_torque(self, loads: Loads, torque: AnyTorque) -> None:
-        """A torque that is constant, tabled over time, harmonic, or a slope over the speed."""
+        """Add a torque: constant, tabled over time, harmonic, or a slope over the speed."""
         row = self.rotation(torque.rotor, torque.at)
         match torque:
             case Torque():
@@ -268,7 +270,7 @@ class MachineCoordinates:
 
 
 def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
-    """A torque's slope over speed as a dashpot of minus the slope."""
+    """Replace a torque's slope over speed by a dashpot of minus the slope."""
     damping = -slope.slopes.reshape(-1, 1, 1)
     none = np.zeros_like(damping)
     table = SpeedTable(slope.rates, none, damping) if np.ptp(slope.slopes) > 0.0 else None
@@ -311,6 +313,7 @@ class BaseHistory:
     values: FloatArray
 
     def __post_init__(self) -> None:
+        """Require six accelerations for each time, and times that ascend."""
         if self.values.shape != (len(self.times), 6) or not len(self.times) or np.any(np.diff(self.times) <= 0.0):
             raise CouplingError(
                 f"a base's accelerations of shape {self.values.shape} at {len(self.times)} times; expected six for "

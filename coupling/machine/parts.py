@@ -121,17 +121,34 @@ class MachineParts(Protocol):
     """The lists of parts in a machine, see :class:`coupling.Machine`."""
 
     @property
-    def shafts(self) -> Sequence[Shaft]: ...
+    def shafts(self) -> Sequence[Shaft]:
+        """Shafts of the machine."""
+        ...
+
     @property
-    def bearings(self) -> Sequence[MountedBearing]: ...
+    def bearings(self) -> Sequence[MountedBearing]:
+        """Bearings between shafts and seats, pedestals or the ground."""
+        ...
+
     @property
-    def gears(self) -> Sequence[ShaftGear]: ...
+    def gears(self) -> Sequence[ShaftGear]:
+        """Gears on the shafts."""
+        ...
+
     @property
-    def gear_pairs(self) -> Sequence[GearPair]: ...
+    def gear_pairs(self) -> Sequence[GearPair]:
+        """Gear pairs in mesh."""
+        ...
+
     @property
-    def outputs(self) -> Sequence[Output]: ...
+    def outputs(self) -> Sequence[Output]:
+        """Torques that leave the train."""
+        ...
+
     @property
-    def torque_at(self) -> float: ...
+    def torque_at(self) -> float:
+        """Position at which the driving torque enters [m]."""
+        ...
 
 
 def pair_label(pair: GearPair) -> str:

@@ -1,11 +1,11 @@
-"""Thrust: axial force of helical gears on each rotor, and the bearings that must carry it.
+"""Thrust and load shuttling: axial forces of helical gears on each rotor, and the moment of the moving tooth load.
 
 A pair's force F acts along the normal of the teeth: in the transverse plane along the line of action, and along z by
 F tan β_b. At constant torque the moment about z of every rotor balances, s Σ F R_b = T, which gives the forces; a rotor
 on which their axial parts do not cancel needs a bearing that holds it along its axis. Without one it has no axial
 coordinate, and the thrust would vanish from the model.
 
-Load shuttling: the centre of the tooth load moves along the face, and its moment tilts the shafts.
+Load shuttling is the motion of the centre of the tooth load along the face; its moment tilts the shafts.
 
 The force F of a mesh acts where the load per width q of its contact lines has its centre, not at the middle of the
 face. From the middle of the face along the shafts, and from the pitch point along the line of action, that is

@@ -1,18 +1,18 @@
-r"""Tooth friction in the coupled system: the sliding velocity of a pair of teeth, and the torque that friction takes.
+r"""Tooth friction in the coupled system: sliding velocity of a pair of teeth, friction force, and friction torque.
 
-With e the unit vector along which the driver pushes, s its sense of turning and t = s z × e that in which its flank
+With e the unit vector along which the driver pushes, s its sense of rotation and t = s z × e that in which its flank
 moves across the line of action, the flanks of a pair at the position x along the path (in base pitches) slide by
 
     w = t (u_k - u_i)' + s (ξ_k θ_k' + ξ_i θ_i'),        ξ_k = ξ_k0 + x p_b,    ξ_i = ξ_i0 - x p_b,
 
-linear in x: w = (a + x b)ᵀ q' beside the nominal rotation's W_a + x W_b. By virtual work friction does
--μ F sgn(w) (a + x b) to the coordinates: ± the force on both gears, and the moments ξ_k and ξ_i times it on their
-shafts. The sign is that of the nominal rotation, which turns at the pitch point; what vibration adds to it would turn
-the force some microseconds earlier or later.
+linear in x: w = (a + x b)ᵀ q' beside the nominal rotation's W_a + x W_b. By virtual work friction does -μ F sgn(w) (a +
+x b) to the coordinates: ± the force on both gears, and the moments ξ_k and ξ_i times it on their shafts. The sign is
+that of the nominal rotation, which reverses at the pitch point; vibration would reverse the force some microseconds
+earlier or later.
 
-The torque that friction takes from a train of gears comes out of what turns it. Speeds are prescribed, so what the
-friction would do to motions that nothing resists, the train's turning as a whole, is given back to them at once, as an
-inertia force of d'Alembert: a and b are taken orthogonal to those motions.
+The friction torque of a gear train is supplied by its drive. Speeds are prescribed, so the work of the friction on
+motions that nothing resists, the rotation of the whole train, is given back to them at once, as an inertia force of
+d'Alembert: a and b are taken orthogonal to those motions.
 """
 
 from collections.abc import Sequence
@@ -101,13 +101,13 @@ def friction_of(
         friction.path_end,
     )
     pushed = friction.coefficient * force
-    # A pair slides one way before the pitch point and the other way behind it, so the sense of turning cancels here.
+    # A pair slides one way before the pitch point and the other way behind it, so the sense of rotation cancels here.
     power = np.sign(nominal[1]) * pushed * (shares @ nominal) * rates
     return np.column_stack([pushed * shares[:, 0], power])
 
 
 def with_balanced_friction(system: CoupledSystem) -> CoupledSystem:
-    """The system with friction orthogonal to the rigid-body motions, whose speed is prescribed."""
+    """Return the system with friction orthogonal to the rigid-body motions, whose speed is prescribed."""
     if all(contact.sliding is None for contact in system.contacts):
         return system
     free = system.rigid_body_motions[0]

@@ -1,13 +1,10 @@
-"""Plain arrays for the kernels of exponential collocation, by name.
+"""Plain arrays for the kernels of exponential collocation: Gauss points, quadrature weights, elements, scratch.
 
 Amplitudes are kept as 2 m real numbers, the real parts and then the imaginary ones. c contacts, s Gauss points in an
 element, h harmonics, k sizes of elements.
 
-Gauss collocation on one element of time: Gauss points, polynomials and quadrature weights.
-
-Gauss points, here called places, and polynomials are in u, which runs from 0 to 1 over the element.
-
-Scratch arrays of a collocation element.
+An element of time is solved by Gauss collocation. Gauss points, here called places, and polynomials are in u, which
+runs from 0 to 1 over the element.
 """
 
 import math
@@ -128,7 +125,7 @@ class Trace(NamedTuple):
     compression: FloatArray  # (e, s, c)
     force: FloatArray  # (e, s, c)
     loss: FloatArray  # (e, s, c) power that the contacts' damping takes [W]
-    turning: FloatArray  # (e, s, c) change of the teeth's energy with the phase [J per mesh period]
+    phase_slope: FloatArray  # (e, s, c) change of the teeth's energy with the phase [J per mesh period]
     energy: FloatArray  # (e, 2) held in the teeth just after the start and just before the end [J]
     apart: FloatArray  # (e, c) 1 where the flanks are apart
     error: FloatArray  # (e, 2) square of the error of the modes' amplitudes at the end; square of the amplitudes
@@ -147,7 +144,7 @@ def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
         compression=np.empty(places),
         force=np.empty(places),
         loss=np.empty(places),
-        turning=np.empty(places),
+        phase_slope=np.empty(places),
         energy=np.empty((room, 2)),
         apart=np.empty((room, c)),
         error=np.empty((room, 2)),
@@ -155,7 +152,7 @@ def empty_trace(room: int, m: int, s: int, c: int) -> Trace:
 
 
 def first_elements(trace: Trace, count: int) -> Trace:
-    """The elements that a trace holds, in its own memory."""
+    """Copy the elements that a trace holds."""
     return Trace._make(rows[:count] for rows in trace)
 
 

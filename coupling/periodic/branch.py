@@ -230,7 +230,7 @@ class Branch:
         return None
 
     def by_speed(self, ready: Problem, states: FloatArray, speed: float, found: Pass, level: int) -> FloatArray:
-        """Derivative of the closure errors by speed, the states held, shape (K, 2 N).
+        """Differentiate the closure errors by speed, the states held, shape (K, 2 N).
 
         The elements are those of ``found``: the error of others would differ, over a tiny difference of speed.
         """
@@ -251,7 +251,7 @@ class Branch:
         towards: tuple[FloatArray, float] | None = None,
         change: FloatArray | None = None,
     ) -> Point | None:
-        """A corrected point, proved by elements half as large; else None, with finer elements from here on."""
+        """Verify a corrected point with elements half as large; else return None and refine from here on."""
         elements: Elements = ready.elements(self.level + 1)
         finer = one_pass(ready.part, ready.contacts, elements, found.starts, varied=False)
         error = float(np.linalg.norm(finer.ends - found.ends)) / ready.scale(found.start)
@@ -289,6 +289,6 @@ def above(ready: Problem, starts: FloatArray) -> FloatArray:
 
 
 def _own(ready: Problem) -> FloatArray:
-    """The reference's own response at the nodes among these states, shape (K, 2 N)."""
+    """Return the linear reference's response at the nodes among these states, shape (K, 2 N)."""
     still = np.zeros(len(ready.part.mean))
     return np.array([-ready.part.state(still, still, time) for time in ready.nodes])

@@ -1,7 +1,8 @@
-"""Continuation of the periodic motion over speed, through folds, by Keller's pseudo-arclength method.
+"""Continuation of the periodic motion over speed, through folds, by Keller's pseudo-arclength method: response curve.
 
-Where contact is lost several motions exist at one speed, and the branch of motions turns back in speed at folds: there
-a machine that is run up or down jumps.
+A response curve is a branch of periodic motions over speed, with its bifurcations. Where contact is lost several
+motions exist at one speed, and the branch of motions turns back in speed at folds: there a machine that is run up or
+down jumps.
 
 Away from folds the speed is given: the polynomial through the last motions predicts the next one, and the monodromy of
 the prediction corrects it; the exact monodromy of the corrected motion decides its stability. The order of the
@@ -18,8 +19,6 @@ difference.
 
 - H. B. Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems", *Applications of Bifurcation
   Theory*, 1977.
-
-Response curve: a branch of periodic motions over speed, with its bifurcations.
 """
 
 from collections.abc import Callable
@@ -93,7 +92,7 @@ class ResponseCurve:
         return self.told()
 
     def told(self, unit: float = 1.0, name: str = "") -> str:
-        """The same with speeds divided by a named unit."""
+        """Return the response curve with speeds divided by a named unit."""
         start, last, aim = (value / unit for value in (self.speeds[0], self.speeds[-1], self.aim))
         name = name and f" {name}"
         way = f"followed from {start:.6g} to {last:.6g}{name}: {len(self.speeds)} points, {len(self.folds)} folds"
@@ -135,7 +134,7 @@ class ResponseCurve:
         return np.array([response.contact_loss for response in self.responses])
 
     def motion(self, index: int) -> PeriodicResponse:
-        """The whole motion of a point, integrated again from the starts of its segments."""
+        """Integrate the periodic motion of a point again, from the starts of its segments."""
         kept = self.responses[index]
         return integrated_again(self.system_at(float(self.speeds[index])), self._period(kept.period), kept)
 
@@ -161,7 +160,7 @@ class ResponseCurve:
         return [response for _, response in sorted(found, key=lambda one: one[0])]
 
     def _between(self, index: int, part: float, speed: float, tolerance: float) -> PeriodicResponse:
-        """The motion at a speed that is a part of the way from one point to the next."""
+        """Solve for the motion at a speed that is a part of the way from one point to the next."""
         before, after = self.responses[index], self.responses[index + 1]
         # Rates are compared in their own period.
         length = 1.0 / (1.0 / before.period + part * (1.0 / after.period - 1.0 / before.period))
@@ -206,7 +205,7 @@ class _Follower:
         self.seen = seen
         self.recent = [first]  # since the speed last turned
         self.sense, self.stride, self.order = 1.0, 0.3 * self.largest, 1
-        self.failures, self.turning, self.ds = 0, False, 0.0
+        self.failures, self.by_arclength, self.ds = 0, False, 0.0
         self._keep(first)
 
     def position(self, speed: float) -> float:
@@ -226,10 +225,10 @@ class _Follower:
                 return "points"
             if self.tries >= self.most_tries:
                 return "tries"
-            if self.turning and self.ds < _SHORTEST * self.largest:
+            if self.by_arclength and self.ds < _SHORTEST * self.largest:
                 return "lost"
             self.tries += 1
-            there = self._along() if self.turning else self._held()
+            there = self._along() if self.by_arclength else self._held()
             if there is None:
                 continue
             position = self.position(there.speed)
@@ -238,7 +237,7 @@ class _Follower:
                 return "end" if position == 1.0 else "start"
 
     def _held(self) -> Point | None:
-        """A step at a given speed."""
+        """Take a continuation step at a given speed."""
         here = self.recent[-1]
         among = self.recent[-1 - self.order :]
         position = self.position(here.speed) + self.sense * self.stride
@@ -256,7 +255,7 @@ class _Follower:
         return there
 
     def _failed(self) -> None:
-        """A shorter step, or one along the branch."""
+        """Shorten the continuation step, or change to pseudo-arclength."""
         self.stride *= 0.5
         self.order = min(self.order, 1)
         self.failures += 1
@@ -267,11 +266,11 @@ class _Follower:
             except (PeriodicError, np.linalg.LinAlgError):
                 # No motion beside it, or a fold: only shorter steps are left.
                 pace = 1.0
-            self.turning, self.failures = True, 0
+            self.by_arclength, self.failures = True, 0
             self.ds = min(self.stride / max(pace, 1e-9), _FARTHEST * self._motion(here))
 
     def _along(self) -> Point | None:
-        """A step along the branch."""
+        """Take a pseudo-arclength step along the branch."""
         here = self.recent[-1]
         forwards = 1.0 if here.towards is not None else self.sense * np.sign(self.end - self.start)
         level = self.branch.level
@@ -294,7 +293,7 @@ class _Follower:
             self.ds *= 1.5
         self.ds = min(self.ds, _FARTHEST * self._motion(there))
         if not turned and gone > max(self.stride, _SMALL * self.largest) and len(self.recent) > 2:
-            self.turning, self.order = False, 1
+            self.by_arclength, self.order = False, 1
             self.stride = min(gone, self.largest)
         return there
 

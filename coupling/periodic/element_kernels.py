@@ -1,8 +1,7 @@
-r"""Matrices of a collocation element, compiled: exponentials and their integrals with the element's polynomials.
+r"""Collocation element of time, compiled: its matrices, contact forces at its Gauss points, defect of their polynomial.
 
-Importing this module imports numba.
-
-Collocation element of time, compiled: contact forces at its Gauss points, and the defect of their polynomial.
+The matrices are exponentials of the modes and their integrals with the element's polynomials, see
+:mod:`coupling.periodic.integration_kernels`.
 
 Importing this module imports numba.
 """
@@ -267,7 +266,7 @@ def advance(decay: FloatArray, source: FloatArray, z: FloatArray, excess: FloatA
 
 @uncounted(forceinline=True)
 def interpolated(values: FloatArray, a: int, u: float) -> float:
-    """The polynomial through values (ORDER + 2, c) at the points, at u."""
+    """Evaluate at u the polynomial through values (ORDER + 2, c) at the Gauss points."""
     above, below = 0.0, 0.0
     for i in range(ORDER + 2):
         apart = u - POINTS[i]

@@ -1,6 +1,4 @@
-r"""Exponential collocation from element to element, compiled, with exactly placed switches of contact.
-
-Importing this module imports numba.
+r"""Exponential collocation from element to element, compiled, with exactly placed switches of contact; dense output.
 
 The linear machine with its teeth at their mean stiffness k̄ and damping c̄ has eigenvalues λ, and in its amplitudes z
 the whole machine is
@@ -21,11 +19,8 @@ that moment, found to rounding. Up to there and a little beyond, the motion is s
 whose last place is just before the switch, and the same integral to a part of it, which may be a little more than 1,
 gives the state at the switch.
 
-Dense output of exponential collocation, compiled: the motion between the Gauss points of a trace.
-
-Importing this module imports numba.
-
-Energy balance of exponential collocation, compiled: work, losses and contact figures of a trace.
+Dense output is the motion between the Gauss points of a trace. The energy balance sums work, losses and contact figures
+over a trace.
 
 Importing this module imports numba.
 """
@@ -118,7 +113,7 @@ def write_element(
             trace.force[count, i, a] = work.laws[row, FORCE]
             trace.compression[count, i, a] = work.delta[i + 1, a]
             trace.loss[count, i, a] = work.laws[row, DAMPING] * v * v
-            trace.turning[count, i, a] = work.laws[row, PHASE_SLOPE]
+            trace.phase_slope[count, i, a] = work.laws[row, PHASE_SLOPE]
     trace.energy[count, 0] = held_energy(work.laws, n, c)
     u = part - INSIDE
     for a in range(c):
@@ -397,7 +392,7 @@ def add_contacts(
             touching = False
             for i in range(ORDER):
                 force = trace.force[element, i, a]
-                power = contacts.rate[a] * trace.turning[element, i, a]
+                power = contacts.rate[a] * trace.phase_slope[element, i, a]
                 for m in range(contacts.errors.shape[1]):
                     w = contacts.errors[a, m, 1]
                     angle = w * (trace.start[element] + h * PLACES[i]) + contacts.errors[a, m, 2]

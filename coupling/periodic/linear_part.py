@@ -7,11 +7,10 @@ e and clearances taken to the loads, the reference
 
 has a periodic response in closed form, by a solution at each frequency (its receptance). The teeth's excess over the
 mean acts through its eigenvalues. Motions that nothing resists, such as gears that roll together, take no part in
-either: they swing freely under the harmonic loads, about a mean position of zero.
+either: they oscillate freely under the harmonic loads, about a mean position of zero.
 
-Eigenvector perturbation: eigenvectors of a matrix from those of a neighbouring one.
-
-With right vectors X and left ones Y = X⁻¹ of the neighbour, B = Y A X is all but diagonal, and to the first order
+Over speed, eigenvectors follow from those of the neighbouring matrix by perturbation. With right vectors X and left
+ones Y = X⁻¹ of the neighbour, B = Y A X is all but diagonal, and to the first order
 
     X ← X (1 + E),    Y ← (1 + E)⁻¹ Y,        E_ij = B_ij / (B_jj - B_ii),    i ≠ j,
 
@@ -58,11 +57,11 @@ def corrected_eigenvectors(
     values, right, left
         The same of the matrix, in the same order.
     """
-    turning = values.imag > 0.0
-    weights = np.where(turning, 2.0, 1.0)
+    oscillating = values.imag > 0.0
+    weights = np.where(oscillating, 2.0, 1.0)
     single = right / weights
-    x = np.concatenate([single, single[:, turning].conj()], axis=1)
-    y = np.concatenate([left, left[turning].conj()])
+    x = np.concatenate([single, single[:, oscillating].conj()], axis=1)
+    y = np.concatenate([left, left[oscillating].conj()])
     if x.shape[1] != len(matrix):
         return None
     identity, size = np.eye(len(matrix)), np.inf
@@ -84,12 +83,16 @@ def corrected_eigenvectors(
     found = np.diagonal(y @ (matrix @ x)).copy()
     missed = np.abs((x * found) @ y - matrix)
     sizes = np.abs(x) @ np.abs(found[:, None] * y)
-    if size >= _SMALLEST or np.any(missed > _MISSED * sizes.max()) or np.any(found[: len(values)][turning].imag <= 0.0):
+    if (
+        size >= _SMALLEST
+        or np.any(missed > _MISSED * sizes.max())
+        or np.any(found[: len(values)][oscillating].imag <= 0.0)
+    ):
         return None
     kept, vectors, rows = found[: len(values)], x[:, : len(values)], y[: len(values)]
     # Vectors of a real eigenvalue are real but for rounding.
-    kept[~turning], vectors[:, ~turning], rows[~turning] = (
-        part[...].real for part in (kept[~turning], vectors[:, ~turning], rows[~turning])
+    kept[~oscillating], vectors[:, ~oscillating], rows[~oscillating] = (
+        part[...].real for part in (kept[~oscillating], vectors[:, ~oscillating], rows[~oscillating])
     )
     return kept, np.ascontiguousarray(vectors * weights), np.ascontiguousarray(rows)
 
@@ -143,7 +146,7 @@ class LinearPart:
         return len(self.right)
 
     def own_response(self, time: float) -> tuple[FloatArray, FloatArray]:
-        """The reference's own displacements and rates at a time, shape (n,) each."""
+        """Evaluate the linear reference's displacements and rates at a time, shape (n,) each."""
         turned = self.amplitudes * np.exp(1j * self.frequencies * time)[:, None]
         return self.mean + turned.real.sum(axis=0), -(self.frequencies[:, None] * turned.imag).sum(axis=0)
 
@@ -167,14 +170,14 @@ class LinearPart:
     @cached_property
     def to_amplitudes(self) -> FloatArray:
         """Matrix to the amplitudes of a state, real parts and then nonzero imaginary ones, shape (2 N, 2 N)."""
-        turning = self.eigenvalues.imag > 0.0
-        return np.concatenate([self.left.real, self.left.imag[turning]])
+        oscillating = self.eigenvalues.imag > 0.0
+        return np.concatenate([self.left.real, self.left.imag[oscillating]])
 
     @cached_property
     def from_amplitudes(self) -> FloatArray:
         """Inverse matrix: states of such amplitudes, shape (2 N, 2 N)."""
-        turning = self.eigenvalues.imag > 0.0
-        return np.concatenate([self.right.real, -self.right.imag[:, turning]], axis=1)
+        oscillating = self.eigenvalues.imag > 0.0
+        return np.concatenate([self.right.real, -self.right.imag[:, oscillating]], axis=1)
 
     @cached_property
     def displacement_rows(self) -> FloatArray:
@@ -207,13 +210,13 @@ class LinearPart:
                     row.append(-amplitude * np.exp(1j * phase) if other == k else 0.0)
         mean = self.mean @ self.system.contact_directions - [contact.clearance for contact in contacts]
         phasor = np.array(phasors, dtype=np.complex128).reshape(len(contacts), len(frequencies))
-        turning = 1j * np.array(frequencies)
+        exponents = 1j * np.array(frequencies)
         own = np.zeros((len(frequencies) + 1, len(contacts)))
         still = np.zeros((len(contacts), 1))
         displacement = [directions.T @ self.right[:half], phasor, mean[:, None]]
-        rate = [self.rate_unit * (directions.T @ self.right[half:]), turning * phasor, still]
+        rate = [self.rate_unit * (directions.T @ self.right[half:]), exponents * phasor, still]
         return Reference(
-            eigenvalue=np.concatenate([self.eigenvalues, turning, [0.0]]),
+            eigenvalue=np.concatenate([self.eigenvalues, exponents, [0.0]]),
             source=np.concatenate([self.left[:, half:] @ directions / self.rate_unit, own]),
             displacement=real_rows(np.concatenate(displacement, axis=1)),
             rate=real_rows(np.concatenate(rate, axis=1)),
@@ -279,7 +282,7 @@ def linear_part(
     if len(within) and np.linalg.cond(within) > 1.0 / _RIGID:
         raise PeriodicError(
             "a motion has no stiffness but meets damping, or a contact that is apart in the mean: nothing says where "
-            "its mean is; tie it with a soft spring"
+            "its mean is; hold it with a soft spring"
         )
     frequencies = np.array(sorted(harmonics), dtype=np.float64)
     amplitudes = np.zeros((len(frequencies), system.size), dtype=np.complex128)

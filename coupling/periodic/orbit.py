@@ -1,6 +1,4 @@
-r"""Period map: integration over one period, segment by segment, with the monodromy of each segment.
-
-Multiple shooting: Newton's correction of a motion in segments, condensed to the state at its start.
+r"""Multiple shooting: period map segment by segment, monodromy of each segment, and Newton correction of all starts.
 
 A period of many mesh periods is integrated segment by segment, each from a state of its own. With the pieces
 A_k = ∂(end of segment k) / ∂(its start) and the closure errors r_k = end of k - start of k + 1, the corrections d_k
@@ -32,7 +30,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def product(pieces: FloatArray) -> FloatArray:
-    """The monodromy of pieces (K, 2 N, 2 N) that follow each other, shape (2 N, 2 N)."""
+    """Multiply the monodromy matrices of successive segments, shape (K, 2 N, 2 N), to that of all, shape (2 N, 2 N)."""
     whole = pieces[0]
     for piece in pieces[1:]:
         whole = piece @ whole
@@ -226,7 +224,7 @@ class Pass:
 
 
 def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
-    """Times at which a pair of teeth enters or leaves contact or a relief begins, and the nodes [s].
+    """Return times at which a pair of teeth enters or leaves contact or a relief begins, and the nodes [s].
 
     The last node is the period. An event next to a node is that node.
     """

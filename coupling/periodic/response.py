@@ -1,8 +1,10 @@
-"""Periodic response: the motion over one period with its proof, and its record at sensors, gears and bearings.
+"""Periodic response: the motion over one period, its Floquet multipliers, and its record of coordinates and contacts.
 
-Floquet multipliers: stability of a periodic motion.
+The Floquet multipliers, eigenvalues of the monodromy, decide the stability of a periodic motion: it is stable where all
+are within the unit circle.
 
-Summary of a periodic motion on a branch: its figures, and the states at the starts of its segments.
+`BranchMotion` is the summary of a periodic motion on a branch: its figures, and the states at the starts of its
+segments.
 """
 
 from dataclasses import dataclass, field
@@ -251,9 +253,9 @@ def _near_peaks(trace: Trace) -> npt.NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False)
 class BranchMotion:
-    """Summary of a :class:`coupling.PeriodicResponse`; n coordinates, c contacts, K segments.
+    """Summary of a :class:`coupling.periodic.PeriodicResponse`; n coordinates, c contacts, K segments.
 
-    The whole motion takes a hundred times the memory; :meth:`coupling.ResponseCurve.motion` computes it again.
+    The whole motion takes a hundred times the memory; :meth:`coupling.periodic.ResponseCurve.motion` computes it again.
 
     Attributes
     ----------

@@ -12,7 +12,7 @@ once; see :mod:`coupling.periodic.orbit`.
 While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
 motions are found as well as stable ones.
 
-Common period of the excitations of a machine.
+The period is the common period of all excitations of the machine (`common_period`).
 """
 
 import math
@@ -57,7 +57,7 @@ def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
 
 
 def common_period(system: CoupledSystem, period: float | None = None) -> float:
-    """The shortest time in which every driving frequency makes whole cycles [s].
+    """Return the common period: the shortest time in which every driving frequency makes whole cycles [s].
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
             raise CouplingError(
                 f"{what} at {frequency:.9g} Hz and {first} at {frequencies[first]:.9g} Hz have no common period: their "
                 f"ratio {exact:.12g} is no fraction of whole numbers up to {_LARGEST_NUMBER}; the motion does not "
-                "repeat, leave one of them out or march through time"
+                "repeat, leave one of them out or integrate in time"
             )
         ratios.append(ratio)
     # Cycles of the first in which all make whole ones.
@@ -104,7 +104,7 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
 
 
 def _common_factor(ratios: list[Fraction]) -> int:
-    """Number of times that all repeat within that."""
+    """Return the least common multiple: the number of times that all repeat within a common period."""
     cycles = lcm(*(ratio.denominator for ratio in ratios))
     return int(np.gcd.reduce([int(ratio * cycles) for ratio in ratios]))
 
@@ -189,8 +189,8 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
     if not system.is_smooth:
         what = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
         raise PeriodicError(
-            f"the periodic response does not know {what}; expected a system without: leave that out, or march it "
-            "through time until it settles"
+            f"the periodic response does not know {what}; expected a system without: leave that out, or "
+            "integrate in time until the motion is steady"
         )
     length = common_period(system, period)
     followed = _followed(system)
@@ -202,13 +202,13 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
 
 
 def _segments(system: CoupledSystem, period: float) -> int:
-    """Number of segments: a mesh period each, or several where there are many."""
+    """Count the segments of multiple shooting: a mesh period each, or several where there are many."""
     cycles = round(period * max([abs(contact.rate) for contact in system.contacts], default=0.0))
     return max(1, math.ceil(cycles / math.ceil(cycles / _MOST_SEGMENTS))) if cycles else 1
 
 
 def _followed(system: CoupledSystem) -> Condensed:
-    """The condensed system, as in the transient; see :mod:`coupling.time.condensation`."""
+    """Condense the system, as in the transient; see :mod:`coupling.time.condensation`."""
     if system.resolved.all():
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     return condensed(system)
@@ -279,7 +279,7 @@ def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicRespo
 def response_near(
     system: CoupledSystem, period: float | None, start: tuple[FloatArray, FloatArray], level: int, tolerance: float
 ) -> PeriodicResponse:
-    """The motion next to states at the starts of all segments, unstable ones too, with elements of a known level.
+    """Solve for the periodic motion near states at the starts of all segments, unstable ones too, at an element level.
 
     Raises
     ------
@@ -294,7 +294,7 @@ def response_near(
 
 
 def integrated_again(system: CoupledSystem, period: float | None, kept: BranchMotion) -> PeriodicResponse:
-    """The whole motion again, integrated from the starts of its segments."""
+    """Integrate the whole motion again from the starts of its segments."""
     ready = problem(system, period)
     states = _states(ready, (kept.displacements, kept.velocities))
     found = one_pass(ready.part, ready.contacts, ready.elements(kept.level), states)

@@ -168,8 +168,7 @@ class SuperposedResponse:
 
     @property
     def neglected_part(self) -> FloatArray:
-        """The neglected force as a part of the rms of each drive flank's varying force, shape (c,); 0 for back flanks
-        that stay apart."""
+        """Neglected force over the rms of each drive flank's varying force, shape (c,); 0 for separate back flanks."""
         varying = self._sampled[1].std(axis=0)
         return np.asarray(np.divide(self.neglected_force, varying, out=np.zeros_like(varying), where=varying > 0.0))
 
@@ -183,7 +182,7 @@ def common_cycles(system: CoupledSystem) -> float:
 
 
 def excitation_groups(system: CoupledSystem, longest: float = LONGEST_COMMON_PERIOD) -> tuple[ExcitationGroup, ...]:
-    """Groups of excitations whose common period holds at most a number of the fastest one's cycles.
+    """Group excitations whose common period holds at most a number of the fastest one's cycles.
 
     Meshes are grouped first, the fastest first, then loads and runout errors; each joins the group with which its
     common period is the shortest, or begins one. Constant loads are in none.
@@ -212,7 +211,7 @@ def superposed_response(
     *,
     tolerance: float = 1e-8,
 ) -> SuperposedResponse:
-    """The steady motion as the sum of the motions of its groups of excitations.
+    """Solve for the steady motion as the superposition of the motions of its groups of excitations.
 
     Parameters
     ----------
@@ -238,7 +237,7 @@ def superposed_response(
         if contact.drives and (mean is None or mean.force <= 0.0):
             raise PeriodicError(
                 f"mesh {contact.name!r} carries no mean force, so its flanks part and it is not linear about a mean; "
-                "expected a torque through every mesh, or march it through time until it settles"
+                "expected a torque through every mesh, or a time integration until the motion is steady"
             )
         means.append(MeanMesh(0.0, 0.0, 0.0, 0.0) if mean is None or not contact.drives else mean)
     linear = tuple(_linear_mesh(contact, mean) for contact, mean in zip(system.contacts, means, strict=True))
@@ -268,7 +267,7 @@ def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
 def _driven_by(
     system: CoupledSystem, group: ExcitationGroup, linear: Sequence[ContactConnector] | None = None
 ) -> CoupledSystem:
-    """The system with the excitations of a group alone; other contacts as given, else unchanging."""
+    """Return the system with the excitations of a group alone; other contacts as given, else unchanging."""
     names = {system.contacts[i].name for i in group.meshes}
     contacts = []
     for number, contact in enumerate(system.contacts):
@@ -292,7 +291,7 @@ def _among(frequency: float, frequencies: Sequence[float]) -> bool:
 
 
 def _linear_mesh(contact: ContactConnector, mean: MeanMesh) -> ContactConnector:
-    """A contact as a spring and a dashpot through its mean force and deflection; back flanks stay apart."""
+    """Linearise a contact: spring and dashpot through its mean force and deflection; back flanks stay apart."""
     stiffness = mean.stiffness if contact.drives else contact.contact.mean_mesh_stiffness
     law = ToothContact(
         1.0, piecewise.constant(stiffness, 1.0), piecewise.constant(0.0, 1.0), damping=contact.contact.damping
@@ -322,12 +321,12 @@ def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
             for rate in rates
         ):
             continue
-        turning = [
+        rotating = [
             component.name
             for component, speed in zip(system.components, system.speeds, strict=True)
             if speed != 0.0 and abs(abs(speed) - frequency) <= 1e-6 * frequency
         ]
         names.append(
-            f"rotation of {' and '.join(turning)}" if turning else f"load at {frequency / (2.0 * np.pi):.6g} Hz"
+            f"rotation of {' and '.join(rotating)}" if rotating else f"load at {frequency / (2.0 * np.pi):.6g} Hz"
         )
     return ", ".join(names)

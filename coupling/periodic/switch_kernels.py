@@ -1,10 +1,7 @@
-r"""Switches of contact within an element of time, compiled: root finding on the branches of the contact law.
+r"""Switches of contact within an element of time, compiled: root finding, and variational equations for the monodromy.
 
-Importing this module imports numba.
-
-Variational equations, compiled: small disturbances over an element, and over a step of a contact force.
-
-Importing this module imports numba.
+A switch is the root at which the contact law changes its branch. The variational equations carry small disturbances
+over an element, and over a step of a contact force.
 
 p disturbances of the amplitudes are the rows of an array (p, 2 m): the real parts of all modes, then the imaginary
 ones. Over an element the forces at its places follow the disturbance z of its start by
@@ -13,6 +10,8 @@ ones. Over an element the forces at its places follow the disturbance z of its s
 
 f its compressions and rates there, F those of the forces, S the slopes of the law; and z becomes e^{λh} z - b g. The
 solution of the small system for S f serves all disturbances, of which each is then read and written once.
+
+Importing this module imports numba.
 """
 
 import math

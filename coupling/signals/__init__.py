@@ -1,6 +1,6 @@
 """Vibration signals: spectra, levels, order tracking, sidebands, names of spectral lines, transfer paths.
 
-- :mod:`coupling.signals.spectrum` -- peak, rms and decibels, by one convention.
+- :func:`rms_of_peak`, :func:`decibels` and their inverses -- peak, rms and decibels, by one convention.
 - :func:`power_density`, :func:`spectrogram` -- Welch's average over a long record, and spectra along it.
 - :func:`resample_by_angle`, :func:`order_map` -- signals of a run-up by rotation angle, and their orders over speed.
 - :func:`sidebands` -- amplitude and phase modulation of mesh harmonics by a shaft.

@@ -43,7 +43,7 @@ class Decimation:
         return len(self.taps) // 2
 
     def kept(self, samples: int) -> int:
-        """Number of values from a record of ``samples`` samples."""
+        """Return the number of values from a record of ``samples`` samples."""
         return max((samples - len(self.taps)) // self.factor + 1, 0)
 
     def through(self, held: FloatArray, samples: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -1,6 +1,4 @@
-"""Excitation orders of a machine: shaft orders, mesh harmonics and sidebands.
-
-Names of spectral lines: mesh harmonic, shaft order, sideband, or free vibration of a mode.
+"""Excitation orders of a machine: shaft orders, mesh harmonics and sidebands; names of spectral lines by them.
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
 low order of a shaft, a sideband, any other whole order. A line at none of these is free vibration, named after its
@@ -141,7 +139,7 @@ def line_names(
     """
     if not tolerance > 0.0:
         raise CouplingError(f"names of lines within {tolerance} Hz; expected more than 0")
-    turning = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
+    shaft_frequency = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
     highest = max(frequencies, default=0.0)
     meshes = [abs(contact.rate) for contact in machine.system.contacts if contact.drives and contact.rate]
     excited = excitation_lines(
@@ -152,7 +150,7 @@ def line_names(
     )
     found = []
     for frequency in frequencies:
-        order = frequency / turning
+        order = frequency / shaft_frequency
         mode = _near(modes, frequency, tolerance)
         if frequency <= 0.5 * tolerance:
             found.append(LineName("mean", "mean", order, None))
@@ -161,7 +159,7 @@ def line_names(
             kind: [
                 line.name
                 for line in excited
-                if line.kind == kind and abs(line.order * turning - frequency) <= tolerance
+                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= tolerance
             ]
             for kind in ("mesh", "shaft", "sideband")
         }
@@ -185,7 +183,7 @@ def _label(modes: CoupledModes, mode: int) -> str:
 
 
 def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int | None:
-    """Number of the mode nearest to a frequency; None where none is near. Local compliance is no mode."""
+    """Return the number of the mode nearest to a frequency; None where none is near. Local compliance is no mode."""
     if modes is None:
         return None
     w = 2.0 * np.pi * frequency
@@ -203,7 +201,7 @@ def _nearest(names: list[str]) -> list[str]:
 
 
 def _whole_order(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:
-    """A multiple of a shaft's speed, the slowest multiple first."""
+    """Return a multiple of a shaft's speed, the slowest multiple first."""
     found = []
     for name, speed in machine.speeds.items():
         each = abs(speed) / (2.0 * np.pi)

@@ -1,10 +1,11 @@
-"""Time histories of a transient or a periodic response, by the names of sensors, gears, bearings and gear pairs.
+"""Time histories of a transient or a periodic response, by name of sensor, gear, bearing, gear pair and mode.
 
-Modal coordinates of rotors and housing in a coupled motion.
+`histories` gives the signals of sensors, gears, bearings and gear pairs, `modal_record` the modal coordinates of rotors
+and housing in a coupled motion.
 
-A component's own coordinates are those of the shaft freed of its bearings. The modes of TM-101442, Eqs. 7 to 10, are
-those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free shaft.
-Both span the same motions. With the component's lateral coordinates q, whose shapes are the columns of Φᵀ V,
+A component's own coordinates are those of the shaft freed of its bearings. The modes of NASA TM-101442, Eqs. 7 to 10,
+are those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free
+shaft. Both span the same motions. With the component's lateral coordinates q, whose shapes are the columns of Φᵀ V,
 
     A = V q,    V = `RotorComponent.mixture`, orthogonal,
 
@@ -91,7 +92,7 @@ class Histories:
         return np.concatenate([np.empty((count, 0)), *parts], axis=1)
 
     def with_columns(self, times: FloatArray, columns: FloatArray) -> "Histories":
-        """The same signals with other samples, from columns as in :attr:`columns`."""
+        """Return the same signals with other samples, from columns as in :attr:`columns`."""
         groups: list[dict[str, FloatArray]] = []
         column = 0
         for name in _GROUPS:
@@ -238,14 +239,14 @@ def empty_record(machine: CoupledMachine, outputs: TransientOutputs) -> MotionRe
     return MotionRecord(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
-def histories(machine: CoupledMachine, result: MotionRecord, turning: SpeedProfile | None = None) -> Histories:
+def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfile | None = None) -> Histories:
     """Time histories by name of a transient or a periodic response with :func:`transient_outputs`.
 
-    ``turning`` is the speed over time, by default the nominal one.
+    ``profile`` is the speed over time, by default the nominal one.
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
-    turned, rates, _ = (turning or SpeedProfile.steady()).at(result.times)
+    turned, rates, _ = (profile or SpeedProfile.steady()).at(result.times)
     nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0
@@ -375,7 +376,7 @@ class ModalRecord:
         return np.concatenate([*moved, self.housing_acceleration], axis=1)
 
     def with_columns(self, columns: FloatArray) -> "ModalRecord":
-        """The same signals with other samples, from columns as in :attr:`columns`."""
+        """Return the same signals with other samples, from columns as in :attr:`columns`."""
         coordinates = {name: columns[:, i] for i, name in enumerate(self.coordinates)}
         return ModalRecord(coordinates, columns[:, len(coordinates) :])
 
@@ -383,7 +384,7 @@ class ModalRecord:
 def with_modal_rows(
     machine: CoupledMachine, outputs: TransientOutputs, count: int = 0, *, housing: bool = True
 ) -> TransientOutputs:
-    """Outputs and, after them, the accelerations of the housing's modes, and the first modal coordinates of each part.
+    """Append outputs: accelerations of the housing's modes and the first modal coordinates of each part.
 
     Parameters
     ----------
@@ -412,7 +413,7 @@ def modal_record(machine: CoupledMachine, result: MotionRecord, count: int = 0, 
 
 
 def _coordinate_rows(machine: CoupledMachine, count: int) -> dict[str, FloatArray]:
-    """The first rows of each kind of each part, by name."""
+    """Return the first rows of each kind of each part, by name."""
     if count == 0:
         return {}
     named = {}

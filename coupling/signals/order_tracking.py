@@ -62,7 +62,7 @@ def resample_by_angle(
     signal : ndarray, shape (..., s)
     times : ndarray, shape (s,)
         [s], evenly spaced, s at least 6.
-    turning : Turning
+    turning : SpeedProfile
         Speed of the machine over time, relative to the nominal one.
     turns_per_second : float
         Nominal speed of the leading shaft [Hz], positive.

@@ -1,18 +1,13 @@
-"""Amplitude spectrum of evenly sampled signals; lines at given frequencies, averages, peaks.
+"""Spectra of evenly sampled signals: amplitude spectrum, levels in decibels, power spectral density, spectrogram.
 
 Amplitudes are peak values throughout: a sine a sin(2πft) has the line a, an rms value of a/√2 and, in decibels, the
-level of that rms value, see :mod:`coupling.signals.spectrum`. The mean, the d.c. part, is no vibration: it stands alone
-at 0 Hz.
+level of that rms value. The mean, the d.c. part, is no vibration: it stands alone at 0 Hz.
 
-Levels in decibels, peak and rms values of sines, by one convention.
+A level in decibels is 20 lg of an *rms* value over a reference (ISO 80000-8, ISO 1683), so a sine of peak amplitude a
+has the level 20 lg(a / (√2 a₀)): one of 1 m/s² peak stands at 117.0 dB re 1 µm/s², not at 120.
 
-A level is 20 lg of an *rms* value over a reference (ISO 80000-8, ISO 1683), so a sine of peak amplitude a has the level
-20 lg(a / (√2 a₀)): one of 1 m/s² peak stands at 117.0 dB re 1 µm/s², not at 120.
-
-Power spectral density by Welch's method, and the spectrogram of a record.
-
-Welch (1967) averages the squares of the spectra of windowed, overlapping stretches: lines of a steady sine keep their
-height, and the average of noise converges to its density.
+The power spectral density follows from Welch's method (1967), which averages the squares of the spectra of windowed,
+overlapping stretches: lines of a steady sine keep their height, and the average of noise converges to its density.
 """
 
 from collections.abc import Iterable
@@ -231,7 +226,7 @@ class SignalParts:
 
 
 def signal_parts(signal: FloatArray) -> SignalParts:
-    """The d.c. and the a.c. part of a signal of shape (..., s)."""
+    """Split a signal of shape (..., s) into its d.c. and its a.c. part."""
     mean = signal.mean(axis=-1)
     varying = signal - mean[..., None]
     return SignalParts(mean, np.asarray(np.sqrt((varying**2).mean(axis=-1))), np.abs(varying).max(axis=-1))

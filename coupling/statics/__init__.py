@@ -1,1 +1,1 @@
-"""Statics: the equilibrium under the mean load, and the mean mesh stiffness about it."""
+"""Statics: static equilibrium under the mean load, and the mean mesh stiffness about it."""

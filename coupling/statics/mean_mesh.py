@@ -5,7 +5,8 @@ contact under its mean force F is replaced by its mean curve δ̄(F), the loaded
 and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the torques alone
 give F; where meshes share a torque, their stiffness and deviations divide it.
 
-Linearised tooth contacts: mesh stiffness and damping about the mean load, or at an instant.
+Linear analyses take the tooth contacts as mesh stiffness and damping about the mean load, or at an instant
+(`ContactState`).
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +23,7 @@ from coupling.statics.static_equilibrium import load_balances, static_equilibriu
 FloatArray = npt.NDArray[np.float64]
 
 _POINTS = 200  # phases of a mesh period, beside its events
-_SETTLED = 1e-7  # change of the force in a step of the iteration, relative to the largest force
+_CONVERGED = 1e-7  # change of the force in a step of the iteration, relative to the largest force
 _ROUNDING = 1e-9  # part of the contact force by each coordinate below which a force is rounding
 _LOOSE = 1e-12  # part of the largest stiffness below which a stiffness is zero
 _ITERATIONS = 30
@@ -92,21 +93,21 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     stiffness = np.array([law.mean_mesh_stiffness for law in laws])
     offset = np.array([system.contacts[number].clearance for number in driving])
     before = np.full(len(driving), np.nan)
-    pressed = np.ones(len(driving), dtype=bool)
+    loaded = np.ones(len(driving), dtype=bool)
     found: list[MeanMesh | None] = [None] * len(driving)
     for _ in range(_ITERATIONS):
-        matrix = held + (directions * (stiffness * pressed)) @ directions.T
-        if not np.all(pressed) and np.linalg.svd(matrix, compute_uv=False)[-1] < _LOOSE * stiffest:
+        matrix = held + (directions * (stiffness * loaded)) @ directions.T
+        if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False)[-1] < _LOOSE * stiffest:
             # The mean load parts flanks and nothing else holds the train.
             return nothing
-        q = np.linalg.solve(matrix, system.load + directions @ (stiffness * pressed * offset))
+        q = np.linalg.solve(matrix, system.load + directions @ (stiffness * loaded * offset))
         force = stiffness * (directions.T @ q - offset)
         rounding = _ROUNDING * stiffness * (np.abs(directions.T) @ np.abs(q))
-        settled = np.abs(force - before) <= _SETTLED * np.abs(force * pressed).max() + rounding
+        converged = np.abs(force - before) <= _CONVERGED * np.abs(force * loaded).max() + rounding
         parted = force < -rounding
-        if np.all(settled | parted) and np.array_equal(parted, ~pressed):
+        if np.all(converged | parted) and np.array_equal(parted, ~loaded):
             break
-        before, pressed = force, ~parted
+        before, loaded = force, ~parted
         for number, law in enumerate(laws):
             if force[number] <= rounding[number]:
                 found[number] = _PARTED if parted[number] else None

@@ -1,6 +1,10 @@
-"""Static equilibrium of the coupled system under its mean loads, by Newton's method.
+"""Static equilibrium of the coupled system under its mean loads, by Newton's method; loaded flanks.
 
-Loaded flanks: drive flanks, or back flanks of a machine that coasts, by the mean mesh force.
+Sought are coordinates q at which the residual F - K q - Σ d f(dᵀ q) is zero, with the tooth contacts at their mesh
+phases and rolling bearings at their cage angles of one time.
+
+The sign of the mean mesh force decides which flanks are loaded: the drive flanks, or the back flanks of a machine that
+coasts.
 """
 
 from collections.abc import Sequence
@@ -62,10 +66,10 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     q: FloatArray = np.asarray(
         np.linalg.solve(system.mean_stiffness + penalty, system.load + closing), dtype=np.float64
     )
-    pressing = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
+    loading = float(np.linalg.norm(system.load) + np.linalg.norm(closing)) or 1e-300
     residual, tangent = _out_of_balance(system, penalty, q, time)
     for _ in range(_STEPS):
-        if np.linalg.norm(residual) <= 1e-10 * pressing:
+        if np.linalg.norm(residual) <= 1e-10 * loading:
             return q
         step = np.linalg.lstsq(tangent, residual, rcond=1e-15)[0]
         for halving in range(_HALVINGS if system.nonlinear else 1):
@@ -73,14 +77,14 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
             if np.linalg.norm(trial) < np.linalg.norm(residual):
                 break
         q, residual, tangent = q + 0.5**halving * step, trial, slope
-    _require_pressed(system, penalty)
+    _require_closed_flanks(system, penalty)
     raise TransientError(
         f"no static equilibrium of teeth and bearings after {_STEPS} Newton steps; the torque may be too small to "
         "close the mesh, or the play of a bearing leave its shaft loose"
     )
 
 
-def _require_pressed(system: CoupledSystem, penalty: FloatArray) -> None:
+def _require_closed_flanks(system: CoupledSystem, penalty: FloatArray) -> None:
     """Raise `CouplingError` where the mean torque opens flanks without back flanks."""
     q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
     for contact in system.contacts:
@@ -162,7 +166,7 @@ def _bearing(connector: NonlinearConnector, deflection: FloatArray, time: float)
 
 
 def coasting_velocity(system: CoupledSystem, rate: float) -> FloatArray:
-    """Initial rates with which rigid-body motions oscillate under harmonic loads without a drift, shape (n,).
+    """Return initial velocities, shape (n,): rigid-body motions then oscillate under harmonic loads without drift.
 
     The response of such a motion to Re(F e^{iwt}) has the velocity Re(F e^{iwt} / (iw)). From rest a drift would be
     added to it. ``rate`` is the speed as a part of the nominal one.
@@ -200,7 +204,7 @@ def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
 
 
 def with_loaded_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> CoupledSystem:
-    """The system with back flanks as its drive flanks where the mean torque pulls the drive flanks apart.
+    """Exchange drive and back flanks where the mean torque pulls the drive flanks apart.
 
     ``backs`` has, for each of the first contacts, the number of its back flanks, or None where these never meet.
     """

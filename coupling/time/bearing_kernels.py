@@ -1,9 +1,8 @@
 r"""Rolling-bearing law, compiled: forces and tangent stiffness by the ring's deflections and the cage angle.
 
-The law of a ball at the azimuth ψ is that of :mod:`rotors.rolling_bearings.element_contacts`, the law of a roller's
-slice that of :mod:`rotors.rolling_bearings.element_contacts`. Added is the slope of the energy over ψ, by which the
-rotating cage does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the
-ring's,
+The laws of a ball at the azimuth ψ and of a roller's slice are those of
+:mod:`rotors.rolling_bearings.element_contacts`. Added is the slope of the energy over ψ, by which the rotating cage
+does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 
@@ -157,13 +156,13 @@ def bearing_force(
         kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
         angle = bearings.cage[row, 0] + bearings.cage[row, 1] * turned
         if kind == BALLS:
-            added, turning = _balls(shape, count, angle, q, force, tangent)
+            added, by_angle = _balls(shape, count, angle, q, force, tangent)
         elif kind == ROLLERS:
-            added, turning = _rollers(shape, bearings.slices[row], count, angle, q, force, tangent)
+            added, by_angle = _rollers(shape, bearings.slices[row], count, angle, q, force, tangent)
         else:
-            added, turning = _gap(shape, q, force, tangent), 0.0
+            added, by_angle = _gap(shape, q, force, tangent), 0.0
         energy += added
-        slope += turning * bearings.cage[row, 1]
+        slope += by_angle * bearings.cage[row, 1]
     preload = bearings.preload[number]
     force[2] -= preload
     return energy - preload * q[2], slope

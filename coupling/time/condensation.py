@@ -10,7 +10,7 @@ which takes K, C, the contacts' directions and the loads to Tᵀ K T and so on (
 MacNeal's residual flexibility without its mass), and keeps the static compliance exact. The error by dampers that act
 on q_r is w C/K of its bearing at a circular frequency w, and the square of that in the retained coordinates.
 
-Low-rank matrices: the common subspace in which several square matrices act.
+The condensed connectors' matrices are of low rank: they are kept on the common subspace in which they act.
 """
 
 from collections.abc import Iterator
@@ -85,16 +85,16 @@ def condensed(system: CoupledSystem) -> Condensed:
     recovery[left], recovery[held] = np.eye(len(left)), follow
     # Retained coordinates gain connectors between them that act in few directions.
     crossing = damping[np.ix_(left, held)] @ follow
-    tied = [part[np.ix_(left, left)] for part in system.connector_matrices()]
-    tied[0] = tied[0] + stiffness[np.ix_(left, held)] @ follow
-    tied[1] = (
-        tied[1] + crossing + follow.T @ damping[np.ix_(held, left)] + follow.T @ damping[np.ix_(held, held)] @ follow
+    linked = [part[np.ix_(left, left)] for part in system.connector_matrices()]
+    linked[0] = linked[0] + stiffness[np.ix_(left, held)] @ follow
+    linked[1] = (
+        linked[1] + crossing + follow.T @ damping[np.ix_(held, left)] + follow.T @ damping[np.ix_(held, held)] @ follow
     )
-    directions, (connector_stiffness, connector_damping) = common_span(tied)
+    directions, (connector_stiffness, connector_damping) = common_span(linked)
     less = CoupledSystem(
         components=tuple(_part(component, among) for component, among in _members(system, kept)),
         speeds=system.speeds,
-        linear=(LinearConnector("ties", directions, connector_stiffness, connector_damping),),
+        linear=(LinearConnector("condensed", directions, connector_stiffness, connector_damping),),
         contacts=tuple(_reduced(contact, recovery) for contact in system.contacts),
         load=system.load @ recovery,
         harmonic_loads=tuple(replace(one, amplitude=one.amplitude @ recovery) for one in system.harmonic_loads),
@@ -121,7 +121,7 @@ def _reduced(contact: ContactConnector, recovery: FloatArray) -> ContactConnecto
 
 
 def _part(component: Component, among: npt.NDArray[np.int64]) -> Component:
-    """A component reduced to some of its coordinates."""
+    """Reduce a component to some of its coordinates."""
     square = np.ix_(among, among)
     return Component(
         component.name,

@@ -74,10 +74,10 @@ def evaluate_friction(
             contacts.friction[k, 1],
             contacts.friction[k, 2],
         )
-    pressed = contacts.friction[k, 0] * laws[k, FORCE]
+    coulomb = contacts.friction[k, 0] * laws[k, FORCE]
     stiff, viscous = contacts.friction[k, 0] * laws[k, TANGENT], contacts.friction[k, 0] * laws[k, DAMPING]
-    force[row], force[row + 1] = pressed * a, pressed * b
-    drag[0], drag[1] = stiff * a + pressed * a_slope, stiff * b + pressed * b_slope
+    force[row], force[row + 1] = coulomb * a, coulomb * b
+    drag[0], drag[1] = stiff * a + coulomb * a_slope, stiff * b + coulomb * b_slope
     drag[2], drag[3] = viscous * a, viscous * b
 
 

@@ -1,10 +1,9 @@
-"""Small dense linear systems, compiled: Gaussian elimination with row exchanges.
+"""Small dense linear algebra, compiled: Gaussian elimination with row exchanges, products with few rows.
+
+Linear systems are as small as the number of contacts. Products with a few rows of a matrix are most of the arithmetic
+of a time step. The functions are inlined, as passing their arrays would cost as much again.
 
 Importing this module imports numba.
-
-Products with a few rows of a matrix, compiled: most of the arithmetic of a time step.
-
-Importing this module imports numba. The functions are inlined, as passing their arrays would cost as much again.
 """
 
 import numpy as np
@@ -56,7 +55,7 @@ def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
 
 @inner()
 def solve_part_in_place(matrix: FloatArray, right: FloatArray, n: int, columns: int) -> None:
-    """The same for the first n rows and columns of a matrix and the first columns of ``right``."""
+    """Solve with the first n rows and columns of a matrix and the first columns of ``right`` alone, in place."""
     for column in range(n):
         pivot = column
         for row in range(column + 1, n):

@@ -16,7 +16,7 @@ size. Carried through the propagator,
 it is the error of the state at the element's end, of the true order 2 s + 1; its largest, relative to the amplitudes'
 root mean square, is kept below the tolerance by the number of elements between events.
 
-Record of exponential collocation: states, samples and energy balance, from the trace of its elements.
+The record (states, samples and energy balance) is read from the trace of the elements.
 """
 
 from dataclasses import replace
@@ -119,7 +119,7 @@ class CollocationRecord:
         samples.acceleration[rows] = z @ self._acceleration[0].T - force @ self._acceleration[1].T
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
-        """The state with the work, the losses and the contact figures of a trace added."""
+        """Add the work, the losses and the contact figures of a trace to the state."""
         from coupling.periodic.integration_kernels import add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
@@ -148,19 +148,19 @@ _CUTS = 400  # room for switches in a chunk, besides four for each element
 
 
 def integration_method(
-    system: CoupledSystem, settings: TransientSettings, turning: SpeedProfile
+    system: CoupledSystem, settings: TransientSettings, profile: SpeedProfile
 ) -> Literal["newmark", "exact"]:
-    """Method of time integration: the given one, or by ``auto`` the exact one wherever it applies.
+    """Choose the method of time integration: the given one, or by ``auto`` the exact one wherever it applies.
 
     Raises
     ------
     TransientError
         Where the exact method is given and does not apply, with the reason.
     """
-    return "newmark" if exact_part(condensed(system).system, settings, turning) is None else "exact"
+    return "newmark" if exact_part(condensed(system).system, settings, profile) is None else "exact"
 
 
-def exact_part(system: CoupledSystem, settings: TransientSettings, turning: SpeedProfile) -> LinearPart | None:
+def exact_part(system: CoupledSystem, settings: TransientSettings, profile: SpeedProfile) -> LinearPart | None:
     """Linear part of the exact method; None for Newmark's method.
 
     Raises
@@ -171,7 +171,7 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Spee
     if settings.method == "newmark":
         return None
     reason = ""
-    if not turning.is_steady:
+    if not profile.is_steady:
         reason = "the speed varies, and with it the machine"
     elif system.timed_loads:
         reason = "a load is a table over time"
@@ -183,12 +183,12 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, turning: Spee
         except PeriodicError as error:
             reason = str(error)
     if settings.method == "exact":
-        raise TransientError(f"the exact march does not apply: {reason}; march by Newmark's method")
+        raise TransientError(f"exponential collocation does not apply: {reason}; use Newmark's method")
     return None
 
 
 def steady_part(system: CoupledSystem) -> LinearPart:
-    """The linear part, its rates in units of the fastest mesh, load or mode."""
+    """Return the linear part, its rates in units of the fastest mesh, load or mode."""
     rates = [2.0 * np.pi * abs(contact.rate) for contact in system.contacts]
     rates += [abs(load.frequency) for load in system.harmonic_loads]
     return linear_part(system, max(rates, default=0.0) or system.highest_frequency or 1.0, repeats=False)
@@ -202,12 +202,12 @@ class CollocationStepper:
     too_fine = "elements below {step:.1e} s; raise the tolerance"
 
     def __init__(
-        self, part: LinearPart, settings: TransientSettings, outputs: TransientOutputs, turning: SpeedProfile
+        self, part: LinearPart, settings: TransientSettings, outputs: TransientOutputs, profile: SpeedProfile
     ) -> None:
         self.system, self._part, self._settings = part.system, part, settings
         self.arrays = kernel_arrays(part.system, outputs, settings.beta, settings.gamma)
         self.coarsen_below = _MUCH_BETTER * settings.tolerance
-        self._coarsest = ORDER * coarsest_step(part.system, turning, settings.largest_step)
+        self._coarsest = ORDER * coarsest_step(part.system, profile, settings.largest_step)
         self._record = CollocationRecord(part, outputs, self.arrays.contacts)
         self._steps = element_sizes(part, np.zeros(_SIZES), self._coarsest, inner=True)
         self._shape = part.reference.eigenvalue.size, ORDER, len(part.system.contacts)
@@ -233,12 +233,12 @@ class CollocationStepper:
             self._record.add(state, trace, self._steps, self._free)
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
-        """Number of stretches between ``bounds`` to attempt at once."""
+        """Return the number of stretches between ``bounds`` to attempt at once."""
         elements = np.cumsum(_pieces(bounds, step))
         return min(max(1, min(self._most_stretches, int(np.searchsorted(elements, _ELEMENTS)))), len(bounds) - 1)
 
     def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
-        """March through the stretches between ``bounds``, each cut into equal elements."""
+        """Integrate over the stretches between ``bounds``, each cut into equal elements."""
         pieces = _pieces(bounds, step)
         self._chunk, self._end = self._elements(bounds, pieces)
         q, v = self._record.motion(self._end, self._free, float(bounds[-1]))
@@ -247,7 +247,7 @@ class CollocationStepper:
         return Attempt(q, v, local, len(error), float((np.diff(bounds) / pieces).min()))
 
     def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
-        """The state after the last attempt, with its work, contact figures and samples."""
+        """Return the state after the last attempt, with its work, contact figures and samples."""
         after = self._record.add(state, self._chunk, self._steps, self._free)
         if done > self._settings.record_from:
             times = self._times_until(done, state.sample)
@@ -261,7 +261,7 @@ class CollocationStepper:
         return self._record.contact_figures(state, self._chunk)[:, 3], done
 
     def _times_until(self, done: float, first: int) -> FloatArray:
-        """Times of the samples from number ``first`` on that are no later than ``done`` [s]."""
+        """Return times of the samples from number ``first`` on that are no later than ``done`` [s]."""
         settings = self._settings
         # One more than rounding may leave out.
         count = int((done - settings.record_from) / settings.sample_interval) + 2 - first
@@ -295,7 +295,7 @@ class CollocationStepper:
 
 
 def _pieces(bounds: FloatArray, size: float) -> IntArray:
-    """Number of equal elements, no larger than ``size`` [s], in each stretch between the bounds."""
+    """Count equal elements, no larger than ``size`` [s], in each stretch between the bounds."""
     return np.maximum(np.ceil(np.diff(bounds) / size - 1e-9), 1.0).astype(np.int64)
 
 

@@ -1,12 +1,10 @@
 """Time integration: the driver that carries a coupled system from event to event, whatever method steps it.
 
-Time is cut at every event (a pair of teeth entering or leaving contact), so no step crosses a jump of the mesh
-stiffness. The stretches between events are cut into equal steps by a stepper: Newmark's method
-(:mod:`coupling.time.newmark_stepper`) or exponential collocation (:mod:`coupling.time.exponential_collocation`). The
-driver takes a chunk of stretches at a time, accepts it where the stepper's local error is below the tolerance, and
+Time is cut at every event (a pair of teeth entering or leaving contact, a load or speed changing its slope), so no step
+crosses a jump of the mesh stiffness. The stretches between events are cut into equal steps by a stepper: Newmark's
+method (:mod:`coupling.time.newmark_stepper`) or exponential collocation (:mod:`coupling.time.exponential_collocation`).
+The driver takes a chunk of stretches at a time, accepts it where the stepper's local error is below the tolerance, and
 repeats it with finer steps otherwise.
-
-Event times: bounds between which a time integration steps, so that no step crosses a jump of the stiffness.
 """
 
 import time
@@ -36,11 +34,11 @@ _STEPS_PER_BLOCK = 1 << 20
 _MOST_BLOCKS = 1 << 24
 
 
-def coarsest_step(system: CoupledSystem, turning: SpeedProfile, largest: float) -> float:
+def coarsest_step(system: CoupledSystem, profile: SpeedProfile, largest: float) -> float:
     """Coarsest step [s]: it resolves the highest natural frequency, and the largest step at the highest speed."""
     highest = system.highest_frequency
     resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
-    return float(min(largest / max(1.0, float(turning.rates.max())), resolving))
+    return float(min(largest / max(1.0, float(profile.rates.max())), resolving))
 
 
 def same_time(step: float) -> float:
@@ -49,7 +47,7 @@ def same_time(step: float) -> float:
 
 
 def block_ends(duration: float, interval: float, step: float, samples: int = SAMPLES_PER_BLOCK) -> FloatArray:
-    """Ends of blocks with a limited number of samples and coarsest steps, from 0 to the duration [s].
+    """Return ends of blocks with a limited number of samples and coarsest steps, from 0 to the duration [s].
 
     Raises
     ------
@@ -63,14 +61,14 @@ def block_ends(duration: float, interval: float, step: float, samples: int = SAM
 
 
 def boundaries(
-    system: CoupledSystem, turning: SpeedProfile, start: float, end: float, step: float, others: tuple[float, ...]
+    system: CoupledSystem, profile: SpeedProfile, start: float, end: float, step: float, others: tuple[float, ...]
 ) -> FloatArray:
     """Start, events and end of a block, with long stretches between them cut evenly [s]."""
     inner = [np.array([time for time in others if start < time < end])]
-    inner += [times[(times > start) & (times < end)] for times in _known_times(system, turning)]
-    (turned_from,), (turned_to,) = (turning.at(time)[0] for time in (start, end))
+    inner += [times[(times > start) & (times < end)] for times in _known_times(system, profile)]
+    (turned_from,), (turned_to,) = (profile.at(time)[0] for time in (start, end))
     for contact in system.contacts:
-        inner.append(turning.times_of(contact.event_times(float(turned_from), float(turned_to))))
+        inner.append(profile.times_of(contact.event_times(float(turned_from), float(turned_to))))
     times = np.unique(np.concatenate([*inner, [start, end]]))
     times = times[np.isfinite(times) & (times >= start) & (times <= end)]
     # Events that rounding alone holds apart are one.
@@ -79,7 +77,7 @@ def boundaries(
     if times[-1] < end and len(times) > 1:
         times = np.append(times[:-1], end)
     # Matrices are those of a stretch's mean speed.
-    gained = np.abs(np.diff(turning.at(times)[1]))
+    gained = np.abs(np.diff(profile.at(times)[1]))
     pieces = np.maximum(np.ceil(np.diff(times) / (_STEPS_PER_SEGMENT * step)), np.ceil(gained / _SPEED_GAIN))
     pieces = np.maximum(np.minimum(pieces, np.ceil(np.diff(times) / (8.0 * step))), 1.0).astype(np.int64)
     if pieces.max() == 1:
@@ -88,16 +86,16 @@ def boundaries(
     return np.concatenate([*cuts, times[-1:]])
 
 
-def _known_times(system: CoupledSystem, turning: SpeedProfile) -> Iterator[FloatArray]:
-    """Times at which loads and speeds change their slope [s]."""
-    if len(turning.times) > 1:
-        yield turning.times
+def _known_times(system: CoupledSystem, profile: SpeedProfile) -> Iterator[FloatArray]:
+    """Yield times at which loads and speeds change their slope [s]."""
+    if len(profile.times) > 1:
+        yield profile.times
         # Connectors change their slope over speed where these speeds are passed.
         for rate in system.connector_rates if len(system.connector_rates) > 1 else ():
-            before, after = turning.rates[:-1] - rate, turning.rates[1:] - rate
+            before, after = profile.rates[:-1] - rate, profile.rates[1:] - rate
             crossing = before * after < 0.0
             part = before[crossing] / (before[crossing] - after[crossing])
-            yield turning.times[:-1][crossing] + part * np.diff(turning.times)[crossing]
+            yield profile.times[:-1][crossing] + part * np.diff(profile.times)[crossing]
     for load in system.timed_loads:
         yield load.times
 
@@ -168,13 +166,13 @@ class Checkpoint:
 
     @staticmethod
     def from_arrays(arrays: Mapping[str, npt.NDArray[Any]]) -> "Checkpoint":
-        """The checkpoint of which :meth:`as_arrays` gave these arrays."""
+        """Restore the checkpoint from the arrays of :meth:`as_arrays`."""
         values: dict[str, Any] = {field.name: np.asarray(arrays[field.name]) for field in fields(Checkpoint)}
         return Checkpoint(**{name: value if value.ndim else value.item() for name, value in values.items()})
 
 
 def sample_times(settings: TransientSettings, first: int, count: int) -> FloatArray:
-    """Times of ``count`` samples from number ``first`` on [s]."""
+    """Return times of ``count`` samples from number ``first`` on [s]."""
     return np.asarray(
         settings.record_from + settings.sample_interval * np.arange(first, first + count, dtype=np.float64)
     )
@@ -231,13 +229,13 @@ class Stepper(Protocol):
         """Prepare for a block; ``compiles`` where the kernels are to be compiled before the clock starts."""
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
-        """Number of stretches between ``bounds`` to attempt at once, with steps of at most ``step`` [s]."""
+        """Return the number of stretches between ``bounds`` to attempt at once, with steps of at most ``step`` [s]."""
 
     def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
         """Step through the stretches between ``bounds``."""
 
     def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
-        """The state after the last attempt, with its work, contact figures and samples, up to the time ``done`` [s]."""
+        """Return the state after the last attempt, with its work, contact figures and samples, up to ``done`` [s]."""
 
     def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
         """Time of the last touch of each contact before a divergence, shape (c,), and the end of what is known [s]."""
@@ -247,28 +245,30 @@ class Integration:
     """Driver of a time integration: what stays the same through it, and the loop over chunks of steps."""
 
     def __init__(
-        self, stepper: Stepper, settings: TransientSettings, turning: SpeedProfile, samples_per_block: int
+        self, stepper: Stepper, settings: TransientSettings, profile: SpeedProfile, samples_per_block: int
     ) -> None:
         system = stepper.system
-        self.system, self.settings, self.turning, self.stepper = system, settings, turning, stepper
+        self.system, self.settings, self.profile, self.stepper = system, settings, profile, stepper
         self.arrays = stepper.arrays
-        step = coarsest_step(system, turning, settings.largest_step)
+        step = coarsest_step(system, profile, settings.largest_step)
         self.base = step * stepper.steps_in_one
         self.ends = block_ends(settings.duration, settings.sample_interval, step, samples_per_block)
         self._cut = -1, np.zeros(0)
-        # Nothing that stays together moves so much further than its loads press it.
-        pushed = timed_amplitude(system) + np.abs(system.load)
-        self.reach = float(_resting(system, turning, pushed, settings.duration).max(initial=0.0))
+        # A machine that stays together moves no further than a multiple of its static deflection.
+        applied = timed_amplitude(system) + np.abs(system.load)
+        self.reach = float(_resting(system, profile, applied, settings.duration).max(initial=0.0))
 
     def start(self, initial: tuple[FloatArray, FloatArray] | None) -> Checkpoint:
-        """Static equilibrium under the initial loads, coasting where nothing resists; or a given state."""
-        system, (_, rates, swings) = self.system, self.turning.at(0.0)
-        load = sum((one.at(0.0) for one in system.timed_loads), system.load + swings[0] * system.acceleration_load)
+        """Start from static equilibrium under the initial loads, coasting where nothing resists, or a given state."""
+        system, (_, rates, accelerations) = self.system, self.profile.at(0.0)
+        load = sum(
+            (one.at(0.0) for one in system.timed_loads), system.load + accelerations[0] * system.acceleration_load
+        )
         resting = system if np.array_equal(load, system.load) else replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
         first = float(self.bounds(0)[1])
-        turned, rates, _ = self.turning.at(1e-7 * first)
+        turned, rates, _ = self.profile.at(1e-7 * first)
         stored = stored_energy(*self.arrays[:3], q, v, float(turned[0]), float(rates[0]))
         energy = self.held(q, v) + stored
         return Checkpoint(
@@ -344,10 +344,12 @@ class Integration:
         DeflectionError
         """
         for contact, peak in zip(self.system.contacts, peaks.tolist(), strict=True):
-            pressed = max(float(contact.direction @ q) - contact.clearance, peak / contact.contact.mean_mesh_stiffness)
-            if pressed > contact.compression_limit:
+            compression = max(
+                float(contact.direction @ q) - contact.clearance, peak / contact.contact.mean_mesh_stiffness
+            )
+            if compression > contact.compression_limit:
                 raise DeflectionError(
-                    f"the teeth of {contact.name} are pressed together by {1e3 * pressed:.3g} mm between "
+                    f"the teeth of {contact.name} are pressed together by {1e3 * compression:.3g} mm between "
                     f"t = {begin:.6g} s and {now:.6g} s, where teeth can follow "
                     f"{1e3 * contact.compression_limit:.3g} mm at most (a quarter of the module); expected loads "
                     "that the teeth carry and a machine that is stable: look for negative damping ratios among the "
@@ -364,7 +366,7 @@ class Integration:
         """Bounds of the stretches of a block [s]."""
         if number != self._cut[0]:
             ends = float(self.ends[number]), float(self.ends[number + 1])
-            self._cut = number, boundaries(self.system, self.turning, *ends, self.base, (self.settings.record_from,))
+            self._cut = number, boundaries(self.system, self.profile, *ends, self.base, (self.settings.record_from,))
         return self._cut[1]
 
     def held(self, q: FloatArray, v: FloatArray) -> float:
@@ -372,8 +374,8 @@ class Integration:
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
         if len(dynamics.connector_rates) == 1:
-            tied = dynamics.connectors @ q
-            energy += 0.5 * tied @ dynamics.connector_stiffness[0] @ tied
+            deflection = dynamics.connectors @ q
+            energy += 0.5 * deflection @ dynamics.connector_stiffness[0] @ deflection
         return float(energy)
 
     def _divergence(self, begin: float, last_touch: FloatArray, until: float) -> str:
@@ -382,7 +384,7 @@ class Integration:
             if contact.drives and (until - last) * abs(contact.rate) > _GONE:
                 return (
                     f"the teeth of {contact.name} came apart at t = {last:.6g} s and did not meet again: nothing "
-                    "presses them together; look at the torques in and out, and whether the driver leads"
+                    "holds them together; look at the torques in and out, and whether the driver leads"
                 )
         return (
             f"the motion diverged after t = {begin:.6g} s; the linear part may be unstable: look for "
@@ -395,10 +397,10 @@ def timed_amplitude(system: CoupledSystem) -> FloatArray | float:
     return sum((np.abs(load.values).max() * np.abs(load.direction) for load in system.timed_loads), 0.0)
 
 
-def _resting(system: CoupledSystem, turning: SpeedProfile, pushing: FloatArray, duration: float) -> FloatArray:
+def _resting(system: CoupledSystem, profile: SpeedProfile, applied: FloatArray, duration: float) -> FloatArray:
     """Coordinates under the loads' amplitudes at rest, shape (n,); F t²/2 where nothing resists."""
-    fastest = max(1.0, float(turning.rates.max())) ** 2
-    loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + pushing
+    fastest = max(1.0, float(profile.rates.max())) ** 2
+    loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + applied
     stiffness = np.abs(np.diag(system.mean_stiffness))
     compliance = np.full(system.size, 0.5 * duration**2)
     return np.asarray(loads * np.divide(1.0, stiffness, out=compliance, where=stiffness > 0.0))

@@ -4,7 +4,7 @@ n coordinates, c contacts, r connector directions, h harmonic loads; :mod:`coupl
 a coupled system. Nonlinear laws act along k directions: those of the contacts, then those of b nonlinear bearings, e
 in all, then two for each contact with friction.
 
-Rolling-bearing and gap laws as plain arrays for the compiled kernels.
+Rolling-bearing and gap laws are plain arrays too.
 """
 
 from collections.abc import Iterator, Sequence
@@ -233,5 +233,5 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
 
 
 def _ball_shape(row: BallRow) -> tuple[float, ...]:
-    """A, v₀, |v₀|² − A², the inner centres' radius and place, and K; see `rotors.rolling_bearings.element_contacts`."""
+    """Return A, v₀, |v₀|² - A², inner centres (radius, place), K; see `rotors.rolling_bearings.element_contacts`."""
     return row.groove_distance, *row.groove_offset, row.groove_excess, *row.inner_groove_centre, row.stiffness

@@ -1,6 +1,4 @@
-r"""Newmark-β time step in modal coordinates with tooth contacts, compiled.
-
-Importing this module imports numba.
+r"""Newmark's method (Newmark-β): the time step in modal coordinates with tooth contacts, compiled.
 
 One step of size h from (q, v, a), with the mass the identity and the contacts' directions D:
 
@@ -18,15 +16,8 @@ along directions of its own, columns of D whose deflections no law needs. The pr
 recurrence as q. s is the turned time of :class:`coupling.SpeedProfile`, α = s'' the angular acceleration. With β =
 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear system.
 
-Loads at a time, compiled; s is the turned time, s' the speed and α = s'' the angular acceleration.
-
-Importing this module imports numba.
-
-Energy balance of a time step, compiled: powers of loads, losses and rotation, and stored energy.
-
-Importing this module imports numba.
-
-Samples within a step of Newmark's method, compiled: interpolation of the output rows.
+The step evaluates the loads at its end, adds to the energy balance (powers of loads, losses and rotation, and stored
+energy) and interpolates the output rows at the samples within it.
 
 Importing this module imports numba.
 """
@@ -142,12 +133,12 @@ def evaluate_powers(
         for i in range(tv.size):
             for j in range(tv.size):
                 lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
-    turning = scratch.held[0, 1] * speed
+    rotating = scratch.held[0, 1] * speed
     for k in range(laws.shape[0]):
-        turning += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * scratch.slip[k]
+        rotating += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * scratch.slip[k]
         lost += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
     powers = scratch.powers
-    powers[0], powers[1], powers[2], powers[3], powers[4] = given, lost, turning, 0.0, square
+    powers[0], powers[1], powers[2], powers[3], powers[4] = given, lost, rotating, 0.0, square
     if scratch.push.size > scratch.delta.size:
         _add_friction(contacts, speed, scratch)
 
@@ -385,7 +376,7 @@ def _add_drive_load(q: FloatArray, dynamics: Dynamics, alpha: float, scratch: Sc
 
 @inner(forceinline=True)
 def _connector_forces(matrices: StepMatrices, slot: int, tq: FloatArray, tv: FloatArray, scratch: Scratch) -> None:
-    """Forces of the connectors at displacements and rates along them: K_t Uᵀq + C_t Uᵀv."""
+    """Evaluate connector forces at displacements and rates along the connectors: K_t Uᵀq + C_t Uᵀv."""
     project(matrices.connector_stiffness[slot], tq, scratch.connector_force)
     project(matrices.connector_damping[slot], tv, scratch.response)
     for j in range(tq.size):
@@ -465,7 +456,7 @@ def _contact_response(
     speed: float,
     scratch: Scratch,
 ) -> bool:
-    """Forces of the laws by Newton's iteration, and the accelerations with them; returns whether it converged."""
+    """Solve for the contact forces by Newton's iteration, with the accelerations; return whether it converged."""
     displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
     free, da, push, delta, rate = scratch.free, scratch.da, scratch.push, scratch.delta_free, scratch.rate_free
     if delta.size == 0:

@@ -35,29 +35,29 @@ class NewmarkStepper:
     too_fine = "steps below {step:.1e} s; raise the tolerance or keep fewer high modes"
 
     def __init__(
-        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, turning: SpeedProfile
+        self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, profile: SpeedProfile
     ) -> None:
-        self.system, self._turning = system, turning
+        self.system, self._profile = system, profile
         self.arrays = kernel_arrays(system, outputs, settings.beta, settings.gamma)
         self.coarsen_below = settings.tolerance / 3.0
-        self._cache = StepCache(self.arrays, turning)
+        self._cache = StepCache(self.arrays, profile)
         self._pushing = np.linalg.norm(system.load) + np.linalg.norm(timed_amplitude(system))
         self._quiet = 0.0
 
     def begin_block(self, state: Checkpoint, bounds: FloatArray, samples: Samples, *, compiles: bool) -> None:
         """Prepare for a block."""
         if compiles:
-            self._run(state, cut(self._cache, self._turning, bounds[:1], 1.0), samples)
+            self._run(state, cut(self._cache, self._profile, bounds[:1], 1.0), samples)
         # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
         self._quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self._pushing)) ** 2
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
-        """Number of stretches between ``bounds`` to attempt at once."""
+        """Return the number of stretches between ``bounds`` to attempt at once."""
         return min(_SEGMENTS_PER_CHUNK, len(bounds) - 1)
 
     def attempt(self, state: Checkpoint, bounds: FloatArray, step: float, samples: Samples) -> Attempt:
         """Step through the stretches between ``bounds``, at least two steps each."""
-        segments = cut(self._cache, self._turning, bounds, step)
+        segments = cut(self._cache, self._profile, bounds, step)
         self._after, curvature, acceleration = self._run(state, segments, samples)
         steps, error = int(segments.steps.sum()), np.inf
         if np.isfinite(curvature):
@@ -66,7 +66,7 @@ class NewmarkStepper:
         return Attempt(self._after.q, self._after.v, error, steps, smallest)
 
     def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
-        """The state after the last attempt: the kernel has counted work and contacts and written the samples."""
+        """Return the state after the last attempt: the kernel has counted work and contacts and written the samples."""
         return self._after
 
     def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
@@ -74,7 +74,7 @@ class NewmarkStepper:
         return state.contact_totals[:, 3], begin
 
     def _run(self, state: Checkpoint, segments: Segments, samples: Samples) -> tuple[Checkpoint, float, float]:
-        """The kernel on copies of what it changes."""
+        """Run the kernel on copies of what it changes."""
         from coupling.time.newmark import newmark_steps
 
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))

@@ -45,6 +45,7 @@ class TransientSettings:
     method: Method = "newmark"
 
     def __post_init__(self) -> None:
+        """Require a recorded part of the duration, positive step sizes and tolerance, and a known method."""
         if not 0.0 <= self.record_from < self.duration < np.inf:
             raise CouplingError(f"recording from {self.record_from} s of {self.duration} s; expected a part of it")
         for what in ("sample_interval", "largest_step", "tolerance", "beta"):

@@ -9,9 +9,8 @@ speeds would turn through the same angle, so that all functions of the angle are
 At steady nominal speed s = t. The speed is piecewise linear here, s piecewise quadratic: angles, and the times at
 which the teeth come into contact and leave it, are exact.
 
-Free speed of a machine: run-up of the rigid train under motor and load torque.
-
-The nominal rotation, about which the coordinates move, is that of the rigid train,
+The free speed of a machine is the run-up of the rigid train under motor and load torque. The nominal rotation, about
+which the coordinates move, is that of the rigid train,
 
     J dω/dt = T_motor(ω) - T_load(ω),
 
@@ -47,6 +46,7 @@ class SpeedProfile:
     rates: FloatArray
 
     def __post_init__(self) -> None:
+        """Require finite speeds of one sense, one for each time, and times that ascend."""
         if self.times.ndim != 1 or self.times.shape != self.rates.shape or not self.times.size:
             raise CouplingError(
                 f"speeds of shape {self.rates.shape} at times of shape {self.times.shape}; expected as many"
@@ -88,11 +88,11 @@ class SpeedProfile:
         return rows[:, 1] + after * (rows[:, 2] + 0.5 * rows[:, 3] * after), rows[:, 2] + rows[:, 3] * after, rows[:, 3]
 
     def at(self, times: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """s [s], s' and s'' [1/s] just after some times [s], shapes (m,)."""
+        """Evaluate s [s], s' and s'' [1/s] just after some times [s], shapes (m,)."""
         return self._through(self._pieces, np.atleast_1d(np.asarray(times, dtype=np.float64)))
 
     def times_of(self, turned: FloatArray) -> FloatArray:
-        """Times at which the turned time has given values [s], NaN where it never has, shape (m,)."""
+        """Return times at which the turned time has given values [s], NaN where it never has, shape (m,)."""
         pieces = self._pieces
         rows = pieces[1:][np.maximum(np.searchsorted(pieces[1:, 1], turned, side="right") - 1, 0)]
         rows = np.where((turned < pieces[1, 1])[:, None], pieces[0], rows)

@@ -97,7 +97,7 @@ def build_steps(
     """Fill slots with the matrices of step sizes h at speeds s' and angular accelerations s''."""
     r, n = dynamics.connectors.shape
     c = contacts.direction.shape[0]
-    tied, seen, held = np.zeros(r), np.zeros(c), np.zeros(r)
+    along, seen, held = np.zeros(r), np.zeros(c), np.zeros(r)
     column, found, work = np.zeros(n), np.zeros(n), np.zeros(dynamics.gyroscopic.shape[2])
     first_of, size_of = dynamics.block_start, dynamics.block_size
     for one in range(slots.size):
@@ -107,14 +107,14 @@ def build_steps(
         for i in range(n):
             diagonal = 1.0 + by_velocity * dynamics.damping[i] + by_displacement * dynamics.stiffness[i]
             matrices.base[slot, i] = 1.0 / diagonal
-        turning = by_velocity * speed + by_displacement * acceleration
+        by_gyroscopic = by_velocity * speed + by_displacement * acceleration
         for g in range(first_of.size):
             first, size = first_of[g], size_of[g]
             # Of the transposed block, whose inverse is the transposed inverse.
             block, inverse = np.zeros((size, size)), np.eye(size)
             for i in range(size):
                 for j in range(size):
-                    block[i, j] = turning * dynamics.gyroscopic[g, i, j]
+                    block[i, j] = by_gyroscopic * dynamics.gyroscopic[g, i, j]
                 block[i, i] += 1.0 / matrices.base[slot, first + i]
             solve_in_place(block, inverse)
             for i in range(size):
@@ -129,9 +129,9 @@ def build_steps(
             apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
             for i in range(n):
                 matrices.connectors[slot, k, i] = found[i]
-            project(dynamics.connectors, found, tied)
+            project(dynamics.connectors, found, along)
             for j in range(r):
-                matrices.between[slot, j, k] = tied[j]
+                matrices.between[slot, j, k] = along[j]
         across, link = np.eye(r), np.zeros((r, r))
         for i in range(r):
             for j in range(r):
@@ -148,20 +148,20 @@ def build_steps(
             for i in range(n):
                 column[i] = contacts.direction[k, i]
             apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
-            project(dynamics.connectors, found, tied)
+            project(dynamics.connectors, found, along)
             for j in range(r):
                 held[j] = 0.0
                 for i in range(r):
-                    held[j] += link[j, i] * tied[i]
+                    held[j] += link[j, i] * along[i]
             for j in range(r):
                 for i in range(n):
                     found[i] -= matrices.connectors[slot, j, i] * held[j]
                 for i in range(r):
-                    tied[i] -= matrices.between[slot, i, j] * held[j]
+                    along[i] -= matrices.between[slot, i, j] * held[j]
             for i in range(n):
                 matrices.contact[slot, k, i] = found[i]
             for j in range(r):
-                matrices.contact_connectors[slot, k, j] = tied[j]
+                matrices.contact_connectors[slot, k, j] = along[j]
             project(contacts.direction, found, seen)
             for j in range(c):
                 matrices.flexibility[slot, j, k] = seen[j]

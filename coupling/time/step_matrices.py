@@ -1,6 +1,6 @@
 """Newmark step matrices: the coupled system as arrays for the kernels, and the matrices of each step size.
 
-Stored energy at the start of a time integration, in plain Python as it is evaluated once.
+`stored_energy` at the start of a time integration is in plain Python, as it is evaluated once.
 """
 
 from typing import NamedTuple
@@ -102,8 +102,8 @@ class StepCache:
     _ROOM = 8
     _MOST_BYTES = 32 << 20
 
-    def __init__(self, arrays: KernelArrays, turning: SpeedProfile) -> None:
-        self._arrays, self._steady, self._rate = arrays, turning.is_steady, float(turning.rates[0])
+    def __init__(self, arrays: KernelArrays, profile: SpeedProfile) -> None:
+        self._arrays, self._steady, self._rate = arrays, profile.is_steady, float(profile.rates[0])
         self._kinds: dict[float, int] = {}
         self.matrices = _room_for_steps(arrays, self._ROOM)
 
@@ -138,12 +138,12 @@ class StepCache:
         build_steps(self._arrays.dynamics, self._arrays.contacts, sizes, speeds, accelerations, into, self.matrices)
 
 
-def cut(cache: StepCache, turning: SpeedProfile, bounds: FloatArray, step: float) -> Segments:
+def cut(cache: StepCache, profile: SpeedProfile, bounds: FloatArray, step: float) -> Segments:
     """Stretches between bounds, each cut into at least two equal steps no longer than ``step`` [s]."""
     start, end = bounds[:-1], bounds[1:]
     counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)
     cache.make_room(len(counts))
-    turned = np.column_stack(turning.at(start)).reshape(-1, 3)
+    turned = np.column_stack(profile.at(start)).reshape(-1, 3)
     middle = turned[:, 1] + 0.5 * turned[:, 2] * (end - start)
     kinds = cache.kinds((end - start) / counts, middle, np.ascontiguousarray(turned[:, 2]))
     return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, turned)
@@ -177,7 +177,9 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
     rates = system.connector_rates
     matrices = [
-        own + tie for rate in rates for own, tie in zip(beside, system.connector_matrices(float(rate)), strict=True)
+        own + connector
+        for rate in rates
+        for own, connector in zip(beside, system.connector_matrices(float(rate)), strict=True)
     ]
     directions, cores = common_span(matrices)
     connector_stiffness, connector_damping = np.array(cores[0::2]), np.array(cores[1::2])
@@ -302,8 +304,8 @@ def stored_energy(
 def _of_connectors(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
     """½ qᵀ U K_t Uᵀ q, K_t linear between the speeds at which it is given."""
     law = SpeedTable(dynamics.connector_rates, dynamics.connector_stiffness, dynamics.connector_damping)
-    tied = dynamics.connectors @ q
-    return float(0.5 * tied @ law.at(rate)[0] @ tied)
+    deflection = dynamics.connectors @ q
+    return float(0.5 * deflection @ law.at(rate)[0] @ deflection)
 
 
 def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, turned: float) -> float:

@@ -1,13 +1,11 @@
 """Transient simulation: time integration from static equilibrium, its record and its energy balance.
 
-Digest of the inputs of a computation: equal only where all of them are equal bit for bit.
-
-Time integration in blocks: the samples of each block, with the checkpoint from which the next one continues.
+`simulate` returns the whole record. `integrate_blocks` yields it in blocks: the samples of each block, with the
+checkpoint from which the next one continues. `fingerprint` is the digest of the inputs of a computation, equal only
+where all of them are equal bit for bit. `Motion` holds the simulated motion of a machine as a labelled dataset.
 
 The driver is in :mod:`coupling.time.integration`; its steppers are in :mod:`coupling.time.newmark_stepper` and
 :mod:`coupling.time.exponential_collocation`.
-
-Simulated motion of a machine as a labelled dataset.
 """
 
 import hashlib
@@ -153,14 +151,14 @@ def integration_key(
     """
     run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
     start = run.start(initial).as_arrays()
-    return fingerprint(settings, run.turning, run.arrays, run.base, run.ends, run.reach, run.bounds(0), start)
+    return fingerprint(settings, run.profile, run.arrays, run.base, run.ends, run.reach, run.bounds(0), start)
 
 
 def _prepared(
     system: CoupledSystem,
     settings: TransientSettings,
     outputs: TransientOutputs,
-    turning: SpeedProfile | None,
+    profile: SpeedProfile | None,
     initial: tuple[FloatArray, FloatArray] | None,
     samples_per_block: int,
 ) -> tuple[Integration, tuple[FloatArray, FloatArray] | None]:
@@ -172,14 +170,14 @@ def _prepared(
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
         outputs = TransientOutputs(*(row @ followed.recovery for row in rows))
         initial = None if initial is None else (initial[0][followed.kept], initial[1][followed.kept])
-    turning = turning or SpeedProfile.steady()
-    part = exact_part(system, settings, turning)
+    profile = profile or SpeedProfile.steady()
+    part = exact_part(system, settings, profile)
     stepper = (
-        NewmarkStepper(system, settings, outputs, turning)
+        NewmarkStepper(system, settings, outputs, profile)
         if part is None
-        else CollocationStepper(part, settings, outputs, turning)
+        else CollocationStepper(part, settings, outputs, profile)
     )
-    return Integration(stepper, settings, turning, samples_per_block), initial
+    return Integration(stepper, settings, profile, samples_per_block), initial
 
 
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
@@ -281,7 +279,7 @@ def simulate(
     system : CoupledSystem
     settings : TransientSettings
     outputs : TransientOutputs
-    turning : Turning, optional
+    turning : SpeedProfile, optional
         Speed over time; by default the nominal one.
     initial : tuple of ndarray, optional
         Coordinates and rates at t = 0, shape (n,) each; by default static equilibrium at rest.
@@ -295,10 +293,10 @@ def simulate(
 
     See Also
     --------
-    march_blocks : The same in blocks, for runs that are long or must be able to continue.
+    coupling.time.transient.integrate_blocks : The same in blocks, for runs that are long or continued later.
     """
-    marched = integrate_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
-    blocks = list(marched)
+    integrated = integrate_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
+    blocks = list(integrated)
     figures = transient_figures(settings, blocks[-1].after)
     record: dict[str, Any] = {name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED}
     return TransientResult(**vars(figures), **record)

@@ -272,7 +272,7 @@ def test_where_it_does_not_apply() -> None:
         simulate(system, SETTINGS, rows, turning=slowing)
     table = TimedLoad(np.array([0.0, 30.0]), np.array([0.0, 0.1]), np.array([1.0, 0.0]))
     loaded = replace(system, timed_loads=(table,))
-    with pytest.raises(TransientError, match="table over time; march by Newmark's"):
+    with pytest.raises(TransientError, match="table over time; use Newmark's"):
         simulate(loaded, SETTINGS, rows)
     dragged = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.1), np.zeros((1, 1)))
     with pytest.raises(TransientError, match="no stiffness but meets damping"):

@@ -1,4 +1,4 @@
-r"""Tooth contact law of a gear pair: contact force, stiffness and stored energy by the compression of the mesh.
+r"""Tooth contact law of a gear pair: contact force, mesh stiffness and stored energy by the compression of the mesh.
 
 At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j all whole numbers with positions
 in the range of contact.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, its gap in
@@ -34,9 +34,8 @@ out with a step in force, as in the sources.  The step is exactly at `event_phas
 (:mod:`coupling.gears.geometry.path_of_contact`) pairs touch beyond the path too, over a gap that grows with the
 distance from it, and the force has no steps; ``k`` is held there at what it is at the end of the path.
 
-Pairs of damaged teeth (:mod:`coupling.gears.geometry.faults`) have a ``k`` and a ``d`` of their own.
-
-Contact law of two gears with a tooth stiffness model.
+Pairs of damaged teeth (:mod:`coupling.gears.geometry.faults`) have a ``k`` and a ``d`` of their own. `tooth_contact`
+makes the law of two gears from a tooth stiffness model.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-r"""Load distribution across the face: a pair of teeth as coupled slices.
+r"""Load distribution across the face of a gear: a tooth pair as coupled slices (thin-slice model with shear coupling).
 
 Where the flanks are not alike across the face (helical, crowned, misaligned), the load spreads along the contact
 line as the teeth yield. The face of width b is cut into slices at places z, each with its own position on the path
@@ -15,9 +15,7 @@ their coupling; contact adds, wherever there is any,
 k_h the stiffness of the flattening per width. So a loaded slice deflects its neighbours, and the free ends of a
 tooth are softer. Uniform across the face it is the spur gear's law exactly.
 
-T is that of both teeth in series (:mod:`coupling.gears.contact.face_slices`).
-
-Shear coupling of neighbouring slices of a tooth across its face.
+T is that of both teeth in series, each of them from the shear coupling of neighbouring slices.
 
 A tooth whose deflection varies across the face, ``W(z) phi(y)``, is a plate of thickness t(y) held at its foot. phi is
 the deflection of a slice as a beam under a load at the middle of the path of contact, with its bending and its shear,
@@ -250,7 +248,7 @@ def face_loads(
             return _loads(slices, gap, touching, compression[:, None], fixed, rising)
         touching[unsettled] = touches
         fixed[unsettled], rising[unsettled] = _fields(slices, base[unsettled], gap[unsettled], touches)
-    raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+    raise ContactAccuracyError("the iteration for the touching slices of the face does not converge; take fewer slices")
 
 
 def face_equilibrium(
@@ -316,7 +314,9 @@ def face_equilibrium(
         moved[owner[changed]] = True
         unsettled = np.nonzero(moved[owner])[0]
     else:
-        raise ContactAccuracyError("the slices of the face do not settle on which of them touch; take fewer slices")
+        raise ContactAccuracyError(
+            "the iteration for the touching slices of the face does not converge; take fewer slices"
+        )
     loads = _loads(slices, gap, touching, touched[owner, None], fixed, rising)
     carried = np.bincount(owner, loads.force, meshes)
     rounding = 1e-9 * (force + stiffness * np.abs(touched)) + 1e-300

@@ -1,15 +1,16 @@
-r"""Lookup tables of the tooth contact law for the compiled kernels.
+r"""Lookup tables of the tooth contact law for the compiled kernels: bicubic cells and their memory layout.
 
-Uneven load across the face: force, tangent and energy of such a pair (:mod:`coupling.gears.contact.face_slices`)
-depend on its position s and on the compression ``u`` beyond its first touch. On a grid of both they are bicubic: with
-``u = a r^2`` the grid is fine where contact begins, a cell's force is ``f = sum c_mn p^m rho^n`` with p and rho from 0
-to 1 across it, and its energy is that force's integral ``U = U_0 + int f 2 a r dr``, term by term. So the force is
-exactly the energy's derivative, whatever the error of the table, and motion on it conserves energy. Beyond the last
-``u`` the force goes on with its tangent t, which is a cell too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0
-upward. Where a corner of the profiles, such as a spall's edge, meets the first slice of the face and the last, which
-is at once over a spur gear's, the splines along the positions end and begin.
+Where the load is uneven across the face, force, tangent and energy of such a pair
+(:mod:`coupling.gears.contact.face_slices`) depend on its position s and on the compression ``u`` beyond its first
+touch. On a grid of both they are bicubic: with ``u = a r^2`` the grid is fine where contact begins, a cell's force is
+``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is that force's integral
+``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's derivative, whatever the error of the
+table, and motion on it conserves energy. Beyond the last ``u`` the force goes on with its tangent t, which is a cell
+too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 upward. Where a corner of the profiles, such as a spall's edge,
+meets the first slice of the face and the last, which is at once over a spur gear's, the splines along the positions end
+and begin.
 
-Memory layout of a tooth contact law: one row of numbers for the compiled kernels.
+The whole law is one row of numbers in memory, laid out as follows.
 
 The teeth of a mesh are a base pitch apart, so the phase fixes the positions of all pairs: pair j is at ``x + j``, x the
 phase's fraction. All curves of all pairs are therefore cut at common knots of x, and one look-up finds what the law
@@ -26,7 +27,7 @@ The row begins with `HEADER` numbers, at the places named below; then come
   gap;
 * the pairs of the hunting period, `ENTERING` numbers each: the gap by pitch deviations of the pair that enters
   at phase n, at n mod h [m], and its kind; none where all pairs are alike;
-* the cells of `coupling.gears.contact.lookup_tables`, `CELL` numbers each, by depth, kind and position;
+* the cells of the bicubic tables, `CELL` numbers each, by depth, kind and position;
 * with cells, the guesses: the pairs' part of the mesh's compression in the mean over the mesh period, both counted from
   `FIRST_TOUCH`, at ``DEPTH_UNIT r^2`` of the mesh's for r = 0, 1, ... to one beyond the cells.
 """

@@ -1,7 +1,7 @@
-r"""Tooth contact force, compiled: scalars and a row of numbers in, scalars out, no allocation.
+r"""Tooth contact force and tooth friction, compiled: scalars and a row of numbers in, scalars out, no allocation.
 
-Importing this module imports numba.  The law is derived in :mod:`coupling.gears.contact.contact_law`; what describes
-the contact is laid out by :mod:`coupling.gears.contact.lookup_tables` and comes from `ToothContact.kernel_arguments`:
+The law is derived in :mod:`coupling.gears.contact.contact_law`; what describes the contact is laid out by
+:mod:`coupling.gears.contact.lookup_tables` and comes from `ToothContact.kernel_arguments`:
 ``tooth_force(phase, compression, rate, *contact.kernel_arguments)``.
 
 The overhead of calls costs more time here than the arithmetic. Each argument is copied at every call: hence one array.
@@ -9,7 +9,7 @@ Numba counts references to an array atomically at each call, unless it can prove
 read one by one, never through views, nothing can raise (division follows numpy), and small functions are inlined. It
 checks every index for being negative, counted from the end: hence `law_value`.
 
-Tooth friction, compiled: shares of the mesh force that act across the line of action.
+Tooth friction is given by the shares of the mesh force that act across the line of action.
 
 With the elastic forces E_j of the pairs at the positions s_j, and F the whole force with its damping, which the pairs
 are taken to share as they share the elastic one, friction pushes with

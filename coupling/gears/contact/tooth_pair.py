@@ -1,6 +1,8 @@
 """Tooth pair: stiffness and profile deviation of a pair of teeth along its path of contact.
 
-Profile deviation of a tooth pair from perfect involutes, along its path of contact and beyond.
+The profile deviation is the gap that modifications and deviations of both flanks leave between the teeth in nominal
+motion, against perfect involutes. Both curves reach along the path of contact and, with corner contact, beyond it; each
+kind of pair with faulty teeth has curves of its own.
 """
 
 from __future__ import annotations

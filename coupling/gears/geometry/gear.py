@@ -1,4 +1,4 @@
-"""External gear, spur or helical: tooth proportions, and the radii and angles that follow from them.
+"""External gear, spur or helical: tooth proportions, the radii and angles that follow from them, mass and inertia.
 
 The tooth is what a basic rack generates (ISO 53, ISO 21771).  Module ``m``, pressure angle ``alpha``, profile shift
 ``x`` (positive outward) and the heights are those of the rack's normal section; rotation,
@@ -16,12 +16,11 @@ deeper: flank, fillet and root follow the generating shift ``x_E = x - thinning 
 The rack's tip corners are rounded; the flank is an involute down to the form radius, where the corner's trochoid takes
 over (see :mod:`coupling.gears.geometry.rack`, :mod:`coupling.gears.geometry.profile`).
 
-Gear blank: mass and moments of inertia of the body that carries the teeth.
-
-The teeth count as a ring out to the reference circle, where they fill half the circumference.  A gear without a rim is
-a disc as wide as its face, down to its bore.  A gear with a rim is a ring of the full width down to the inside of the
-rim, and a web of its own thickness in the middle of the face from there to the bore; without a web the ring is
-alone, and its carrier is given as a disc of the rotor.
+Mass and moments of inertia are those of the gear blank, the body that carries the teeth. The teeth count as a ring out
+to the reference circle, where they fill half the circumference. A gear without a rim is a disc as wide as its face,
+down to its bore. A gear with a rim is a ring of the full width down to the inside of the rim, and a web of its own
+thickness in the middle of the face from there to the bore; without a web the ring is alone, and its carrier is given as
+a disc of the rotor.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Involute function and its inverse.
-
-Normal module of a gear from its base radius or its diametral pitch.
-"""
+"""Involute function ``inv(a) = tan(a) - a`` and its inverse; normal module from base radius or diametral pitch."""
 
 from __future__ import annotations
 

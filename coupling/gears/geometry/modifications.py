@@ -1,14 +1,12 @@
-"""Profile modifications: tip relief and root relief, material taken off the flank on purpose.
+"""Flank modifications (tip and root relief) and flank deviations (profile and helix, ISO 1328-1).
 
-Depths are normal to the flank, so along the line of action, and grow with the roll angle from nothing where the
-relief begins to the full amount where the flank ends: in proportion (``"linear"``) or with the square of it
-(``"parabolic"``), which leaves no corner in the profile.
+Tip relief and root relief take material off the flank on purpose. Their depths are normal to the flank, so along the
+line of action, and grow with the roll angle from nothing where the relief begins to the full amount where the flank
+ends: in proportion (``"linear"``) or with the square of it (``"parabolic"``), which leaves no corner in the profile.
 
-Flank deviations (ISO 1328-1) of a made flank from its design: profile and helix deviations.
-
-Deviations are normal to the flank in the transverse plane, so along the line of action, and
-positive where there is too much material. Profile deviations vary with the roll angle from the form circle to the tip,
-helix deviations across the face.
+Flank deviations (ISO 1328-1) are those of a made flank from its design. They are normal to the flank in the transverse
+plane, so along the line of action, and positive where there is too much material. Profile deviations vary with the roll
+angle from the form circle to the tip, helix deviations across the face.
 """
 
 from __future__ import annotations

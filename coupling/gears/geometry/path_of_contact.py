@@ -1,4 +1,4 @@
-r"""Path of contact: its named points (SAP, LPSTC, pitch point, HPSTC, EAP), and the specific sliding.
+r"""Path of contact: its named points (SAP, LPSTC, pitch point, HPSTC, EAP), specific sliding, and corner contact.
 
 With the distances ``xi_k, xi_i`` of the contact from the two tangent points, the flanks' points move along the tangent
 of the flanks with ``omega_k xi_k`` and ``omega_i xi_i``.  The specific sliding of a flank is the difference over its
@@ -8,12 +8,11 @@ own speed (Niemann & Winter, Maschinenelemente II):
 
 zero at the pitch point, and negative, the greater wear, towards the roots.
 
-Corner contact beyond the path of contact: a tip's corner on the mating flank, before entry and after exit.
-
-On the nominal motion a pair that is not yet at its path of contact is apart by a small gap. A loaded mesh, its
-gears rotated against each other by the deflection of the loaded pairs, closes it: the corner of the driven tip
-touches the driver's flank early, and the driver's own tip stays late. The force then comes and goes without a step,
-and the contact ratio grows with the load.
+Corner contact, of the corner of a tip on the mating flank, extends the path before entry and after exit. On the nominal
+motion a pair that is not yet at its path of contact is apart by a small gap. A loaded mesh, its gears rotated against
+each other by the deflection of the loaded pairs, closes it: the corner of the driven tip touches the driver's flank
+early, and the driver's own tip stays late. The force then comes and goes without a step, and the contact ratio grows
+with the load.
 
 The gap follows exactly from where the corner is. With the driver's tangent point on the line of action at angle
 zero, its flank's point at radius ``rho`` has the polar angle ``xi_k / rb_k - inv(rho)``, xi_k the distance of the

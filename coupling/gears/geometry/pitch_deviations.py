@@ -1,6 +1,6 @@
-"""Pitch deviations and faulty teeth: how the pairs of teeth of the hunting period differ.
+"""Pitch deviations, runout, and faulty teeth: differences between the tooth pairs of the hunting period.
 
-Pitch gap: gap that the pitch deviations of two mating teeth leave between their flanks.
+The pitch gap of a pair is the gap that the pitch deviations of two mating teeth leave between their flanks.
 
 A tooth that is ahead by ``f`` along the arc of the working pitch circle has rotated by ``f / r_w`` and its flank
 has moved by ``rb f / r_w = f cos(w)`` along the line of action, w the working pressure angle.  With the driver's
@@ -11,7 +11,7 @@ tooth m and the driven gear's tooth n the pair's gap is
 constant while the pair is in contact.  The idle flanks of the same teeth are behind where the working ones are
 ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.mating_back_teeth`).
 
-Runout: transmission error of gears that are eccentric on their shafts.
+Runout is the transmission error of gears that are eccentric on their shafts (`runout_error`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Tooth profile: involute flank and the true trochoid of the root fillet.
+"""Tooth profile: involute flank and trochoid of the root fillet; gear outlines for drawing.
 
 Coordinates are the tooth's own: `height` along its axis from the gear's centre, `half_thickness` across.
 Each curve has a parameter in which it is smooth, so that integrals over the tooth converge fast:
@@ -15,14 +15,12 @@ fillet
 
 All of it is in the transverse plane; tip relief, a few micrometres, is not drawn.
 
-Gear outlines: whole gears as polygons for drawing, alone and placed in mesh.
-
-Placing a pair: at phase p the pair of teeth with number 0 touches at p base pitches along the path of contact.  Seen
-from its gear's centre, a flank point of roll angle ``u`` is ``atan(u)`` beyond the tangent point of the line of action
-and ``psi - inv(atan(u))`` from its tooth's axis, psi half the tooth's angle on the base circle; so the axis is
-``u - psi`` beyond the tangent point.  The tangent points are at the working pressure angle w from the line of centres.
-With that line at ``zeta`` from x, and the driver rotating in
-the sense s = +1 (counter-clockwise) or -1, the axes of the two teeth stand at
+Gear outlines are whole gears as polygons, alone and placed in mesh. At phase p the pair of teeth with number 0 touches
+at p base pitches along the path of contact. Seen from its gear's centre, a flank point of roll angle ``u`` is
+``atan(u)`` beyond the tangent point of the line of action and ``psi - inv(atan(u))`` from its tooth's axis, psi half
+the tooth's angle on the base circle; so the axis is ``u - psi`` beyond the tangent point. The tangent points are at the
+working pressure angle w from the line of centres. With that line at ``zeta`` from x, and the driver rotating in the
+sense s = +1 (counter-clockwise) or -1, the axes of the two teeth stand at
 
     driver:  zeta + s (u_k - w - psi_k)          driven:  zeta + pi + s (u_i - w - psi_i).
 """

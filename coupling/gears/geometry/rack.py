@@ -1,4 +1,4 @@
-"""Basic rack (ISO 53) that cuts a gear, and the trochoid of the root fillet that the tip corner of its tooth cuts.
+"""Basic rack (ISO 53) that cuts a gear, trochoid of the root fillet that its tip corner cuts, and undercut.
 
 A rack (hob, rack cutter, grinding worm) is straight along its teeth, so its section by the gear's transverse plane
 rolls on the gear's pitch circle as a plane figure, and the outline of the gear is the envelope of that section.  For a
@@ -19,7 +19,7 @@ gear of pitch radius ``r`` has then rotated by ``turn``, and the point is ``reac
     turn = (across - c + D cot(gamma)) / r,     reach = D / sin(gamma),
     r turn' = (R - reach) / sin(gamma),         reach' = r turn' cos(gamma)      (derivatives by gamma).
 
-Undercut: where the trochoid of the fillet cuts off the involute.
+Undercut is the case in which the trochoid of the fillet cuts off the involute.
 
 A rack whose straight flank reaches deeper than ``r sin(alpha_t)^2`` below the pitch line swings its corner through the
 foot of the involute.  Trochoid and involute then no longer touch; they cross, and the flank begins at the crossing: the

@@ -39,7 +39,7 @@ _ROUNDING = 1e-12
 
 
 def contact_modulus(pair: GearPairGeometry) -> float:
-    """Modulus E* of two flanks pressed together [Pa]."""
+    """Modulus E* of the contact of two flanks [Pa]."""
     return 1.0 / sum((1.0 - gear.poisson_ratio**2) / gear.youngs_modulus for gear in (pair.driver, pair.driven))
 
 

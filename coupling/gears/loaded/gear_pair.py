@@ -1,6 +1,7 @@
-"""Gear pair: its specification, and its mesh under the mean torque: contact law, damping, transmission error.
+"""Gear pair: its specification, and its mesh under the mean torque: contact law, mesh damping, transmission error.
 
-Mesh damping: damping coefficient of a gear mesh from a damping ratio.
+The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k and the equivalent mass m of the
+two gears rotating against each other: ``2 ζ sqrt(k m)``.
 """
 
 from __future__ import annotations

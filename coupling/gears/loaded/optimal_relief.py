@@ -1,6 +1,7 @@
-"""Optimal tip relief: amount and length with the least transmission error, or least weighted harmonics of it.
+"""Optimal tip relief, with the least transmission error or the least weighted harmonics of it, and the Harris map.
 
-Harris map: transmission error over a mesh period for a range of loads (S. L. Harris, Proc. IMechE 172, 1958).
+Optimised are amount and length of the relief. The Harris map is the transmission error over a mesh period for a range
+of loads (S. L. Harris, Proc. IMechE 172, 1958).
 
 Without load the transmission error is the profile modification itself; under load the deflection of the teeth takes it
 up. The curve is flat near the design load of the modification, and rises below and above it.

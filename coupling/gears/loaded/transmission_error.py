@@ -7,11 +7,9 @@ above the n-th and not above the next deviation.  The shared compliance adds, ``
 (:mod:`coupling.gears.contact.contact_law`): under a constant load it is constant, and only shifts the transmission
 error.
 
-Hunting period: the loaded mesh over it, with each different mesh period solved once.
-
-Mesh periods differ by the pairs that can touch in them: by their pitch gaps and their damaged teeth. One cracked tooth
-makes a few mesh periods different from all others, however long the hunting period is; only pitch deviations of both
-gears make every mesh period different.
+Over the hunting period each different mesh period is solved once. Mesh periods differ by the pairs that can touch in
+them: by their pitch gaps and their damaged teeth. One cracked tooth makes a few mesh periods different from all others,
+however long the hunting period is; only pitch deviations of both gears make every mesh period different.
 """
 
 from __future__ import annotations

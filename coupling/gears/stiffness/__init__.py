@@ -1,1 +1,1 @@
-"""Tooth stiffness: tooth models, gear body, Hertzian contact, ISO 6336."""
+"""Tooth stiffness: tooth models and their choice, gear body, Hertzian contact, ISO 6336."""

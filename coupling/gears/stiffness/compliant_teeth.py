@@ -1,4 +1,4 @@
-r"""Tooth pair stiffness from the compliances of two teeth and their contact: the base of all tooth models.
+r"""Tooth pair stiffness from the compliances of two teeth and their contact: base of the tooth models, helical too.
 
 The compliances of both teeth and of their contact add up, ``c(s) = c_k(s) + c_i(s) + h(F, s)``, and the stiffness is
 its inverse.  Where the contact is Weber's, ``h`` depends on the load F of the pair.  The dynamics need a stiffness that
@@ -19,13 +19,12 @@ A new tooth model is one subclass of `CompliantTeeth`: it gives the compliance o
 neighbouring teeth share a body, that body (`shared_body`).  Its name in cases comes from the list in
 :mod:`coupling.gears.stiffness.models`.
 
-Normal section of a helical gear: spur gears with the virtual number of teeth.
-
-A helical tooth bends in the plane normal to its flank. There it is the tooth of a spur gear of the normal module with
-``z_n = z / (cos^2 beta_b cos beta)`` teeth (ISO 21771), and the contact is at ``rho_n = rho_t / cos beta_b`` from that
-gear's base circle, so at the same fraction of the flank from its foot to its tip. With the load ``F_t / cos beta_b`` on
-the length ``b / cos beta_b``, and the deflection seen in the transverse plane as ``delta_n / cos beta_b``, the
-compliance along the transverse line of action is
+A helical tooth is treated in its normal section, by the virtual number of teeth: it bends in the plane normal to its
+flank. There it is the tooth of a spur gear of the normal module with ``z_n = z / (cos^2 beta_b cos beta)`` teeth (ISO
+21771), and the contact is at ``rho_n = rho_t / cos beta_b`` from that gear's base circle, so at the same fraction of
+the flank from its foot to its tip. With the load ``F_t / cos beta_b`` on the length ``b / cos beta_b``, and the
+deflection seen in the transverse plane as ``delta_n / cos beta_b``, the compliance along the transverse line of action
+is
 
     c_t = c_n / cos beta_b,
 

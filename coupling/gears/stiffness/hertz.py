@@ -1,6 +1,6 @@
 r"""Hertzian contact compliance of two flanks: Yang & Sun's constant, and Weber's load-dependent law.
 
-Two cylinders pressed together with the force F touch on a strip of half width (Hertz)
+Two cylinders loaded against each other by the force F touch on a strip of half width (Hertz)
 
     a = sqrt(4 F rho eta / (pi b)),   eta = (1 - nu_k^2)/E_k + (1 - nu_i^2)/E_i,   1/rho = 1/rho_k + 1/rho_i
 
@@ -35,7 +35,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def hertz_compliance(driver: Gear, driven: Gear) -> float:
-    """Flattening of two flanks pressed together, per unit load [m/N].
+    """Flattening of two loaded flanks, per unit load [m/N].
 
     ``2 eta / (pi b)``, b the narrower face; for equal materials ``4 (1 - nu^2) / (pi E b)``, the load-independent form
     of Yang & Sun (1985).

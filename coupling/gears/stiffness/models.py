@@ -1,4 +1,4 @@
-"""Tooth stiffness models by name: stiffness of one pair of teeth along the path of contact.
+"""Choice of the tooth stiffness model by name: stiffness of one pair of teeth along the path of contact.
 
 Every model is a small frozen dataclass with one method, ``pair_stiffness(geometry)``, that returns the stiffness of a
 single pair [N/m along the line of action] as a function of the position in base pitches.  Its range is the range of

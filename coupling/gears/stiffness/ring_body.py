@@ -1,4 +1,4 @@
-r"""Elastic ring: exact flexibility of a gear's body under its teeth.
+r"""Gear body compliance by an exact elastic ring under the teeth, with the additional compliance of a rim on a web.
 
 The body is a flat ring between the root circle (radius 1 here) and a circle where it is held.  Tractions on the root
 circle are split into waves ``n`` around it.  In one wave the displacements are combinations of powers of ``r`` that
@@ -22,11 +22,9 @@ by the angle D do the work ``1/pi sum_n Re(conj(s_n) H_n s'_n e^{-i n D})`` on t
 H_n the wave's flexibility, Hermitian in this form.  With the tractions of each arc alone this is the cross flexibility
 of two teeth; with the flexibility of each it is the energy of real tractions, so positive definite.
 
-Gear body compliance: an exact elastic ring under a tooth, and the additional compliance of a rim on a web.
-
 The load of a tooth is carried to the root circle as a force ``cos(beta)`` across the tooth's axis, ``sin(beta)`` along
-it, and the torque ``rb`` about the gear's centre.  With the flexibility of the rigid root arc
-(:mod:`coupling.gears.stiffness.ring_body`) under (across, torque / r_f) and along,
+it, and the torque ``rb`` about the gear's centre. The gear body compliance follows from the flexibility L of the rigid
+root arc under (across, torque / r_f) and R along,
 
     q = (f^T L f + R sin(beta)^2) / (E b),    f = (cos(beta), rb / r_f)
 

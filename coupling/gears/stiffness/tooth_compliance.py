@@ -1,10 +1,10 @@
-"""Tooth models, compliance of one tooth: potential energy method, elastic ring, Cornell, Weber-Banaschek.
+"""Tooth compliance models: potential energy method, elastic ring, Cornell (1981), Weber-Banaschek (1953).
 
-Potential energy method (Ma et al. 2014) with Sainsot's gear body and Yang & Sun's contact: the tooth is a beam on the
-root circle (:mod:`coupling.gears.stiffness.beam`, in plane stress), the body a ring held at its bore
+**Potential energy method** (Ma et al. 2014) with Sainsot's gear body and Yang & Sun's contact: the tooth is a beam on
+the root circle (:mod:`coupling.gears.stiffness.beam`, in plane stress), the body a ring held at its bore
 (:mod:`coupling.gears.stiffness.foundation`); the rim's share is that of :mod:`coupling.gears.stiffness.ring_body`.
 
-Elastic ring model: the potential energy method with the tooth as a beam on an exact elastic ring.
+**Elastic ring model**: the potential energy method with the tooth as a beam on an exact elastic ring.
 
 Sainsot, Velex & Duverger (2004) solved the same ring.  Their printed polynomials give what its root arc does *at its
 middle* under a linear normal and a constant shear traction, in plane strain with ``nu = 0.3``: a test finds L, P and
@@ -24,7 +24,7 @@ No number is fitted.  Against finite elements (tests/validation) the model is -2
 near the root and the tooth is no beam; neighbouring teeth, which stiffen the root by some 2 %, are left out. The cross
 compliance of the next tooth is `coupling.gears.stiffness.ring_body.neighbour_compliance`.
 
-Cornell's tooth model (1981): a cantilever on an effective fillet section, and O'Donnell's foundation.
+**Cornell's tooth model** (1981): a cantilever on an effective fillet section, and O'Donnell's foundation.
 
 R. W. Cornell, "Compliance and stress sensitivity of spur gear teeth", J. Mech. Design 103 (1981).  The beam's part is
 that of :mod:`coupling.gears.stiffness.beam` from the effective fillet section up to the load, which stands where the
@@ -43,7 +43,7 @@ The paper itself was not at hand: the equations are in the form in which NASA's 
 the effective fillet angle is O'Donnell's fixed one, where Cornell derives it from the tooth.  A half plane knows no
 torque on a ring: the twist of the body is not in this model.
 
-Weber-Banaschek tooth model (1953): exact energies of tooth and half plane, the root of ISO 6336's stiffness.
+**Weber-Banaschek tooth model** (1953): exact energies of tooth and half plane, the origin of ISO 6336's stiffness.
 
 C. Weber and K. Banaschek, *Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern*, Schriftenreihe
 Antriebstechnik 11, 1953.  Everything is in plane strain.  With ``y`` along the tooth's axis from its root section, the
