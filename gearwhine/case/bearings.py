@@ -64,7 +64,7 @@ class Stop(Table):
     gap: LengthFromZero = 0.0
 
     def build(self) -> GapLaw:
-        """The law of the stop."""
+        """Build the force law of the stop."""
         from coupling import GapLaw
 
         return GapLaw(self.force, self.depth, self.exponent, self.gap)
@@ -115,7 +115,7 @@ class _Mounted(Table):
         raise NotImplementedError
 
     def build(self, name: str) -> RollingBearing:
-        """The bearing of one or two rows.
+        """Build the rolling bearing, of one or two rows.
 
         Raises
         ------
@@ -243,7 +243,7 @@ class _Radial(Table):
     """A 2×2 matrix over x and y by its entries, each a number or a list over speeds."""
 
     def build(self) -> npt.NDArray[np.float64]:
-        """The matrix, (2, 2), or with lists in it one for each speed, (s, 2, 2)."""
+        """Build the coefficient matrix, (2, 2), or with lists in it one for each speed, (s, 2, 2)."""
         import numpy as np
 
         entries = np.broadcast_arrays(*(getattr(self, key) for key in ("xx", "xy", "yx", "yy")))
@@ -300,7 +300,7 @@ class Pedestal(Table):
     damping: PedestalDamping = PedestalDamping()
 
     def build(self) -> RotorPedestal:
-        """The pedestal."""
+        """Build the pedestal."""
         from rotors import Pedestal as BuiltPedestal
 
         return BuiltPedestal(self.stiffness.build(), self.damping.build(), self.mass)
@@ -332,7 +332,7 @@ class _Matrix(Table):
     matrix: MatrixRows
 
     def build(self) -> npt.NDArray[np.float64]:
-        """The matrix, (5, 5)."""
+        """Build the coefficient matrix, (5, 5)."""
         import numpy as np
 
         return np.array(self.matrix)

@@ -27,7 +27,6 @@ def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
     meshes.GeometryError
         Where its parts do not fit each other.
     """
-
     walls, cover = box.walls, box.cover
     bores = []
     for seat in seats:

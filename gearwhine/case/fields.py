@@ -71,7 +71,7 @@ class Quantity:
     at_most: float | None = None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Schema for pydantic: validation and serialisation of this field."""
+        """Return pydantic's schema for validation and serialisation of this field."""
         writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
         return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
@@ -159,7 +159,7 @@ class Whole:
     at_most: int
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Schema for pydantic: validation of this field."""
+        """Return pydantic's schema for validation of this field."""
         return core_schema.no_info_plain_validator_function(self.validate)
 
     @property
@@ -294,7 +294,7 @@ class OverSpeed:
     each: Quantity
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Schema for pydantic: validation and serialisation of this field."""
+        """Return pydantic's schema for validation and serialisation of this field."""
         writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
         return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
@@ -357,7 +357,7 @@ class Patch(Table):
         return (x * self.plane.at, y * self.plane.at, z * self.plane.at), (x, y, z)
 
     def build_patch(self) -> HousingPatch:
-        """The patch of the mesh's surface."""
+        """Build the patch of the mesh's surface."""
         from housing import Patch as BuiltPatch
 
         return BuiltPatch(self.surface, self.corners, self.point_and_normal)

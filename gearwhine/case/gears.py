@@ -63,13 +63,13 @@ class Relief(Table):
         return self
 
     def build_tip_relief(self) -> TipRelief:
-        """The relief as one of a tip."""
+        """Build the relief as a tip relief."""
         from coupling.gears import TipRelief
 
         return TipRelief(**self.model_dump())
 
     def build_root_relief(self) -> RootRelief:
-        """The relief as one of a root."""
+        """Build the relief as a root relief."""
         from coupling.gears import RootRelief
 
         return RootRelief(**self.model_dump())
@@ -97,7 +97,7 @@ class ProfileErrors(Table):
         return rows
 
     def build(self) -> ProfileDeviation:
-        """The deviation of the profile."""
+        """Build the profile deviation."""
         from coupling.gears import ProfileDeviation
 
         return ProfileDeviation(**self.model_dump())
@@ -122,7 +122,7 @@ class HelixErrors(Table):
         return self
 
     def build(self) -> HelixDeviation:
-        """The deviation across the face."""
+        """Build the helix deviation across the face."""
         from coupling.gears import HelixDeviation
 
         return HelixDeviation(**self.model_dump())
@@ -215,7 +215,7 @@ class Fault(Table):
         return self
 
     def build(self) -> GearFault:
-        """The fault of this kind."""
+        """Build the gear fault of this kind."""
         from coupling.gears import MissingTooth, Spall, ToothCrack, Wear
 
         kinds = {"wear": Wear, "spall": Spall, "crack": ToothCrack, "missing-tooth": MissingTooth}
@@ -328,7 +328,7 @@ class Gear(Table):
         return self.tooth_module / module_from_base_radius(1.0, self.teeth, self.pressure_angle, self.helix_angle)
 
     def build(self, material: Material | None = None) -> GearGear:
-        """The gear, of a material or by default of steel.
+        """Build the gear, of a material or by default of steel.
 
         A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
 

@@ -212,7 +212,7 @@ class Seat(Table):
         return self
 
     def build(self) -> HousingSeat:
-        """The seat, by its surface in the mesh."""
+        """Build the bearing seat, by its surface in the mesh."""
         from housing import Seat as BuiltSeat
 
         return BuiltSeat(self.name, self.center)
@@ -260,7 +260,7 @@ class Support(Patch):
         return self.fixed is not None or self.stiffness is not None
 
     def build(self) -> HousingSupport:
-        """The support."""
+        """Build the support."""
         from housing import Support as BuiltSupport
 
         springs, dashpots, fixed = self.stiffness or Springs(), self.damping or Dashpots(), self.fixed or ()
@@ -288,7 +288,7 @@ class Sensor(Table):
         return None if self.direction is None else unit_vector(self.direction)
 
     def build(self) -> HousingSensor:
-        """The sensor."""
+        """Build the sensor."""
         from housing import Sensor as BuiltSensor
 
         return BuiltSensor(self.name, self.position, self.unit_vector)

@@ -299,7 +299,7 @@ def _parse(content: bytes, source: str) -> dict[str, Any]:
 
 
 def _as_case(document: dict[str, Any], path: Path) -> dict[str, Any]:
-    """The document, or for a rotor saved by ROSS a case of that rotor alone."""
+    """Return the document, or for a rotor saved by ROSS a case of that rotor alone."""
     if "ross_version" not in document:
         return document
     return {"title": f"{path.name}, a rotor saved by ROSS", "rotor": [{"name": path.stem, "file": path.name}]}

@@ -64,7 +64,7 @@ class TorqueHistory(Table):
         return self
 
     def build(self, rotor: str, at: float, factor: float) -> CoupledTorqueHistory:
-        """The history, times a factor, on a rotor at a station [m]."""
+        """Build the torque history, times a factor, on a rotor at a station [m]."""
         from numpy import array
 
         from coupling.machine.loads import TorqueHistory as BuiltHistory
@@ -87,7 +87,7 @@ class TorqueRipple(Table):
         return self
 
     def build(self, rotor: str, at: float, sense: float) -> CoupledTorqueRipple:
-        """The ripple on a rotor at a station [m], in the sense of the torque that it is about."""
+        """Build the torque ripple on a rotor at a station [m], in the sense of the torque that it is about."""
         from coupling.machine.loads import TorqueRipple as BuiltRipple
 
         frequency = None if self.frequency is None else 2.0 * math.pi * self.frequency
@@ -226,7 +226,7 @@ class Base(Table):
         return turning or (self.over_time is not None and any(map(any, self.over_time.rows[3:5])))
 
     def build(self) -> BaseMotion:
-        """The motion of the ground."""
+        """Build the base motion, the acceleration of the ground."""
         import numpy as np
 
         from coupling import BaseMotion

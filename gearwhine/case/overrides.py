@@ -97,7 +97,7 @@ class _LeadsNowhereError(Exception):
 
 
 def _expanded(document: Any, steps: tuple[str, ...], resolved: Any) -> list[tuple[str, ...]]:
-    """The paths that a path with wildcards stands for, in a document or once it is resolved; itself without any."""
+    """Expand the wildcards of a path to the paths in a document or once it is resolved; a plain path gives itself."""
     if "*" not in steps:
         return [steps]
     places = [place for known in (resolved, document) for place in matching_places(known, steps)]

@@ -120,7 +120,7 @@ def require_machine(case: Case) -> None:
 
 
 def describe_machine(case: Case, housing: HousingComponent | None = None, *, grounded: bool = False) -> Machine:
-    """The shafts, gears, bearings and gear pairs of a case as the library's description of a machine.
+    """Build the library's description of a machine: the shafts, gears, bearings and gear pairs of a case.
 
     ``grounded`` puts every bearing on the ground: the machine is looked at before its housing is solved.
 
@@ -222,7 +222,7 @@ def basis_error(
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
 ) -> BasisError | None:
-    """The machine beside one with less of what the housing's limit leaves out and with more modes of its shafts.
+    """Estimate the modal truncation error: compare with a machine of other residual attachments and more shaft modes.
 
     None where there is no housing, and so no sensor.
     """
@@ -238,7 +238,7 @@ def basis_error(
 def _housing_components(
     case: Case, solved: SolvedHousing, progress: Progress
 ) -> tuple[HousingComponent, HousingComponent | None]:
-    """The housing with all its attachments, and with those of one order of response less."""
+    """Return the housing with all its attachments, and with those of one order of response less."""
     assert case.operation is not None
     participation = None
     if case.operation.base is not None or case.operation.gravity is not None:
