@@ -264,7 +264,7 @@ class RunSolution:
 
 
 def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
-    """The quantities of what there is."""
+    """Return the labelled arrays of the analyses that were made."""
     streams = () if solved.transient is None else (HistoryStream(solved.transient),)
     return labelled(
         case,
@@ -279,7 +279,7 @@ def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
 
 
 def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:
-    """The figures of what there is."""
+    """Draw the figures of the analyses that were made, each with its name."""
     from gearwhine import figures
 
     if solved.pairs:

@@ -159,7 +159,7 @@ def diagram_speeds(case: Case) -> tuple[float, ...]:
 
 
 def _instant(case: Case, machine: CoupledMachine, phase: float) -> ContactState:
-    """The contact when the first pair's teeth stand at a phase."""
+    """Return the state of contact when the first pair's teeth stand at a phase."""
     require(case, "gear_pair", command="system --mesh-phase")
     if not 0.0 <= phase <= 1.0:
         raise CaseError([Problem("--mesh-phase", phase, "a part of the mesh period, 0 to 1")])

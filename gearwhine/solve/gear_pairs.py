@@ -159,7 +159,7 @@ class PairAnalysis:
         return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
 
     def curves(self) -> ToothPairCurves:
-        """The pair at even phases of the mesh period."""
+        """Return the pair's curves at even phases of the mesh period."""
         phases = np.arange(_PHASES) / _PHASES
         contact, faces = self.solved.contact, self.solved.contact.faces
         mesh = loaded_transmission_error(contact, self.solved.static.force, phases)
@@ -252,7 +252,7 @@ def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair) -> PairAnalysi
 
 
 def _pitch_pressure(pair: LoadedGearPair) -> float | None:
-    """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
+    """Return the largest pressure as a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
     pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
     if not 0.0 <= pitch < pair.geometry.contact_ratio:
         return None
@@ -270,7 +270,7 @@ _LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
 def solve_over_torques(
     pairs: Sequence[PairAnalysis], progress: Progress = silent, aims: Sequence[ReliefAim] = ()
 ) -> tuple[PairAnalysis, ...]:
-    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque.
+    """Add Harris maps and optimal reliefs to analysed pairs, where the case has a torque.
 
     ``aims`` are those of the reliefs, one for each pair; all peak to peak where not given.
     """
@@ -312,7 +312,7 @@ def _best_relief(pair: LoadedGearPair, aim: ReliefAim) -> ReliefOptimum:
 
 
 def with_coarser_slices(faces: FaceSlices, count: int) -> FaceSlices:
-    """The same face in at most `count` slices: quick enough to search with, and as good for finding a place."""
+    """Return the same face in at most `count` slices: faster to search with, and as good for finding a place."""
     if faces.z.size <= count:
         return faces
     z = faces.face_width * ((np.arange(count) + 0.5) / count - 0.5)
@@ -321,6 +321,6 @@ def with_coarser_slices(faces: FaceSlices, count: int) -> FaceSlices:
 
 
 def _alike(pair: GearPairGeometry) -> GearPairGeometry:
-    """A pair of gears with all their teeth alike: a relief is cut for all of them."""
+    """Return the pair with all teeth of a gear alike: a relief is cut for all of them."""
     driver, driven = (replace(gear, pitch_deviations=(), faults=()) for gear in (pair.driver, pair.driven))
     return replace(pair, driver=driver, driven=driven)

@@ -67,7 +67,7 @@ _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab", "pypardiso")
 
 
 def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
-    """Inputs of a case's housing modes; their content key is that of the modes.
+    """Return the inputs of a case's housing modes; their content key is that of the modes.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
 
 
 def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord | None, str | None]:
-    """Cached modes of these inputs, or None; and a warning where the file cannot be used."""
+    """Read the cached modes of these inputs, or None; and a warning where the file cannot be used."""
     path = folder / MODE_CACHE_FILE
     if not path.exists():
         return None, None
@@ -330,7 +330,7 @@ def _damping_array(matrix: FloatArray) -> LabelledArray:
 def _solve_modes(
     case: Case, described: Housing, loaded: dict[str, sparse.csr_array], progress: Progress
 ) -> tuple[ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
-    """The modes, the housing's mass [kg], what damps it in its modes, its checks, and the seconds of each step."""
+    """Solve the modes; return them, the mass [kg], the damping matrix, the checks, and the seconds of each step."""
     given = case.housing
     assert given is not None
     begin, mesh = time.perf_counter(), described.mesh
@@ -361,7 +361,7 @@ def _solve_modes(
 
 
 def describe_housing(case: Case, mesh: Mesh) -> Housing:
-    """The housing of a case on its mesh as the library's description.
+    """Build the library's description of a case's housing on its mesh.
 
     Raises
     ------

@@ -44,7 +44,7 @@ class RunLine:
 
 
 def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
-    """The lines nearest to frequencies [Hz] in a results folder, each once, ascending.
+    """Read the spectral lines nearest to frequencies [Hz] from a results folder, each once, ascending.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
 
 
 def operating_shape_of_line(line: RunLine, solved: SolvedHousing, housing: DrawnHousing) -> DrawnShape:
-    """A line's shape in micrometres, with the modes that have most of its kinetic energy."""
+    """Return a line's operating shape in micrometres, with the modes that have most of its kinetic energy."""
     try:
         motion = line.shape.displacement(solved.modes, housing.nodes)
         largest = float(peak_displacement(motion).max())
@@ -108,7 +108,7 @@ def operating_shape_of_line(line: RunLine, solved: SolvedHousing, housing: Drawn
 
 
 def lines_document(lines: list[RunLine], solved: SolvedHousing, housing: DrawnHousing) -> list[dict[str, Any]]:
-    """The lines as the command's JSON."""
+    """Return the lines as the command's JSON."""
     document = []
     for line in lines:
         largest = float(peak_displacement(line.shape.displacement(solved.modes, housing.nodes)).max())
@@ -134,7 +134,7 @@ def lines_document(lines: list[RunLine], solved: SolvedHousing, housing: DrawnHo
 
 
 def _leading(line: RunLine, solved: SolvedHousing) -> list[tuple[int, float, float]]:
-    """Number, frequency [Hz] and share of the first few modes."""
+    """Return number, frequency [Hz] and share of the first few modes."""
     shares = line.shape.kinetic_shares
     return [
         (int(mode) + 1, float(solved.modes.frequencies_hz[mode]), float(shares[mode]))

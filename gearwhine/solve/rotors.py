@@ -195,7 +195,7 @@ def _read(response: SynchronousResponse, probe: Probe) -> ProbeReading:
 
 
 def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Probe]:
-    """The probes of one rotor; where the case names none at all, one at each bearing and unbalance, along x."""
+    """Return the probes of one rotor; where the case names none, one at each bearing and unbalance, along x."""
     chosen = analysis.unbalance_response.probes
     if chosen:
         return [probe for probe in chosen if probe.rotor == given.name]
@@ -279,7 +279,7 @@ class SolvedTorsion:
 def solve_torsion(
     analysis: RotorAnalysis, given: GivenRotor, rotor: Rotor, modes: TorsionalModes
 ) -> SolvedTorsion | None:
-    """The torsional response of one rotor; None where no torque acts on it. ``modes`` are its own, free to turn."""
+    """Solve the torsional response of one rotor; None without a torque. ``modes`` are its own, free to turn."""
     wanted = analysis.torsional_response
     torques = [] if wanted is None else [torque for torque in wanted.torques if torque.rotor == given.name]
     if wanted is None or not torques:
@@ -321,7 +321,7 @@ def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bo
 
 
 def _torsion_probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: Rotor) -> list[TorsionProbe]:
-    """The probes of one rotor; where the case names none at all, one at each torque and at either end."""
+    """Return the probes of one rotor; where the case names none, one at each torque and at either end."""
     if wanted.probes:
         return [probe for probe in wanted.probes if probe.rotor == given.name]
     places = {0.0: "left end", rotor.length: "right end"}
@@ -495,7 +495,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
 
 
 def _rated_lives(case: Case, states: Mapping[str, RollingState]) -> dict[str, float]:
-    """Basic rating lives in revolutions."""
+    """Return basic rating lives in revolutions."""
     ratings = {
         bearing.name: bearing.stiffness.rolling.dynamic_rating
         for bearing in case.bearing

@@ -131,7 +131,7 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
 
 
 def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
-    """What of a run's signature is missing, and why; nothing at steady speed."""
+    """Warn of missing parts of a run's signature, with the reason; steady speed has none."""
     cut = _windows(case, solved)
     if cut is None:
         return []
@@ -182,7 +182,7 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
 
 
 def _turning_span(rates: FloatArray) -> slice:
-    """The longest stretch of samples in which the machine turns fast enough."""
+    """Return the longest stretch of samples in which the machine turns fast enough."""
     fast = np.concatenate([[0], (rates >= _SLOWEST * rates.max()).astype(np.int64), [0]])
     changes = np.diff(fast)
     begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)

@@ -89,7 +89,7 @@ class SteadyMotion:
         ]
 
     def resampled(self, signal: FloatArray, count: int) -> FloatArray:
-        """A whole period of a signal at another number of samples, by its own lines."""
+        """Resample a whole period of a signal to another number of samples, by its own lines."""
         if len(signal) == count:
             return signal
         return np.asarray(np.fft.irfft(np.fft.rfft(signal), count) * (count / len(signal)))

@@ -117,11 +117,11 @@ class SolvedTransient:
         return float(self.sensor_spectra[sensor].rms(self.trusted_limit))
 
     def sensor_peaks(self, sensor: str) -> list[Peak]:
-        """The lines of a sensor that are told of, highest first."""
+        """Return the reported spectral peaks of a sensor, highest first."""
         return spectrum_peaks(self.sensor_spectra[sensor], count=20, limit=self.trusted_limit, floor=1e-5)
 
     def force_peaks(self, contact: str) -> list[Peak]:
-        """The lines of a gear-mesh force that are told of, highest first."""
+        """Return the reported spectral peaks of a gear-mesh force, highest first."""
         return spectrum_peaks(self.force_spectra[contact], count=8)
 
     def back_flank_peak(self, pair: int) -> float | None:
@@ -250,7 +250,7 @@ def _in_space(case: Case, housing: SolvedHousing | ReducedHousing | None, named:
 
 
 def _with_code(key: str, chosen: Sampling) -> str:
-    """The key of a march with what is kept of it, by which code, and on which processor: no other rounds alike."""
+    """Return the key of a time integration and its stored data, for this code and processor: no other rounds alike."""
     from llvmlite import binding
 
     return content_key(

@@ -50,9 +50,14 @@ Arrays = Mapping[str, npt.NDArray[Any]]
 class Blocks(Protocol):
     """Blocks in their order, in memory or on file."""
 
-    def __len__(self) -> int: ...
-    def append(self, arrays: Arrays, /) -> None: ...
-    def __getitem__(self, number: int, /) -> Arrays: ...
+    def __len__(self) -> int:
+        """Return the number of blocks."""
+
+    def append(self, arrays: Arrays, /) -> None:
+        """Add the arrays of the next block."""
+
+    def __getitem__(self, number: int, /) -> Arrays:
+        """Return the arrays of a block."""
 
 
 class BlockFiles:
@@ -66,6 +71,7 @@ class BlockFiles:
             self._count += 1
 
     def __len__(self) -> int:
+        """Return the number of whole blocks, up to the first damaged or missing one."""
         return self._count
 
     @property
@@ -86,6 +92,7 @@ class BlockFiles:
         self._count += 1
 
     def __getitem__(self, number: int) -> Arrays:
+        """Read the arrays of a block."""
         return self._read(range(self._count)[number])
 
     def _file(self, number: int) -> Path:
@@ -138,7 +145,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
 
 
 def _place(folder: Path, name: str, *, fresh: bool) -> Path:
-    """A folder for the blocks, after those of dead runs of anything else are cleared away."""
+    """Return a folder for the blocks, after those of any other ended run are cleared away."""
     wanted = folder / name
     for other in folder.glob(f"{_KEPT}*"):
         if other.is_dir() and not other.is_symlink() and (fresh or other != wanted) and not is_locked(other):
@@ -330,7 +337,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def block_arrays(columns: FloatArray, held: FloatArray, after: Checkpoint) -> Arrays:
-    """Stored arrays of a block: its samples, the filter's state, and the state to restart from."""
+    """Return the stored arrays of a block: its samples, the filter's state, and the state to restart from."""
     return {"columns": columns, "held": held, **after.as_arrays()}
 
 
@@ -388,7 +395,7 @@ class MarchRecord:
         return self.sampling.decimation.kept(self.end.sample)
 
     def pieces(self) -> Iterator[Signals]:
-        """The histories, block by block."""
+        """Yield the histories, block by block."""
         done = 0
         for number in range(len(self.blocks)):
             columns = self.blocks[number]["columns"]
@@ -396,7 +403,7 @@ class MarchRecord:
             done += len(columns)
 
     def stretches(self) -> Iterator[Signals]:
-        """The histories in stretches of equal length, the last of which ends with the record."""
+        """Yield the histories in stretches of equal length, the last of which ends with the record."""
         length = min(self.sampling.stretch, self.samples)
         skipped = self.samples % length
         waiting, done = self.signals.columns[:0], 0
@@ -411,7 +418,7 @@ class MarchRecord:
                 waiting, done = waiting[length:], done + length
 
     def last_stretch(self) -> Signals:
-        """The last of them; of a record that fits in memory, all of it."""
+        """Return the last stretch; of a record that fits in memory, all of it."""
         length = min(self.sampling.stretch, self.samples)
         parts: list[FloatArray] = []
         for number in reversed(range(len(self.blocks))):
@@ -422,7 +429,7 @@ class MarchRecord:
         return self._named(columns[len(columns) - length :], self.samples - length)
 
     def _named(self, columns: FloatArray, first: int) -> Signals:
-        """The samples under their names, counted from a first one."""
+        """Return the samples under their names, counted from a first one."""
         recorded = self.sampling.decimation.delay + self.sampling.decimation.factor * np.arange(
             first, first + len(columns), dtype=np.float64
         )
@@ -468,7 +475,7 @@ def record_spectra(
 
 
 def _below(spectrum: Spectrum, limit: float) -> Spectrum:
-    """The lines up to a limit [Hz], and two more: a line at the limit stands out only beside its neighbours."""
+    """Return the lines up to a limit [Hz], and two more: a peak at the limit stands out only beside its neighbours."""
     kept = int(np.searchsorted(spectrum.frequencies, limit + 2.0 * spectrum.frequencies[1], side="right"))
     return replace(
         spectrum,

@@ -207,7 +207,7 @@ class NullTest:
 
 
 def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -> Procedure[HousingAtParameters]:
-    """The update's search as it is made on the mesh of one design alone, by one thread, from there.
+    """Return the update's search as made on the mesh of one design alone, by one thread, from that design.
 
     Parameters
     ----------
@@ -529,7 +529,7 @@ def _raced(
     threads: int,
     progress: Progress,
 ) -> tuple[HousingAtParameters, HousingAtParameters, MultistartResult[HousingAtParameters]]:
-    """The housing as it stands on both meshes, and the search from there and from other starts.
+    """Solve the housing as it stands on both meshes, and search from there and from other starts.
 
     Where there are several starts all is done by one thread each, from the first solution on: with other numbers of
     threads sums are rounded otherwise, and a search that is led by its last digits ends elsewhere.
@@ -557,7 +557,7 @@ def _as_it_stands(task: tuple[ParametricHousing, bool]) -> HousingAtParameters:
 
 
 def updated_case(case: Case, solved: SolvedUpdate) -> str:
-    """The case with what was found, as TOML; what each number was, is and why stands at the top and in [provenance].
+    """Return the updated case as TOML; each fitted number's old value, new value and reason stand in [provenance].
 
     The prior stays where it was: an update of the updated case begins at what was found, and is drawn to what was
     nominal.
@@ -601,7 +601,7 @@ def _clear(misfit: Misfit) -> str:
 
 
 def _prior(number: FittedNumber) -> dict[str, Any]:
-    """The prior as it was, now that the case's own number is another one."""
+    """Return the prior as it was, now that the case's own number is another one."""
     parameter, given = number.parameter, number.given
     if given.factor:
         return {}
@@ -613,7 +613,7 @@ def _exact(value: float, given: UpdateParameter) -> str | float:
 
 
 def _shown(value: float, given: UpdateParameter) -> str:
-    """A value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
+    """Return a value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
     return f"{value / unit_in_si(given):.5g} {given.unit}".strip()
 
 

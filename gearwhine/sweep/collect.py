@@ -75,7 +75,7 @@ def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptP
 
 
 def sweep_document(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> dict[str, Any]:
-    """A sweep as the command's JSON."""
+    """Return a sweep as the command's JSON."""
     rows = []
     for one in swept:
         values = {axis_name(key.key): key.values[place] for key, place in zip(keys, one.point.place, strict=True)}
@@ -116,7 +116,7 @@ class _Grid:
         of: Callable[[PointResult], Any],
         attributes: dict[str, str],
     ) -> Any:
-        """A variable with further dimensions, NaN where there is no result."""
+        """Return a variable with further dimensions, NaN where there is no result."""
         values = np.full((*self.shape, *shape), np.nan)
         for one in self.swept:
             if isinstance(one.outcome, PointResult):
