@@ -161,7 +161,7 @@ def _results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
 
 
 def _case_of(place: Path) -> Mapping[str, Any] | None:
-    """The resolved case beside a result; None where it cannot be read."""
+    """Return the resolved case beside a result; None where it cannot be read."""
     try:
         return tomllib.loads((place / "case.toml").read_text(encoding="utf-8"))
     except (OSError, ValueError):

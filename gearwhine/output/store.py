@@ -78,7 +78,7 @@ def store_results(
 
 
 def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
-    """The results that a folder holds: the place of each, relative to the folder, and its document; newest first."""
+    """Return the results in a folder, newest first: the relative place of each, and its document."""
     places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
     found = [(own, summary) for own in places if (summary := read_summary(folder / own)) is not None]
     return sorted(found, key=lambda one: str(one[1].get("made_at", "")), reverse=True)

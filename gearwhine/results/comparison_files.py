@@ -103,7 +103,7 @@ def dof_names(geometry: MeasuredGeometry) -> list[str]:
 
 
 def _pairs(comparison: Comparison) -> tuple[list[str], list[list[object]]]:
-    """The source's Table II with what the pairs rest on: heads and rows."""
+    """Return the source's Table II with the evidence for each pair: heads and rows."""
     heads = ["measured_mode", "measured_hz", "model_hz", "error_percent", "mode", "mac", "confidence", "strength"]
     rows: list[list[object]] = [
         [

@@ -121,7 +121,7 @@ def _points(path: PathOfContact) -> list[dict[str, Any]]:
 
 
 def _of_sides(name: str, unit: str, what: str) -> Quantity:
-    """A quantity of the named points on both gears."""
+    """Declare a quantity of the named points on both gears."""
     return Quantity(
         "",
         lambda path: np.array([getattr(path, f"{side}_{name}") for side in ("driver", "driven")]),
@@ -317,7 +317,7 @@ PRESSURE = (
 
 
 def _aim(pair: "PairAnalysis") -> dict[str, Any]:
-    """What the relief is sought for."""
+    """Return the aim of the relief search."""
     given, optimum = pair.given.relief_aim, pair.optimum
     assert optimum is not None
     kind = "peak-to-peak" if given is None else "harmonics" if given.sensor is None else "sensor"
@@ -420,7 +420,7 @@ GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
 
 
 def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
-    """The gear pairs as the command's JSON, with warnings where there are any."""
+    """Return the gear pairs as the command's JSON, with warnings where there are any."""
     warnings = [doubt for pair in pairs for doubt in _doubts(pair)]
     return document_of(GEARS, pairs) | ({"warnings": warnings} if warnings else {})
 
@@ -476,7 +476,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _proportions(pair: Document) -> tuple[Table, ...]:
-    """The proportions of both gears, and what a micrometer reads over some of their teeth."""
+    """Return the proportions of both gears, and the span measured over some of their teeth."""
     first = pair["gears"][0]
     title = f"Gears: module {_MM * first['module_m']:.5g} mm, pressure angle {_degrees(first['pressure_angle_rad'])}"
     if helix := first["helix_angle_rad"]:
@@ -487,7 +487,7 @@ def _proportions(pair: Document) -> tuple[Table, ...]:
 
 
 def _path(pair: Document) -> tuple[Table, ...]:
-    """The named points of the path of contact on both gears."""
+    """Return the named points of the path of contact on both gears."""
     columns = [Column("", "point")]
     for side in ("driver", "driven"):
         columns += [
@@ -568,7 +568,7 @@ def _load(pair: Document) -> list[str]:
 
 
 def _best_relief(pair: Document) -> list[str]:
-    """What the given relief does, which torque it suits best, and what would suit the case's torque."""
+    """Return lines on the given relief's effect, its best torque, and the best relief for the case's torque."""
     best = pair["optimal_tip_relief"]
     if best is None:
         return []
@@ -603,7 +603,7 @@ def _best_relief(pair: Document) -> list[str]:
 
 
 def _aim_in_words(aim: Document) -> str:
-    """What the relief is sought for."""
+    """Return the aim of the relief search in words."""
     if aim["kind"] == "peak-to-peak":
         return "peak-to-peak transmission error"
     if aim["kind"] == "sensor":
@@ -617,7 +617,7 @@ def _value(aim: Document, key: str) -> str:
 
 
 def _given(pair: Document) -> str:
-    """The reliefs of both gears in short, such as ``0.023/0.025 mm from 24°``."""
+    """Return the reliefs of both gears in short, such as ``0.023/0.025 mm from 24°``."""
     reliefs = [gear["tip_relief"] for gear in pair["gears"]]
     amounts = [_MM * relief["amount_m"] if relief else 0.0 for relief in reliefs]
     starts = [math.degrees(relief["start_roll_angle_rad"]) for relief in reliefs if relief]

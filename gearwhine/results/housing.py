@@ -146,7 +146,7 @@ ORIGIN = (
 
 
 def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
-    """The housing, where it has residual attachments whose static error is known."""
+    """Return the housing where it has residual attachments of known static error, else None."""
     return None if solved is None or solved.modes.residual_modes is None else solved
 
 
@@ -185,7 +185,7 @@ _SELECTED: Fields = (Part("selection", lambda solved: None if solved.selection i
 
 
 def modes_document(solved: "SolvedHousing", *, detail: bool = False) -> dict[str, Any]:
-    """The modes as the command's JSON; in detail also which of them carry the motion from bearings to sensors."""
+    """Return the modes as the command's JSON; in detail also the modes that carry motion from bearings to sensors."""
     return document_of((*HOUSING, *_SELECTED) if detail else HOUSING, solved)
 
 
@@ -247,7 +247,7 @@ _CHECKS = (
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The modes, the checks of the model that break their bounds, and the static compliance at the bearings."""
+    """Return the modes, the checks of the model that break their bounds, and the static compliance at the bearings."""
     lines = [line for line in document["health"]["lines"] if line["bound"] is not None]
     broken = [line for line in lines if not line["ok"]]
     health: tuple[str | Table, ...] = (
@@ -259,7 +259,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def detailed_sections(document: Document) -> tuple[Section, ...]:
-    """The modes with every check, effective masses, the supports, and the modes that carry the forces."""
+    """Return the modes with every check, effective masses, the supports, and the modes that carry the forces."""
     content: tuple[str | Table, ...] = (
         *_modes_content(document),
         *table_of(_CHECKS, document["health"]["lines"]),
@@ -291,7 +291,7 @@ def _static_error(document: Document) -> Iterator[str]:
 
 
 def static_error_sentence(error: Document) -> str:
-    """The static compliance at the bearings in words."""
+    """Return the static compliance at the bearings in words."""
     return (
         f"Static compliance at the bearings: the modes alone lack up to {100 * error['without_attachments']:.3g} %; "
         f"with {counted(error['attachments'], 'residual attachment')} {error['with_attachments']:.0e} of it is left."

@@ -437,7 +437,7 @@ ROTORS = (Rows("rotors", lambda solved: solved, ROTOR, "rotor"),)
 
 
 def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
-    """The rotors as the command's JSON, with warnings."""
+    """Return the rotors as the command's JSON, with warnings."""
     warnings = [
         warning("rotating damping", _ROTATING.format(one.rotor.name), rotor=one.rotor.name)
         for one in solved
@@ -615,7 +615,7 @@ def _undamped(rotor: Document) -> Iterator[str | Table]:
 
 
 def _nearest(rows: Sequence[Document]) -> Iterator[str]:
-    """The critical speed nearest to operation of those that unbalance excites."""
+    """Yield the critical speed nearest to operation of those that unbalance excites."""
     # Circular backward whirl takes no work from unbalance.
     excited = [row for row in rows if row["margin"] is not None and row["way"] >= -1.0 + _PLANAR]
     if excited:
@@ -641,7 +641,7 @@ def _orders(campbell: Document) -> Iterator[str | Table]:
 
 
 def _weight(static: Document) -> Iterator[str | Table]:
-    """What the bearings carry of the rotor's weight, and how far it sags."""
+    """Yield the bearing reactions to the rotor's weight, and its sag."""
     if static["bearings"] is None:
         yield f"No static deflection: {static['why_not']}"
         return
@@ -673,7 +673,7 @@ _PROBES = (
 
 
 def _torsion(response: Document) -> Iterator[str | Table]:
-    """The largest angle and torque at each probe, and the largest torque of the whole shaft."""
+    """Yield the largest angle and torque at each probe, and the largest torque of the whole shaft."""
     nothing = _ROUNDING * response["largest_torque_n_m"]
     columns = (
         Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm"),

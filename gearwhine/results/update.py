@@ -241,7 +241,7 @@ UPDATE = (
 
 
 def update_document(case: "Case", solved: "SolvedUpdate") -> dict[str, Any]:
-    """What was fitted, how well, and what that is worth, as the command's JSON."""
+    """Return the fitted numbers, the quality of the fit and its validation as the command's JSON."""
     document = {"title": case.title} | document_of(UPDATE, solved)
     if solved.left_out:
         message = f"{solved.left_out} degrees of freedom were not measured in every mode and took no part"
