@@ -390,7 +390,7 @@ def _projected(positions: FloatArray, towards_eye: FloatArray) -> tuple[FloatArr
 def _wires(
     axes: Axes, rest: FloatArray, moved: FloatArray, amplitude: FloatArray, edges: IntArray, near: FloatArray
 ) -> None:
-    """The wires at rest in grey, and moved, the far ones fainter and behind."""
+    """Draw the wireframe at rest in grey, and deformed, the far wires fainter and behind."""
     order = np.argsort(near[edges].mean(axis=1)) if len(edges) else np.zeros(0, dtype=np.int64)
     edges = edges[order]
     axes.add_collection(LineCollection(list(rest[edges]), colors=PALE, linewidths=0.5, zorder=1))

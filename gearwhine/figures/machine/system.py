@@ -115,7 +115,7 @@ def _draw_branches(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> 
 
 
 def _draw_line(axes: Axes, line: ExcitationLine, last: float, top: float) -> None:
-    """An order, named at its end where that is at the right of the panel."""
+    """Draw the line of an order, named at its end where that is at the right of the panel."""
     slope = line.order / 60.0
     if line.kind == "sideband":
         axes.plot([0.0, last], [0.0, slope * last], color=_PALE_GREY, lw=0.5, zorder=1.5, label=line.name)
