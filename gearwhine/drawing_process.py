@@ -109,7 +109,7 @@ def _how_it_died(code: int, troubles: str) -> str:
 
 
 def _environment() -> dict[str, str]:
-    """The same code is imported there, wherever the command was started from."""
+    """Return the environment of the process, in which the same code is imported wherever the command was started."""
     root = str(Path(gearwhine.__file__).parent.parent)
     return os.environ | {"PYTHONPATH": os.pathsep.join([root, *filter(None, [os.environ.get("PYTHONPATH")])])}
 
