@@ -1,4 +1,4 @@
-"""The whole run of a case: every analysis that it asks for, and the transient."""
+"""The whole run of a case: every analysis that the case asks for, and the transient."""
 
 from __future__ import annotations
 

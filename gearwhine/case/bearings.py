@@ -1,6 +1,7 @@
-"""Rolling bearings of a case, by their geometry or by the main dimensions of a catalogue; stops; bearing loads.
+"""Bearings of a case, `[[bearing]]`: stiffness, damping, pedestals, stops and mean loads; rolling bearings.
 
-Bearings of a case, `[[bearing]]`: stiffness, damping, pedestal. Attributes are named as the keys and are in SI.
+A rolling bearing is given by its geometry, or by the main dimensions of a catalogue, from which its inside is
+estimated. Attributes are named as the keys and are in SI.
 """
 
 from __future__ import annotations

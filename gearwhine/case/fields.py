@@ -1,10 +1,8 @@
 """Field types of a case: quantities with unit and range, names, files, and the base class of all tables.
 
-Directions in a case: an axis by its letter, or a vector of any length.
-
-Coefficients over speed: one quantity, or a list with one for each speed of a table.
-
-Patches of the housing surface: a named surface, or the surface in a box or on a plane.
+Further types are a direction, an axis by its letter or a vector of any length; a coefficient over speed, one quantity
+or a list with one for each speed of a table; and a patch of the housing's surface, which is a named surface, or the
+surface in a box or on a plane.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""Gears and gear pairs of a case: `[[gear]]` and `[[gear_pair]]`. Attributes are named as the keys and are in SI.
+"""Gears and gear pairs of a case, `[[gear]]` and `[[gear_pair]]`, and the gear train that the pairs form.
 
-Flank modifications, manufacturing errors and faults of a `[[gear]]`; each builds its object of `coupling.gears`.
-
-Gear train of a case: pairs of shafts with their tooth numbers.
+Flank modifications, manufacturing errors and faults of a gear each build their object of `coupling.gears`. The train
+lists pairs of shafts with their tooth numbers. Attributes are named as the keys and are in SI.
 """
 
 from __future__ import annotations

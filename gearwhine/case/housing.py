@@ -1,8 +1,7 @@
-"""Housing of a case, `[housing]`: geometry, seats, supports, sensors and fixtures; and the materials.
+"""Housing of a case, `[housing]`: geometry, seats, supports, sensors and fixtures; materials and their regions.
 
-Attributes are named as the keys of the case file and are in SI; frequencies are in Hz.
-
-Material regions of the housing, `[[housing.region]]`.
+Regions, `[[housing.region]]`, are parts of the housing of another material. Attributes are named as the keys of the
+case file and are in SI; frequencies are in Hz.
 """
 
 from __future__ import annotations

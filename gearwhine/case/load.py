@@ -1,8 +1,6 @@
-"""Reading a case, from a file or a bundled name, to a checked `Case`; all problems in one error.
+"""Loading a case, from a file or a bundled name, to a checked `Case`; all problems in one error.
 
-Bundled cases: their names, titles and files.
-
-Validation errors of pydantic as findings in the case file's terms.
+Bundled cases are found by their names. Validation errors of pydantic become findings in the case file's terms.
 """
 
 from __future__ import annotations

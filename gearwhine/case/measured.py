@@ -1,6 +1,7 @@
-"""Measured modes of a case, `[measured]`: frequencies, or a modal survey and its alignment with the model.
+"""Measured modes of a case, `[measured]`, and model updating by them, `[update]`.
 
-Model updating of a case, `[update]`: the fitted parameters, and the modes they are fitted to.
+Measured are frequencies alone, or a modal survey with its alignment on the model. An update has the parameters that
+are fitted, and the modes that they are fitted to.
 """
 
 from __future__ import annotations

@@ -1,10 +1,7 @@
-"""Operation, transient and sweep of a case.
+"""Operation, transient and sweep of a case: torques, the speed profile of a run, base motion, sampling.
 
-Attributes are named as the keys and are in SI; speeds in rad/s.
-
-Torques over time and speed, torque ripple, and the speed profile of a run. All in SI, speeds in rad/s.
-
-Base motion of a case, `[operation.base]`: accelerations of the ground. All in SI, frequencies in Hz.
+Torques are constant, or vary over time and speed, with ripple. Base motion, `[operation.base]`, is the acceleration of
+the ground. Attributes are named as the keys and are in SI: speeds in rad/s, frequencies in Hz.
 """
 
 from __future__ import annotations

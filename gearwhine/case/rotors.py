@@ -1,8 +1,7 @@
-"""Rotors of a case, `[[rotor]]`: shaft segments, couplings, discs, unbalance, bow; each builds its object of `rotors`.
+"""Rotors of a case, `[[rotor]]`, and the analyses of them, `[rotor_analysis]`.
 
-Attributes are named as the keys and are in SI.
-
-Rotor analyses of a case, `[rotor_analysis]`. Attributes are named as the keys and are in SI.
+Shaft segments, couplings, discs, unbalance and bow each build their object of `rotors`. Attributes are named as the
+keys and are in SI.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Running a command on a case: read the case, work under a progress display, show or print the document.
+"""Common course of a command on a case: options, reading the case, progress, and the result shown or printed.
 
-Common command-line options: the case's name, output folder, JSON, settings, quiet, fresh.
+The options are the case's name, the output folder, JSON, settings, quiet and fresh.
 """
 
 import os

@@ -1,6 +1,6 @@
-"""Waterfall diagram: spectra over speed, with mesh orders and the housing's natural frequencies.
+"""Spectra figures: spectral lines on a logarithmic scale, and waterfall diagrams.
 
-Spectral lines on a logarithmic scale.
+A waterfall shows spectra over speed, with mesh orders and the housing's natural frequencies.
 """
 
 from collections.abc import Sequence

@@ -1,7 +1,4 @@
-"""Housing mesh of a case, from a box, a CAD file or a mesh file, with a surface for each seat.
-
-Material regions of a case's mesh: the material of each element.
-"""
+"""Housing mesh of a case, from a box, a CAD file or a mesh file, with bearing seats and the material of each element."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,6 +1,6 @@
 """Parametric housing: modes at any values of the fitted parameters, and surrogates about solved ones.
 
-Parameters of a case's `[update]`: the numbers of the case that each one sets, and their values.
+The parameters of a case's `[update]` are numbers of the case; each sets one or more places in it.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence

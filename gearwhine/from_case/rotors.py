@@ -1,6 +1,6 @@
-"""Bearings of a case as library objects; rolling bearings are linearised about their equilibrium under load.
+"""Rotors, gears and bearings of a case as library objects, with the materials that their entries name.
 
-Rotors and gears of a case as library objects, with the materials that their entries name.
+Rolling bearings are linearised about their equilibrium under load.
 """
 
 import numpy as np

@@ -1,8 +1,7 @@
-"""Files that appear whole or not at all.
+"""Files of a results folder: files that appear whole or not at all, locks, content digests, JSON.
 
-Locks on folders, for runs that share a results folder.
-
-Content digests: files by their content, libraries by version, own code by its text.
+Locks on folders serve runs that share a results folder. Digests take files by their content, libraries by version, own
+code by its text.
 """
 
 import errno

@@ -1,4 +1,4 @@
-"""What a comparison of modes leaves in the output folder: tables as CSV, and its pictures."""
+"""Comparison files: the tables of a comparison of modes as CSV, and its pictures."""
 
 import csv
 from collections.abc import Iterable, Iterator, Sequence

@@ -1,4 +1,4 @@
-"""Motion of a machine, marched or periodic: the quantities of its gear meshes and the lines of its sensors."""
+"""Motion of a machine, integrated in time or periodic: how its mesh forces and the lines of its sensors are shown."""
 
 from collections.abc import Iterable
 from typing import Any

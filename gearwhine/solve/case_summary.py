@@ -1,4 +1,4 @@
-"""Check of a case before anything is solved: what cannot be built is refused, and the rest is known by arithmetic."""
+"""Summary of a case before anything is solved: parts that cannot be built are refused, the rest is arithmetic."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

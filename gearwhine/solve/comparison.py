@@ -1,8 +1,7 @@
 """Comparison of a solved housing with the measured modes of its case: read, aligned, paired.
 
-Measured modes of a case: read, aligned with the model, and mapped to its degrees of freedom.
-
-Measured frequency responses beside the model's at the same points, with FRAC.
+Measured modes are mapped to the model's degrees of freedom. Measured frequency responses are compared with the model's
+at the same points by FRAC.
 """
 
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Linear analyses of the coupled system: its modes, their course over speed, and what reaches gears and sensors."""
+"""Linear analyses of the coupled system: modes, Campbell diagram, responses at gears and sensors to mesh errors."""
 
 import math
 from dataclasses import dataclass, replace

@@ -1,6 +1,6 @@
-"""What the teeth of a gear pair do under the torque of the case: who carries, how hard they press, how they err.
+"""Analysis of a gear pair under the case's torque: load sharing, contact pressure, transmission error.
 
-Harris maps of gear pairs over torque, and the optimal tip relief.
+Over a range of torques these give Harris maps and the optimal tip relief.
 """
 
 from collections.abc import Sequence

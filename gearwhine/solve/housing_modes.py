@@ -1,11 +1,10 @@
-"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance.
+"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance; and their cache.
 
-Mode cache: housing modes in the results folder, read again while the housing is unchanged.
-
-Modes are known again by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys
-that do not enter the modes, the materials it names, the places of the bearings for which the modes have attachments,
-the content of its files, and the versions and source of the code.
-A new key of the housing therefore counts until somebody says that it does not.
+The mode cache is a file in the results folder that is read again while the housing is unchanged. Modes are identified
+by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys that do not enter the
+modes, the materials it names, the places of the bearings for which the modes have attachments, the content of its
+files, and the versions and source of the code.
+A new key of the housing therefore counts until it is listed as one that changes no mode.
 """
 
 import time

@@ -1,8 +1,7 @@
-"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow.
+"""Rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, static deflection and responses.
 
-What a rotor's weight, unbalance and bow do to it, by the speeds and probes of `[rotor_analysis]`.
-
-What swinging torques do to a rotor's torsion, by the torques and probes of `[rotor_analysis.torsional_response]`.
+The response to unbalance and bow follows the speeds and probes of `[rotor_analysis]`, the torsional response to
+alternating torques those of `[rotor_analysis.torsional_response]`.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The signature of a run-up or a run-down: spectra along the run, and orders over the speed."""
+"""Signature of a run-up or run-down: spectra along the run, and orders over the speed."""
 
 import math
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""The signature of a machine in motion: what the lines of its spectra are, and where they come from."""
+"""Signature of a machine in motion: the names of the lines in its spectra, and the transfer paths behind them."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The steady state of a case directly: the motion that repeats with its excitation, and its branch over speed."""
+"""Steady state of a case: the periodic motion under its excitation, and the branch of such motions over speed."""
 
 import math
 from dataclasses import dataclass, field, replace

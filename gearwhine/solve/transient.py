@@ -1,4 +1,4 @@
-"""The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
+"""Transient of a case: time integration of the loaded machine; histories of sensors, gears and bearings."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,19 +1,16 @@
-"""Record of a time integration in blocks: histories block by block, and their spectra.
+"""Record of a time integration in blocks: sampling, checkpoint files, histories block by block, and their spectra.
 
-Checkpoint files of a time integration: each block of the record with the state after it, for a later restart.
+Checkpoints: a run stores its blocks in a hidden folder of the output folder, each with the state after it, for a later
+restart. The folder bears the key of everything that the integration depends on, and goes when the results are written.
+A block and its checkpoint are one file that appears whole: it is written beside, forced to the disk, and renamed. A run
+that is killed, interrupted or fails leaves its blocks; the next run with the same key goes on behind the last one
+before any damage. A run of anything else clears them away.
 
-A run keeps its blocks in a hidden folder of the output folder, which bears the key of everything the march depends on
-and goes when the results are written. A block and its checkpoint are one file that appears whole: it is written beside,
-forced to the disk, and renamed. Who is killed, interrupted or fails leaves the blocks it has; the next run with the
-same key goes on behind the last one before any damage. A run of anything else clears them away.
-
-Sampling of a transient: steps, record length, decimation and spectral windows.
-
-Stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times the
-highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record that
-fits in memory is kept like that, and its spectra are those of the whole. A longer one is filtered as it comes and kept
-at four times that frequency: its histories and spectra are right up to there, which is also as far as the model's
-modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
+Sampling: stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times
+the highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record
+that fits in memory stays like that, and its spectra are those of the whole. A longer one is filtered as it comes and
+stored at four times that frequency: its histories and spectra are right up to there, which is also as far as the
+model's modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
 """
 
 import math

@@ -1,19 +1,15 @@
-"""Model updating of a case's housing: the search, and the validation of the fit.
+"""Model updating of a case's housing: the search, the cross-validation of the fit, and the updated case.
 
-The search is made on a mesh of its own, coarse enough for many solves, that moves with the box, with that mesh's bias
-taken off. The box's own mesh decides: it judges every few solves, and the search ends with a few designs more there,
-each meshed anew.
+The targets are measured frequencies, and shapes where a survey holds some. The search is made on a mesh of its own,
+coarse enough for many solves, that moves with the box, with that mesh's bias taken off. The box's own mesh decides: it
+judges every few solves, and the search ends with a few designs more there, each meshed anew.
 
-Targets of an update: measured frequencies, and shapes where a survey holds some.
+Cross-validation leaves modes out in turn, and fits random frequency sets as the null hypothesis. Each is the whole
+search again. On the housing's own mesh it would take as long as the update itself, so all are made on the coarser one,
+as if that were the housing; the measured set too, with which the random ones are compared. Local processes share these
+long tasks with small results.
 
-Cross-validation of an update: modes left out in turn, and random frequency sets as the null hypothesis.
-
-Each is the whole search again. On the housing's own mesh it would take as long as the update itself, so all are made on
-the coarser one, as if that were the housing; the measured set too, with which the random ones are compared.
-
-Parallel work by local processes, for long tasks with small results.
-
-Updated case: the case file with the fitted numbers, their provenance and their prior.
+The updated case is the case file with the fitted numbers, their provenance and their prior.
 """
 
 import tempfile

@@ -1,6 +1,6 @@
-"""Solving one sweep point on a worker: the transient, reduced to the quantities that a sweep collects.
+"""Solution of one sweep point on a worker: the transient, reduced to the quantities that a sweep collects.
 
-Point files of a sweep: NetCDF4, written whole or not at all.
+Each point is a file of NetCDF4, written whole or not at all.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Tooth pair in mesh: true tooth shapes, line of action and points of contact.
+"""Tooth figures: a tooth pair in mesh, and inspection charts of the flanks.
 
-Inspection charts of flanks: profile over the roll angle, helix across the face, pitch tooth by tooth.
+The pair is drawn with its true tooth shapes, line of action and points of contact. The charts show the profile over
+the roll angle, the helix across the face, and the pitch tooth by tooth.
 """
 
 import math

@@ -1,8 +1,7 @@
-"""Figures of the coupled system: Campbell diagram and transmissibility.
+"""Coupled system figures: Campbell diagram and transmissibility.
 
-Campbell diagram of the coupled machine: modes coloured by the part that moves, shaft and mesh orders across.
-
-Transmissibility: mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency.
+In the Campbell diagram the modes are coloured by the part that moves, with shaft and mesh orders across. The
+transmissibility gives mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

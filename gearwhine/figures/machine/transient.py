@@ -1,14 +1,10 @@
-"""Transient figures: spectra, mesh forces, orbits.
+"""Transient figures: sensor spectra, transfer paths, tooth friction, modal coordinates and orbits.
 
-Sensor spectra, a panel each, their leading lines named.
-
-Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars.
-
-Tooth friction over time: force across the line of action, and power loss.
-
-Modal coordinates in time and frequency, after Figs. 7, 8, 10 and 11 of NASA TM-101442.
-
-Orbits of gears: mean position of each centre, and its motion about it.
+- Sensor spectra, a panel each, their leading lines named.
+- Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars.
+- Tooth friction over time: force across the line of action, and power loss.
+- Modal coordinates in time and frequency, after Figs. 7, 8, 10 and 11 of NASA TM-101442.
+- Orbits of gears: the mean position of each centre, and its motion about it.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,6 +1,6 @@
 """Campbell diagram of a rotor: whirl frequencies and damping over the speed of rotation.
 
-Forward and backward whirl in figures: colours, lines and words.
+Forward and backward whirl have their colours, lines and words here, for all figures of rotors.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,10 +1,7 @@
 """Shaft drawing to scale, alone or above a panel that shares its axis.
 
-Drawing scale of a shaft, the same along it and across it where space allows.
-
-Shaft outline in section through its axis: segments, couplings, discs, gears.
-
-Symbols of supports under a shaft: spring or rolling bearing; ground, seat or pedestal.
+The scale is the same along the shaft and across it where space allows. The outline is a section through the axis with
+segments, couplings, discs and gears. Supports have symbols: a spring or a rolling bearing, on ground, seat or pedestal.
 """
 
 import math
