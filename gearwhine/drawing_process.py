@@ -40,7 +40,7 @@ def draw_in_process(
     Raises
     ------
     RendererUnavailableError
-        Where nothing here draws without a screen, or the drawing process dies.
+        Where no library draws without a display, or the drawing process dies.
     EncoderUnavailableError
         Where MP4 is asked for and nothing encodes it.
     """

@@ -240,7 +240,7 @@ class Study:
         )
 
     def simulate(self) -> Result[RunSolution]:
-        """March the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
+        """Integrate the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
         from gearwhine.analyses import run
 
         return run.simulate(self.case, housing=self.housing, progress=self.progress)
@@ -259,14 +259,14 @@ class Study:
         workers: int | None = None,
         fresh: bool = False,
     ) -> Result[Sequence[SweptPoint]]:
-        """March the transient at every point of a sweep; see :func:`gearwhine.analyses.machine.sweep`.
+        """Integrate the transient at every point of a sweep; see :func:`gearwhine.analyses.machine.sweep`.
 
         Parameters
         ----------
         over : sequence of str
             Values of keys, such as ``"operation.torque=10 N*m:100 N*m:10"``, beside the speeds of `[sweep]`.
         folder : path
-            Where the points are kept; those that it holds already are not done again.
+            Where the points are stored; those that it holds already are not done again.
         workers : int, optional
             Number of processes; as many as cores by default.
         fresh : bool

@@ -376,7 +376,7 @@ def _check_run(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 
 def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
-    """Yield what the exact march, where it is asked for, knows nothing of."""
+    """Yield what exact integration, where it is asked for, does not cover."""
     given = draft.transient
     if given is None or given.method != "exact":
         return

@@ -140,12 +140,12 @@ def without_changed(
     table = document.get("provenance")
     if not isinstance(table, dict) or ("provenance",) in changed:
         return document
-    kept = {}
+    unchanged = {}
     for key, value in table.items():
         steps = parse_key_path(key)
         if steps is None or ("provenance", key) in changed or _values_at(document, steps) == _values_at(before, steps):
-            kept[key] = value
-    return {**document, "provenance": kept}
+            unchanged[key] = value
+    return {**document, "provenance": unchanged}
 
 
 def _values_at(document: object, steps: tuple[str, ...]) -> list[object]:

@@ -154,7 +154,7 @@ class Measured(Table):
 
 
 class _AmountRule:
-    """Validates a quantity of any kind, kept as it is written: text with a unit, or a plain number in SI."""
+    """Validates a quantity of any kind, left as it is written: text with a unit, or a plain number in SI."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(self.validate)

@@ -287,7 +287,7 @@ class Transient(Table):
     """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps.
 
     `start`: from static equilibrium under the load, or from turning unloaded, so that the load comes on at once.
-    `modal_coordinates`: how many of each part's modes to record in time. `method`: Newmark's steps, the exact march
+    `modal_coordinates`: how many of each part's modes to record in time. `method`: Newmark's steps, exact integration
     between tooth events, or `auto`, the exact one where it applies.
 
     With a `run` the speed varies over its time, in place of a number of revolutions; then none is discarded by default.

@@ -95,7 +95,7 @@ _DIMENSIONS = (
 
 @dataclass(frozen=True)
 class _Unit:
-    """A unit in SI: ``factor`` times a product of base units to whole powers; cycles kept apart."""
+    """A unit in SI: ``factor`` times a product of base units to whole powers; cycles counted apart."""
 
     factor: Decimal
     powers: tuple[tuple[str, int], ...]

@@ -114,7 +114,7 @@ def missing_glyphs_as_boxes() -> Iterator[None]:
 
 
 def save(figure: Figure, path: Path) -> str:
-    """Write a figure as PNG and return the file's name; sheets for print are finer than figures for the screen."""
+    """Write a figure as PNG and return the file's name; sheets for print are finer than figures for a monitor."""
     with missing_glyphs_as_boxes():
         figure.savefig(path, dpi=max(_SCREEN_DPI, int(figure.dpi)))
     return path.name

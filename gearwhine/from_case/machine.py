@@ -91,7 +91,7 @@ def build_machine(
 ) -> CoupledMachine:
     """Assemble the machine of a case at its operating speed.
 
-    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are kept.
+    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
 
 
 def _shaft(case: Case, given: Rotor) -> Shaft:
-    limit, count = _kept(case, given.name)
+    limit, count = _retained_modes(case, given.name)
     return Shaft(
         given.build(case.material),
         given.axis,
@@ -198,7 +198,7 @@ def solve_machine(
     return housing, pairs, build_machine(case, housing, pairs, progress)
 
 
-def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
+def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
     """Retained modes of a rotor: a frequency limit [rad/s], or a number of each kind."""
     given = case.rotor_named(rotor)
     if given.modes is not None:

@@ -1,4 +1,4 @@
-"""Housing mesh of a case, from a box, a CAD file or a mesh file, with bearing seats and the material of each element."""
+"""Housing mesh of a case, from a box, a CAD file or a mesh file, with bearing seats and each element's material."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

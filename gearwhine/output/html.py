@@ -23,7 +23,7 @@ h1 { font-size: 1.5rem; margin-bottom: 0; }
 h2 { font-size: 1.3rem; margin: 2.6rem 0 .4rem; border-bottom: 2px solid #202428; }
 h3 { font-size: 1.1rem; margin-top: 1.8rem; border-bottom: 1px solid #e4e7ea; }
 h4 { font-size: 1rem; margin: 1.2rem 0 .2rem; }
-p { margin: .4rem 0; } .note { color: #6a7178; } .doubt { color: #a33; }
+p { margin: .4rem 0; } .note { color: #6a7178; } .warning { color: #a33; }
 table { border-collapse: collapse; margin: .8rem 0; }
 caption { text-align: left; color: #6a7178; padding: .2rem 0; }
 th, td { padding: .15rem .7rem; text-align: right; border-bottom: 1px solid #e4e7ea; }
@@ -89,10 +89,10 @@ def _origin(place: Path, document: Mapping[str, Any], present: Mapping[str, Any]
     command = document.get("command")
     heading = f"gearwhine {command}" if isinstance(command, str) else "Results"
     sentences = [f"Made {_moment(document.get('made_at'))}."] if document.get("made_at") else []
-    for doubt in (*_differences(_case_of(place), present), *_changed_files(document.get("input_files"))):
-        sentences.append(f"Does not fit the case any more: {doubt}.")
+    for mismatch in (*_differences(_case_of(place), present), *_changed_files(document.get("input_files"))):
+        sentences.append(f"Does not fit the case any more: {mismatch}.")
     told = "".join(
-        f'<p class="{"doubt" if sentence.startswith("Does not") else "note"}">{escape(sentence)}</p>\n'
+        f'<p class="{"warning" if sentence.startswith("Does not") else "note"}">{escape(sentence)}</p>\n'
         for sentence in sentences
     )
     return f"<h2>{escape(heading)}</h2>\n{told}"

@@ -43,15 +43,15 @@ def store_results(
     command
         One of `gearwhine.output.COMMANDS`.
     document
-        What is printed and kept as the summary; it gains the command, the time, the input files and the files written.
+        Printed, and stored as the summary; it gains the command, the time, the input files and the files written.
     case
-        Kept as it is resolved.
+        Stored as it is resolved.
     folder
         The output folder.
     write
         Writes the command's own files into a folder.
     housing
-        Whose modes are kept.
+        Whose modes are stored.
     """
 
     def settle(place: Path) -> Path | None:

@@ -14,7 +14,7 @@ from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls
 from gearwhine.from_case.gear_pairs import backlash_warnings
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
-from gearwhine.results.gear_documents import geometry_warnings
+from gearwhine.results.gear_warnings import geometry_warnings
 
 if TYPE_CHECKING:
     from gearwhine.solve.gear_pairs import PairAnalysis
@@ -421,12 +421,12 @@ GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
 
 def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
     """Return the gear pairs as the command's JSON, with warnings where there are any."""
-    warnings = [doubt for pair in pairs for doubt in _doubts(pair)]
+    warnings = [entry for pair in pairs for entry in _warnings(pair)]
     return document_of(GEARS, pairs) | ({"warnings": warnings} if warnings else {})
 
 
-def _doubts(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
-    """Doubts of the shape and the clearance, and what the mesh at rest does not show, or cannot bear."""
+def _warnings(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
+    """Warn of the teeth's shape, the backlash, a runout that the curves leave out, and an overload."""
     solved, geometry = pair.solved, pair.solved.geometry
     yield from geometry_warnings(geometry)
     yield from backlash_warnings(pair.given, geometry)

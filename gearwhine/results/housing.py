@@ -332,13 +332,13 @@ def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, .
 
 
 def _selection(selection: Document) -> str:
-    kept = len(selection["keep"])
+    retained = len(selection["keep"])
     modes = ", ".join(str(number) for number in selection["keep"]) or "none"
     low, high = selection["band_hz"]
     return (
         f"From {', '.join(selection['from'])} to {', '.join(selection['to'])}, {low:.4g} to {high:.4g} Hz: "
-        f"{kept} of {len(selection['ranking'])} modes carry the receptance to "
-        f"{100 * selection['error_left'][kept]:.2g} % of its largest: {modes}."
+        f"{retained} of {len(selection['ranking'])} modes carry the receptance to "
+        f"{100 * selection['error_left'][retained]:.2g} % of its largest: {modes}."
     )
 
 

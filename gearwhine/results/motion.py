@@ -65,6 +65,6 @@ def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
 
 def _line(line: Document) -> str:
     """Return a sensor's line, such as ``733 (0.58)``, with its modal truncation error where that is large."""
-    doubt = line.get("uncertainty", 0.0)
-    beside = "" if doubt <= _TOLD else f" ± {100.0 * doubt:.0f} %" if doubt < 1.0 else ", unsure"
+    error = line.get("uncertainty", 0.0)
+    beside = "" if error <= _TOLD else f" ± {100.0 * error:.0f} %" if error < 1.0 else ", unsure"
     return f"{line['frequency_hz']:.0f} ({line['amplitude_m_per_s2']:.2g}{beside})"

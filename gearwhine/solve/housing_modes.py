@@ -60,7 +60,7 @@ from meshes import Mesh
 
 MODE_CACHE_FILE = "modes.nc"
 
-# Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the kept mesh afresh.
+# Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab", "pypardiso")
 
@@ -238,7 +238,7 @@ def solve_housing(
     command : str
         On whose behalf, for messages.
     folder : path, optional
-        A results folder; modes of the same housing kept there are read in place of solving.
+        A results folder; modes of the same housing cached there are read in place of solving.
     fresh : bool
         Solve also where they are.
 
@@ -256,9 +256,9 @@ def solve_housing(
     remarks: list[str] = []
     mesh = build_mesh(case, remarks.append) if given.mesh is not None else None
     inputs = mode_cache_inputs(case, mesh)
-    kept, spoilt = read_mode_cache(folder, inputs) if folder is not None and not fresh else (None, None)
-    if kept is not None and folder is not None:
-        mesh, warnings = kept.mesh, list(kept.notes["warnings"])
+    cached, spoilt = read_mode_cache(folder, inputs) if folder is not None and not fresh else (None, None)
+    if cached is not None and folder is not None:
+        mesh, warnings = cached.mesh, list(cached.notes["warnings"])
         progress(f"modes read from {folder / MODE_CACHE_FILE} (unchanged housing)")
     else:
         if mesh is None:
@@ -275,13 +275,13 @@ def solve_housing(
         sensors = described.sensor_ports()
         bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
         survey = survey_grid(mesh, bounds)
-        if kept is None:
+        if cached is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
             warnings += resolution_warnings(case, mesh, modes.certificate.limit / _HERTZ)
         else:
-            modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
-            damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
+            modes, mass, checks = cached.modes, cached.mass, cached.notes["checks"]
+            damping_matrix = cached.extras[_DAMPING].values if _DAMPING in cached.extras else None
             seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
     seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
@@ -289,7 +289,7 @@ def solve_housing(
         radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
         strengths = dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
     seconds["total"] = time.perf_counter() - begin
-    record = kept or ModeRecord(
+    record = cached or ModeRecord(
         mesh,
         modes,
         mass,
@@ -316,8 +316,8 @@ def solve_housing(
         checks=checks,
         seconds=seconds,
         record=record,
-        source=None if kept is None or folder is None else folder / MODE_CACHE_FILE,
-        source_holds=kept is not None and kept.sensors == record.sensors,
+        source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
+        source_holds=cached is not None and cached.sensors == record.sensors,
         warnings=warnings + ([] if spoilt is None else [warning("modes file", spoilt)]),
     )
 

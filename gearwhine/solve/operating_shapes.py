@@ -62,9 +62,9 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
     if "housing_acceleration_spectrum" not in content:
         raise _missing(folder, "a run at steady speed on ground at rest, whose spectra have lines; 'gearwhine run' it")
     survey = solved.survey.matrix @ solved.modes.shapes.reshape(len(solved.modes.shapes), -1).T
-    kept = content["survey_shape"].values.reshape(len(content["housing_mode"]), -1).T
+    stored = content["survey_shape"].values.reshape(len(content["housing_mode"]), -1).T
     # Signs count too: amplitudes are those of these very shapes.
-    if kept.shape != survey.shape or np.abs(kept - survey).max() > _SAME * np.abs(survey).max():
+    if stored.shape != survey.shape or np.abs(stored - survey).max() > _SAME * np.abs(survey).max():
         raise _missing(folder, "a run with this housing; these results are another's: 'gearwhine run' again")
     lines = content["housing_line"].values
     spacing = float(lines[1] - lines[0])

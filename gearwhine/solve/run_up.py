@@ -20,7 +20,7 @@ _SLOWEST = 0.1  # part of the highest speed below which nothing is looked at: a 
 _ROWS = 28  # of the waterfall; its stretches overlap by half
 _WINDOWS = 60  # of the order map, about, each overlapping the next by half
 _HARMONICS = 3  # of each mesh that are followed
-_ABOVE = 1.25  # orders up to this over the highest of interest are kept
+_ABOVE = 1.25  # orders up to this over the highest of interest are followed
 _APART, _PARTED = 3.0, 2.0  # lines of a window between orders: as wished, and where Hann's window just parts them
 _FEWEST = 20  # windows that make a course over speed, where the run has turns for them
 _FEWEST_TURNS = 4
@@ -169,16 +169,16 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
         # Windows of whole turns of every shaft have every order as a line.
         turns = math.ceil(turns / whole) * whole
     turns = min(turns, max(2 * total // _FEWEST, 2))
-    # Of orders too close to each other the lower harmonic or the shaft that comes first is kept.
-    kept: dict[str, float] = {}
+    # Of orders too close to each other the lower harmonic or the shaft that comes first is followed.
+    followed: dict[str, float] = {}
     for name, order in named.items():
-        others = [0.0, *(one for one in kept.values() if one != order)]
+        others = [0.0, *(one for one in followed.values() if one != order)]
         if min(abs(order - one) for one in others) * turns >= _PARTED - 1e-9:
-            kept[name] = order
-    merged = tuple(name for name in named if name not in kept)
-    if not kept:
+            followed[name] = order
+    merged = tuple(name for name in named if name not in followed)
+    if not followed:
         return f"windows of {turns} turns tell no order apart"
-    return _Windows(span, turns, kept, merged)
+    return _Windows(span, turns, followed, merged)
 
 
 def _turning_span(rates: FloatArray) -> slice:
@@ -199,10 +199,10 @@ def _named_orders(case: Case, solved: SolvedTransient) -> dict[str, float]:
 
 
 def _up_to(found: signature.Spectrogram, limit: float) -> signature.Spectrogram:
-    kept = found.frequencies <= limit * (1.0 + 1e-9)
-    return signature.Spectrogram(found.times, found.frequencies[kept], found.amplitude[:, kept], found.window)
+    below = found.frequencies <= limit * (1.0 + 1e-9)
+    return signature.Spectrogram(found.times, found.frequencies[below], found.amplitude[:, below], found.window)
 
 
 def _orders_up_to(found: signature.OrderMap, limit: float) -> signature.OrderMap:
-    kept = found.orders <= limit
-    return replace(found, orders=found.orders[kept], amplitude=found.amplitude[:, kept])
+    below = found.orders <= limit
+    return replace(found, orders=found.orders[below], amplitude=found.amplitude[:, below])

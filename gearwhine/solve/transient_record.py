@@ -38,8 +38,8 @@ from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked
 
-_KEPT = ".resume-"
-_KEY_DIGITS = 16  # of the folder's name: no two marches of one folder share them by chance
+_FOLDER_PREFIX = ".resume-"
+_KEY_DIGITS = 16  # of the folder's name: no two integrations of one folder share them by chance
 
 Arrays = Mapping[str, npt.NDArray[Any]]
 
@@ -113,7 +113,7 @@ class BlockFiles:
 def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
     """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
 
-    Where a living run is at the same march in the same folder, this one keeps blocks of its own.
+    Where a living run is at the same integration in the same folder, this one stores blocks of its own.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
     made = not folder.exists()
     with ExitStack() as stack:
         with exclusive_lock(folder):
-            place = _place(folder, f"{_KEPT}{key[:_KEY_DIGITS]}", fresh=fresh)
+            place = _place(folder, f"{_FOLDER_PREFIX}{key[:_KEY_DIGITS]}", fresh=fresh)
             stack.enter_context(held_lock(place))
         blocks = BlockFiles(place)
         try:
@@ -144,7 +144,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
 def _place(folder: Path, name: str, *, fresh: bool) -> Path:
     """Return a folder for the blocks, after those of any other ended run are cleared away."""
     wanted = folder / name
-    for other in folder.glob(f"{_KEPT}*"):
+    for other in folder.glob(f"{_FOLDER_PREFIX}*"):
         if other.is_dir() and not other.is_symlink() and (fresh or other != wanted) and not is_locked(other):
             shutil.rmtree(other, ignore_errors=True)
     if wanted.exists() and is_locked(wanted):
@@ -170,11 +170,11 @@ def _force_names(folder: Path) -> None:
 
 
 _HERTZ = 2.0 * math.pi
-_OVERSAMPLING = 100.0  # of the march over the highest frequency of interest
-_FEWEST_SAMPLES = 16  # of a march: fewer show nothing
-_KEPT_SAMPLING = 4.0  # of what is kept of long records: what folds onto that frequency is a wide transition away
+_OVERSAMPLING = 100.0  # of the integration over the highest frequency of interest
+_FEWEST_SAMPLES = 16  # of an integration: fewer show nothing
+_STORED_SAMPLING = 4.0  # of stored long records: what folds onto that frequency is a wide transition away
 RECORD_BYTES = 128 << 20
-"""The longest record that is kept as it was sampled, all signals together."""
+"""The longest record that is stored as it was sampled, all signals together."""
 _STRETCH_BYTES = 64 << 20
 _LONGEST_STRETCH = 1 << 18  # samples
 _BLOCK_BYTES = 32 << 20
@@ -188,11 +188,11 @@ class Sampling:
     Attributes
     ----------
     settings : coupling.TransientSettings
-        Of the march.
+        Of the integration.
     samples_per_block : int
-        Of the march, about.
+        Of the integration, about.
     decimation : coupling.Decimation
-        From what is recorded to what is kept; by 1 for a record that fits in memory.
+        From recorded to stored samples; by 1 for a record that fits in memory.
     stretch : int
         Kept samples over which a spectrum is taken.
     window : {"uniform", "hann"}
@@ -237,9 +237,9 @@ def sampling(
     limit : float
         Highest frequency of interest [Hz].
     signals, rows : int
-        Numbers in a kept sample, and in one of the march.
+        Numbers in a stored sample, and in one of the integration.
     largest : int
-        The longest record that is kept as it was sampled [bytes].
+        The longest record that is stored as it was sampled [bytes].
     block : int, optional
         Samples in a block, about; by default as many as suit the length.
 
@@ -270,16 +270,16 @@ def sampling(
     if 8 * signals * settings.samples <= largest:
         decimation = coupled_decimation(1, 0.25)
         return Sampling(settings, block or SAMPLES_PER_BLOCK, decimation, settings.samples, _window(case))
-    kept_per_revolution = min(_power_of_two(_KEPT_SAMPLING * limit * period), per_revolution // 2)
-    factor = per_revolution // kept_per_revolution
-    decimation = coupled_decimation(factor, limit * period / kept_per_revolution)
-    kept = decimation.kept(settings.samples)
-    most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), kept_per_revolution)
+    stored_per_revolution = min(_power_of_two(_STORED_SAMPLING * limit * period), per_revolution // 2)
+    factor = per_revolution // stored_per_revolution
+    decimation = coupled_decimation(factor, limit * period / stored_per_revolution)
+    stored = decimation.kept(settings.samples)
+    most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), stored_per_revolution)
     whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
-    repeats = turning is None and whole * kept_per_revolution <= min(most, kept)
-    unit = kept_per_revolution * (whole if repeats else 1)
-    units = max(kept // unit, 1)
-    stretch = unit * (units // math.ceil(units * unit / most)) if unit <= kept else kept
+    repeats = turning is None and whole * stored_per_revolution <= min(most, stored)
+    unit = stored_per_revolution * (whole if repeats else 1)
+    units = max(stored // unit, 1)
+    stretch = unit * (units // math.ceil(units * unit / most)) if unit <= stored else stored
     if block is None:
         block = min(max(_BLOCK_BYTES // (8 * rows), SAMPLES_PER_BLOCK), _LARGEST_BLOCK)
     return Sampling(settings, block, decimation, stretch, "uniform" if repeats else "hann")
@@ -365,8 +365,8 @@ class Signals:
 
 
 @dataclass(frozen=True)
-class MarchRecord:
-    """A finished march.
+class TransientRecord:
+    """The record of a finished time integration.
 
     Attributes
     ----------
@@ -443,12 +443,12 @@ class MarchRecord:
 
 
 def record_spectra(
-    record: MarchRecord, last: Histories, limit: float
+    record: TransientRecord, last: Histories, limit: float
 ) -> tuple[dict[str, Spectrum], dict[str, Spectrum]]:
     """Spectra of the sensors' accelerations and of the mesh forces.
 
     Of the whole where it fits in memory, and given as ``last``; of a long record averaged over its stretches, up to the
-    limit [Hz] below which all of it was kept.
+    limit [Hz] below which all of it is stored.
     """
     sensors, meshes = list(last.sensor_acceleration), list(last.mesh_force)
     if not record.sampling.is_long:
@@ -473,10 +473,10 @@ def record_spectra(
 
 def _below(spectrum: Spectrum, limit: float) -> Spectrum:
     """Return the lines up to a limit [Hz], and two more: a peak at the limit stands out only beside its neighbours."""
-    kept = int(np.searchsorted(spectrum.frequencies, limit + 2.0 * spectrum.frequencies[1], side="right"))
+    count = int(np.searchsorted(spectrum.frequencies, limit + 2.0 * spectrum.frequencies[1], side="right"))
     return replace(
         spectrum,
-        frequencies=spectrum.frequencies[:kept],
-        amplitude=spectrum.amplitude[..., :kept],
-        phase=spectrum.phase[..., :kept],
+        frequencies=spectrum.frequencies[:count],
+        amplitude=spectrum.amplitude[..., :count],
+        phase=spectrum.phase[..., :count],
     )
