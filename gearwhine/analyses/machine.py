@@ -280,7 +280,7 @@ def sweep(
     ------
     CaseError
         Where a key cannot be swept.
-    gearwhine.sweep.WorkersError
+    gearwhine.failures.WorkersError
         Where the processes do not start.
     """
     start = time.perf_counter()

@@ -62,7 +62,9 @@ class Align(Table):
 
 
 class Pairing(Table):
-    """`[measured.pairing]`: what makes a pair of a measured shape and a model's; see `housing.PairingRule`.
+    """`[measured.pairing]`: conditions for a pair of a measured shape and a model's.
+
+    See `housing.correlation.pairing.PairingRule`.
 
     `least_mac` is the MAC below which a measured mode stays alone, `frequency_spread` the relative spread of frequency
     that a pair may well have, `closeness` within which neighbours are close modes, and `duplicate_mac` from which on

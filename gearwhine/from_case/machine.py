@@ -48,7 +48,7 @@ class ReducedHousing:
 
     Attributes
     ----------
-    component : coupling.HousingComponent
+    component : HousingComponent
     frequencies_hz : ndarray, shape (n_modes,)
         Natural frequencies of its modes [Hz].
     trusted_limit_hz : float
@@ -56,7 +56,7 @@ class ReducedHousing:
     warnings : tuple of dict
         Warnings about the housing, as in the documents.
     sensors : mapping of str to SensorPlace
-    coarser : coupling.HousingComponent or None
+    coarser : HousingComponent or None
         The component with fewer residual modes; the difference estimates the truncation error.
     """
 

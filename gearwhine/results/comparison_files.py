@@ -27,7 +27,7 @@ def write_comparison(folder: Path, comparison: Comparison, geometry: MeasuredGeo
     Parameters
     ----------
     folder : path
-    comparison : housing.Comparison
+    comparison : Comparison
     geometry : housing.measured.MeasuredGeometry, optional
         Of the survey, which names the degrees of freedom; else they are numbered.
 

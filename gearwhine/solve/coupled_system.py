@@ -48,17 +48,17 @@ class SolvedSystem:
         Whose modes the machine stands on.
     mesh_phase : float or None
         Phase of the first mesh at which the contact stands; None for the mean contact.
-    contact : coupling.ContactState
+    contact : ContactState
         About which the modes and the responses to mesh errors are.
-    modes : coupling.CoupledModes
-    stability : coupling.Stability
-    responses : tuple of coupling.FrequencyResponse
+    modes : CoupledModes
+    stability : Stability
+    responses : tuple of FrequencyResponse
         To a unit transmission error of each mesh.
     superposition_error : float or None
         Largest difference of these from solving the system, at some frequencies, as a part of the largest amplitude.
-    campbell : coupling.SystemCampbell or None
+    campbell : SystemCampbell or None
         Where speeds were given or asked for.
-    unbalance : tuple of coupling.FrequencyResponse
+    unbalance : tuple of FrequencyResponse
         To the unbalances of each rotor that has any, over the speeds of the diagram.
     unbalance_speeds : ndarray, shape (u,)
         Of the leading rotor [rad/s].

@@ -50,7 +50,7 @@ class ToothPairCurves:
     ----------
     phases : ndarray, shape (n,)
         Parts of the mesh period.
-    mesh : coupling.gears.StaticMesh
+    mesh : LoadedMesh
         Under the case's torque.
     stiffness : ndarray, shape (n,)
         Of all pairs on the path of contact [N/m].
@@ -91,14 +91,15 @@ class PairAnalysis:
     unloaded : ndarray, shape (n,)
         Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
     pressure : ndarray, shape (n, m) or (n, m, s), or None
-        Hertzian pressure of every pair at every phase [Pa], see `coupling.gears.mesh_pressure`. None without load,
-        single pairs or face widths in the case.
+        Hertzian pressure of every pair at every phase [Pa], see
+        `coupling.gears.loaded.contact_pressure.mesh_pressure`. None without load, single pairs or face widths in the
+        case.
     pitch_pressure : float or None
         The largest at the pitch point [Pa]; None also where that is not on the path of contact.
-    harris : coupling.gears.HarrisMap or None
+    harris : HarrisMap or None
         From a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
         unless asked for, and without a torque.
-    optimum : coupling.gears.ReliefOptimum or None
+    optimum : ReliefOptimum or None
         The relief that suits the case's torque, with all teeth alike; None unless asked for, and without a torque or
         single pairs.
     """

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 import gearwhine
-import housing as room
+import housing
 import meshes
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
@@ -90,7 +90,7 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
         "attachment_orders": RESPONSE_ORDERS,
         "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
         "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-        "source": source_digest(meshes, room, gearwhine),
+        "source": source_digest(meshes, housing, gearwhine),
     }
 
 
@@ -136,17 +136,17 @@ class SolvedHousing:
     seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
         The seats' motions from the nodes'.
     loaded : dict of str to sparse array, shape (5, 3 n_nodes)
-        Motions of each place where the machine bears on the housing, see :func:`housing.bearing_port`: the modes'
-        attachments are for these.
-    sensors : dict of str to housing.SensorPort
-    survey : housing.Survey
-    strengths : housing.Dominance or None
+        Motions of each place where the machine bears on the housing, see
+        :func:`housing.model.housing.bearing_port`: the modes' attachments are for these.
+    sensors : dict of str to SensorPort
+    survey : Survey
+    strengths : Dominance or None
         None where there are no seats.
     checks : dict
         Health report, effective masses and the mass of the solid as their documents.
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
-    record : housing.ModeRecord
+    record : ModeRecord
         Content of its mode-set file.
     source : Path or None
         The file that the modes were read from; None where they were solved.
@@ -407,7 +407,7 @@ def pair_modes(
     measured : housing.measured.MeasuredModes
     shapes : ndarray, shape (n_modes, n_dofs), optional
         The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
-    rule : housing.PairingRule, optional
+    rule : PairingRule, optional
         Of the pairing by shape.
 
     Raises

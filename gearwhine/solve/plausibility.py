@@ -118,7 +118,7 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     ----------
     document : dict
         With ``sensors``, whose ``peaks`` or ``lines`` have a ``frequency_hz``, or with ``motions`` that have such.
-    error : coupling.BasisError or None
+    error : BasisError or None
         None, where no basis is behind the lines: nothing is added.
     limit_hz : float or None
         Upper end of the bands; no bands where it is not given.

@@ -74,7 +74,7 @@ class SolvedWeight:
 
     Attributes
     ----------
-    deflection : rotors.StaticDeflection
+    deflection : StaticDeflection
     speed : float
         Where tables over speed were read [rad/s].
     places : (p,) array
@@ -135,7 +135,7 @@ class SolvedResponse:
 
     Attributes
     ----------
-    response : rotors.SynchronousResponse
+    response : SynchronousResponse
     readings, at_operation : tuple of ProbeReading
         Of every probe over the speeds of the response; and at the speed of operation alone, empty where there is none.
     """
@@ -252,7 +252,7 @@ class SolvedTorsion:
 
     Attributes
     ----------
-    response : rotors.TorsionalResponse
+    response : TorsionalResponse
     readings : tuple of TorsionReading
     places : (p,) array
         Along the shaft [m].
@@ -347,21 +347,21 @@ class SolvedRotor:
         As given, with their tables over speed; and as they hold the rotor at rest.
     rest_speed : float or None
         The speed of their tables that stands for rest, the lowest that all of them hold [rad/s]; None without tables.
-    rest : rotors.RestFrequencies
+    rest : RestFrequencies
     axial : ndarray, shape (a,)
         Natural frequencies at rest of motions along the axis, ascending [rad/s]; none where no bearing holds it.
-    lateral : rotors.LateralModes
+    lateral : LateralModes
         In one plane at averaged support stiffness.
-    torsional : rotors.TorsionalModes
+    torsional : TorsionalModes
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
     campbell : rotors.Campbell or None
         None without speeds.
-    crossings : tuple of rotors.Crossing or str
+    crossings : tuple of Crossing or str
         Damped critical speeds of whirl within the Campbell diagram, of once a revolution; or why they are not known.
-    orders : mapping of float to (tuple of rotors.Crossing or str)
+    orders : mapping of float to (tuple of Crossing or str)
         The same of each other multiple of the speed that the case asks for.
-    critical : rotors.CriticalSpeeds
+    critical : CriticalSpeeds
         Undamped, of whirl alone; with tables, within the speeds that they hold.
     operation : float or None
         Speed of operation [rad/s].
@@ -371,7 +371,7 @@ class SolvedRotor:
         To unbalance and bow; None where there is neither.
     torsion : SolvedTorsion or None
         Response to torques that swing; None where none does.
-    stiffness_map : rotors.CriticalSpeedMap or None
+    stiffness_map : CriticalSpeedMap or None
         Where the case asks for it.
     rolling : mapping of str to rotors.rolling_bearings.RollingState
         What its rolling bearings carry, by their names.

@@ -49,8 +49,8 @@ class SteadyMotion:
     ----------
     speed : float
         Of the first driver's rotor [rad/s].
-    response : coupling.PeriodicResponse
-    histories : coupling.Histories
+    response : PeriodicResponse
+    histories : Histories
         Of one period.
     trusted_limit : float
         Highest frequency that the model carries [Hz].
@@ -112,9 +112,9 @@ class SolvedSteady:
     motions : tuple of SteadyMotion
         At the speed of operation: one, or all that a branch has there; where they are superposed, one of each group
         of excitations.
-    superposed : coupling.SuperposedResponse or None
+    superposed : SuperposedResponse or None
         Their sum, where the excitations have no short common period.
-    curve : coupling.ResponseCurve or None
+    curve : ResponseCurve or None
         The branch over the speed of the first driver's rotor [rad/s].
     branch_rms : dict of str to ndarray, shape (p,)
         Of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].

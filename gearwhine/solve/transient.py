@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-import coupling as room
+import coupling
 import gearwhine
 from coupling import CoupledMachine, SpeedProfile
 from coupling.signals.histories import (
@@ -59,16 +59,16 @@ class SolvedTransient:
         Of the first driver's rotor at operation [rad/s].
     method : str
         The method of time integration, "newmark" or "exact".
-    turning : coupling.Turning or None
+    turning : SpeedProfile or None
         Speed over time; None where it is the nominal one all along.
-    result : coupling.TransientFigures
+    result : TransientFigures
     record : TransientRecord
         Everything recorded, piece by piece.
     signals : Signals
         The same at once; of a long record its last stretch.
-    sensor_spectra : dict of str to coupling.Spectrum
+    sensor_spectra : dict of str to Spectrum
         Acceleration [m/s²]; of a long record averaged over stretches, up to the trusted limit.
-    force_spectra : dict of str to coupling.Spectrum
+    force_spectra : dict of str to Spectrum
         Gear-mesh force [N]; likewise.
     trusted_limit : float
         Highest frequency that the housing's modes carry [Hz].
@@ -258,7 +258,7 @@ def _with_code(key: str, chosen: Sampling) -> str:
             "integration": key,
             "stored": [chosen.decimation.factor, len(chosen.decimation.taps)],
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-            "source": source_digest(room, gearwhine),
+            "source": source_digest(coupling, gearwhine),
             "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
         }
     )

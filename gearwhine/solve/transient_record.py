@@ -191,7 +191,7 @@ class Sampling:
         Of the integration.
     samples_per_block : int
         Of the integration, about.
-    decimation : coupling.Decimation
+    decimation : Decimation
         From recorded to stored samples; by 1 for a record that fits in memory.
     stretch : int
         Kept samples over which a spectrum is taken.
@@ -232,7 +232,7 @@ def sampling(
     ----------
     case : Case
         With an operation and a transient.
-    turning : coupling.Turning or None
+    turning : SpeedProfile or None
         Speed over time; None where it is the nominal one all along.
     limit : float
         Highest frequency of interest [Hz].
