@@ -50,7 +50,7 @@ def _no_files(place: Path, *, pictures: bool) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Result(Generic[Solved]):
-    """What an analysis of a case found.
+    """Result of an analysis of a case.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class Result(Generic[Solved]):
 
     @property
     def warnings(self) -> list[str]:
-        """What the user should know of the result, a sentence each."""
+        """Warnings about the result, a sentence each."""
         return [str(entry["message"]) for entry in self.document["warnings"]]
 
     @property

@@ -251,7 +251,7 @@ def _checkpoints(folder: Path, until_written: ExitStack, key: str, *, fresh: boo
 
 @dataclass(frozen=True)
 class RunSolution:
-    """All that a run has found, and None or empty for what the case does not ask for."""
+    """Solution of a whole run, None or empty where the case does not ask for an analysis."""
 
     rotors: tuple[SolvedRotor, ...]
     pairs: tuple[PairAnalysis, ...]

@@ -139,7 +139,7 @@ class _Mounted(Table):
 
 
 class RollingGeometry(_Mounted):
-    """By its geometry [m, rad]; a groove is its radius over the ball's diameter."""
+    """A rolling bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter."""
 
     element: Literal["ball", "roller"] = "ball"
     count: Annotated[int, Whole(3, 500)]
@@ -212,7 +212,7 @@ class Catalogue(Table):
 
 
 class RollingCatalogue(_Mounted):
-    """By its main dimensions."""
+    """A rolling bearing by its main dimensions."""
 
     catalogue: Catalogue
 

@@ -98,7 +98,7 @@ class Material(Table):
 
     @property
     def shear_modulus(self) -> float:
-        """As given, else E / (2 (1 + ν)) [Pa]."""
+        """Shear modulus as given, else E / (2 (1 + ν)) [Pa]."""
         return self._isotropic_shear_modulus if self.own_shear_modulus is None else self.own_shear_modulus
 
     @property
@@ -117,7 +117,7 @@ class Turn(Table):
 
     @property
     def matrix(self) -> Rotation:
-        """By Rodrigues' formula, rows of a 3 x 3 matrix."""
+        """Rotation matrix by Rodrigues' formula, rows of a 3 x 3 matrix."""
         x, y, z = unit_vector(self.axis)
         sine, cosine = math.sin(self.angle), math.cos(self.angle)
         rest = 1.0 - cosine

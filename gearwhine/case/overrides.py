@@ -108,7 +108,7 @@ def _expanded(document: Any, steps: tuple[str, ...], resolved: Any) -> list[tupl
 
 
 def matching_places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:
-    """Every location of a document that a key path leads to, ``*`` standing for each entry of a table or a list."""
+    """Return every location of a document that a key path leads to, ``*`` standing for each entry of a table."""
     if not steps:
         yield place
         return

@@ -178,7 +178,7 @@ def _rounded(number: Decimal) -> Decimal:
 
 
 def _written(number: Decimal, unit: str) -> str:
-    """As ``--set`` takes it: a whole number without a point, so that it may be a number of teeth."""
+    """Write a value as ``--set`` takes it: a whole number without a point, so that it may be a number of teeth."""
     whole = number == number.to_integral_value() and abs(number) < Decimal(10) ** _DIGITS
     digits = f"{int(number)}" if whole else f"{number:f}" if abs(number) > Decimal("1e-6") else f"{float(number)!r}"
     return f"{digits} {unit}" if unit else digits

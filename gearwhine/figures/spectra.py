@@ -174,5 +174,5 @@ def _table(values: npt.ArrayLike, rows: int) -> FloatArray:
 
 
 def _spacing(values: Sequence[float] | FloatArray) -> float:
-    """Between neighbouring rows, in the middle."""
+    """Spacing between neighbouring rows, in the middle."""
     return float(np.median(np.diff(values))) if len(values) > 1 else max(abs(float(values[0])), 1.0)

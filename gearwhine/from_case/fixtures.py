@@ -27,7 +27,7 @@ def build_supports(case: Case) -> list[HousingSupport]:
 
 
 def build_attachments(case: Case) -> Iterator[tuple[str, str, Fixture]]:
-    """All that is fastened, each with its key and label."""
+    """Build all fixtures of the housing, each with its key and label."""
     given = case.housing
     assert given is not None
     for index, support in enumerate(given.support):

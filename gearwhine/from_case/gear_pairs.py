@@ -20,7 +20,7 @@ _DIFFERS = 0.1
 
 
 def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair, ...]:
-    """Every gear pair of the case.
+    """Solve every gear pair of the case.
 
     Raises
     ------

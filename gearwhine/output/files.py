@@ -93,7 +93,7 @@ def with_contents(value: Any, files: Mapping[str, Any]) -> Any:
 
 
 def texts_in(value: Any) -> set[str]:
-    """Every text in a table, however deep: the names of its materials are among them."""
+    """Return every text in a table, however deep: the names of its materials are among them."""
     if isinstance(value, str):
         return {value}
     return set().union(*(texts_in(inner) for inner in _inner(value)))

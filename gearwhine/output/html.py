@@ -38,7 +38,7 @@ Chapters = Callable[[Document], Iterable[Section]]
 
 
 def report_page(folder: Path, chapters: Chapters, case: Case | None = None) -> str:
-    """All results in a folder as HTML, the newest first, each with when it was made and whether it fits the case.
+    """Return all results in a folder as HTML, the newest first, each with its time and whether it fits the case.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def _result(place: Path, document: Mapping[str, Any], present: Mapping[str, Any]
 
 
 def _origin(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> str:
-    """Which command made a result and when, and what of its case or input files is different now."""
+    """Return a result's command and time, and the differences of its case and input files from those of now."""
     command = document.get("command")
     heading = f"gearwhine {command}" if isinstance(command, str) else "Results"
     sentences = [f"Made {_moment(document.get('made_at'))}."] if document.get("made_at") else []

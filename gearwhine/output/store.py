@@ -85,7 +85,7 @@ def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
 
 
 def _place_of(folder: Path, command: str) -> Path:
-    """Where a command's results go, relative to the folder, which is made ready for them."""
+    """Return the place of a command's results relative to the folder, which is made ready for them."""
     if not (folder / SUMMARY).exists():
         return Path()
     owner = (read_summary(folder) or {}).get("command")

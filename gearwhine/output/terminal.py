@@ -27,7 +27,7 @@ def open_console() -> Console:
 def shown_by(
     sections: Callable[[Document], Iterable[Section]], *, timed: bool = False
 ) -> Callable[[dict[str, Any]], None]:
-    """Command's way to show its document: by the sections made of it, and the time where it is worth a line."""
+    """Return a command's way to show its document: by its sections, and the time where it is worth a line."""
     return lambda document: show(document, sections(document), timed=timed)
 
 
@@ -74,7 +74,7 @@ def show_written(console: Console, document: Document) -> None:
 
 
 def show_origin(console: Console, document: Document) -> None:
-    """Where modes were read from in place of being solved for."""
+    """Show the file that modes were read from in place of being solved for."""
     if document.get("reused"):
         console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
 

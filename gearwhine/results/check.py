@@ -303,7 +303,7 @@ CHECK = (
 
 
 def _bearings(case: Case) -> list[dict[str, Any]]:
-    """Every bearing and where it stands, those of the rotors' own files on the ground."""
+    """Return every bearing as a document; those of the rotors' own files are on the ground."""
     own = {(bearing.rotor, bearing.name) for bearing in case.bearing}
     return [document_of(BEARING, bearing) for bearing in case.bearing] + [
         {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}

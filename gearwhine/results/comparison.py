@@ -216,7 +216,7 @@ def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> di
 
 
 def survey_document(survey: "MappedSurvey") -> dict[str, Any]:
-    """How a survey lies on the model, as the command's JSON."""
+    """Return the fit of a survey to the model, as the command's JSON."""
     return document_of(SURVEY, survey)
 
 
@@ -345,7 +345,7 @@ def _responses(responses: Document) -> Iterator[str]:
 
 
 def _survey(survey: Document) -> Iterator[str]:
-    """How the measured survey lies on the model."""
+    """Return lines on the alignment of the measured survey with the model."""
     yield (
         f"Survey: {counted(survey['points'], 'point')}, {counted(survey['degrees_of_freedom'], 'measured direction')}; "
         f"{1e3 * survey['rms_distance_m']:.3g} mm from the surface in the mean, "

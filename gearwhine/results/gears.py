@@ -514,7 +514,7 @@ def _sliding(key: str, point: Document) -> str:
 
 
 def _mesh(pair: Document) -> list[str]:
-    """How the two stand, how often they mesh, how stiff they are and how they err."""
+    """Return lines on centre distance, contact ratio, mesh stiffness and transmission error."""
     ratio = f"Contact ratio {pair['contact_ratio']:.5f}"
     if pair["overlap_ratio"]:
         ratio += f", with the overlap of {pair['overlap_ratio']:.4f} in all {pair['total_contact_ratio']:.4f}"

@@ -190,7 +190,7 @@ def modes_document(solved: "SolvedHousing", *, detail: bool = False) -> dict[str
 
 
 def origin_document(solved: "SolvedHousing | None") -> dict[str, Any]:
-    """Where a housing's modes come from, as every command's JSON says it; nothing without a housing."""
+    """Return the origin of a housing's modes, as every command's JSON has it; nothing without a housing."""
     return {} if solved is None else document_of(ORIGIN, solved)
 
 
@@ -276,7 +276,7 @@ def _modes_content(document: Document) -> tuple[str | Table, ...]:
 
 
 def modes_sentence(document: Document) -> str:
-    """How many modes, how they are proved, and what they cost."""
+    """Return the number of modes, their proof and their cost in words."""
     certificate, mesh = document["certificate"], document["mesh"]
     return (
         f"Housing: {counted(certificate['found'], 'mode')} below {certificate['limit_hz']:.5g} Hz, the inertia demands "

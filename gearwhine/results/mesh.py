@@ -69,7 +69,7 @@ def _sentences(document: Document) -> Iterator[str]:
 
 
 def kinds_of_elements(kinds: Mapping[str, int]) -> str:
-    """How many elements of which kind, in words."""
+    """Return the number of elements of each kind, in words."""
     return " and ".join(f"{count} {_KINDS[kind]}" for kind, count in kinds.items())
 
 

@@ -509,7 +509,7 @@ def _at_rest(rotor: Document) -> tuple[Table, ...]:
 
 
 def _with_bearings_at(speed: float | None) -> str:
-    """Which of their tables' speeds bearings are taken at; None: they have no tables."""
+    """Return the speed at which the bearings' coefficients are taken, in words; nothing without tables."""
     return "" if speed is None else f", with the bearings' coefficients at {speed:.6g} rpm"
 
 
@@ -625,7 +625,7 @@ def _nearest(rows: Sequence[Document]) -> Iterator[str]:
 
 
 def _orders(campbell: Document) -> Iterator[str | Table]:
-    """Where whirl has another multiple of the speed of rotation for its frequency."""
+    """Return the crossings of whirl frequencies with other multiples of the speed of rotation."""
     rows: list[dict[str, Any]] = []
     for one in campbell["orders"]:
         order = f"{one['order']:g}×"
@@ -716,7 +716,7 @@ def _map(found: Document) -> tuple[Table, ...]:
 
 
 def _beside(margin: float) -> str:
-    """How far a critical speed is from operation, which it exceeds by ``margin`` times operation."""
+    """Return the distance of a critical speed from operation, which it exceeds by ``margin`` times operation."""
     if margin > _REACH - 1.0:
         return f"{1.0 + margin:.3g} times"
     return f"{100.0 * abs(margin):.3g} % {'above' if margin > 0.0 else 'below'}"
@@ -731,12 +731,12 @@ def _whirl_name(direction: float, row: Document) -> str:
 
 
 def _with_axial(share: float) -> str:
-    """How much of a lateral motion is along the axis, where it is worth a word."""
+    """Return the axial share of a lateral motion, where it is worth a word."""
     return f", {100.0 * share:.0f} % along the axis" if share >= _PARTLY_AXIAL else ""
 
 
 def _stability(campbell: Document) -> str:
-    """Up to which speed no mode grows."""
+    """Return the speed up to which no mode grows."""
     span = f"{counted(len(campbell['speed_rpm']), 'speed')} from {_span(campbell)}"
     onset = campbell["unstable_from_rpm"]
     return f"Stable at {span}" if onset is None else f"UNSTABLE from {onset:.6g} rpm on, of {span}"

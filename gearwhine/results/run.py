@@ -82,7 +82,7 @@ def _peak(key: str) -> tuple[Quantity, Quantity]:
 
 
 def _sidebands(unit: str) -> tuple[Quantity, ...]:
-    """Of a mesh's shaft and one pair of sidebands."""
+    """Declare the quantities of a mesh's shaft and one pair of sidebands."""
     return (
         Quantity("gear_pair", lambda row: row[0].mesh),
         Quantity("shafts", lambda row: row[0].shafts),
@@ -539,7 +539,7 @@ _TIME = {"units": "s", "long_name": "time from static equilibrium"}
 
 
 def _recorded(signals: "Signals") -> list[tuple[History, Any]]:
-    """Every history that was recorded, with the values of each of its signals."""
+    """Return every recorded history with the values of each of its signals."""
     found = [(history, history.of(signals.histories)) for history in HISTORY_QUANTITIES]
     found.append((_MODAL, signals.modal.coordinates))
     return [(history, values) for history, values in found if values]

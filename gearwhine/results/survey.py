@@ -72,7 +72,7 @@ _SENSORS = (_POINT, *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, a
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """Where to measure and where to hit, and how well modes are told apart."""
+    """Return sensor positions, the hammer position, and how well they separate the modes."""
     return (Section("", (*table_of(_SENSORS, document["sensors"]), *_sentences(document))),)
 
 

@@ -370,7 +370,7 @@ SYSTEM = (
 
 
 def system_document(solved: "SolvedSystem") -> dict[str, Any]:
-    """All that was found, but for the curves, which are in the results file."""
+    """Return the coupled system as the command's JSON, without the curves of the results file."""
     return document_of(SYSTEM, solved)
 
 
@@ -420,7 +420,7 @@ def _content(document: Document) -> Iterator[str | Table]:
 
 
 def _mesh_sentence(mesh: Document) -> str:
-    """Which mesh stiffness the modes are about, and the mean without load beside it."""
+    """Return the mesh stiffness of the linearised contact, and the mean without load beside it."""
     taken, unloaded = 1e-6 * mesh["stiffness_n_per_m"], 1e-6 * mesh["unloaded_mean_n_per_m"]
     under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
     beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
@@ -481,7 +481,7 @@ def _stability(stability: Document) -> Iterator[str]:
 
 
 def _peaks(response: Document) -> Iterator[str | Table]:
-    """Where the dynamic mesh force and the sensors answer most to a micrometre of error."""
+    """Return the highest responses of dynamic mesh force and sensors to a micrometre of mesh error."""
     rows: list[dict[str, Any]] = []
     for key, what in (
         ("mesh_force_n", "mesh force [N/µm]"),

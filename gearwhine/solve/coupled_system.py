@@ -199,7 +199,7 @@ def _mesh_responses(
 
 
 def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:
-    """Up to where responses are taken [Hz]: as far as the housing's modes, or over some harmonics of the meshes."""
+    """Return the upper frequency of responses [Hz]: that of the housing's modes, or some harmonics of the meshes."""
     if housing is not None:
         return housing.modes.certificate.limit / _HERTZ
     return _HARMONICS * max(mesh_frequencies(case)) if max(mesh_frequencies(case)) > 0.0 else 1000.0

@@ -78,7 +78,7 @@ class ToothPairCurves:
 
 @dataclass(frozen=True, eq=False)
 class PairAnalysis:
-    """A solved gear pair, looked at from all sides.
+    """A solved gear pair with its loaded and unloaded curves, contact pressure, Harris map and optimal relief.
 
     Attributes
     ----------
@@ -217,7 +217,7 @@ class PairAnalysis:
 
     @property
     def loaded_contact_ratio(self) -> float:
-        """How many pairs carry in the mean: less than the contact ratio by relief, more by corner contact."""
+        """Mean number of pairs in contact: less than the contact ratio by relief, more by corner contact."""
         return sum(count * part for count, part in self.pairs_in_contact.items())
 
     @property
@@ -233,7 +233,7 @@ class PairAnalysis:
 
 
 def analyse_pairs(case: Case, solved: Sequence[LoadedGearPair]) -> tuple[PairAnalysis, ...]:
-    """Look at each solved pair under the case's torque and without."""
+    """Analyse each solved gear pair under the case's torque and without load."""
     return tuple(_analysis(case, given, pair) for given, pair in zip(case.gear_pair, solved, strict=True))
 
 

@@ -98,7 +98,7 @@ class SolvedWeight:
 
 @dataclass(frozen=True)
 class ProbeReading:
-    """What a probe reads at every speed.
+    """Response at a probe over the speeds.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class ProbeReading:
 
     @property
     def phase_lag(self) -> FloatArray:
-        """By which the reading is behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
+        """Phase lag of the reading behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
         return np.asarray(np.mod(-np.angle(self.amplitude), 2.0 * np.pi))
 
     @property
@@ -213,7 +213,7 @@ _TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
 
 @dataclass(frozen=True)
 class TorsionReading:
-    """What a probe reads at every frequency, Re(amplitude e^{iωt}) each.
+    """Torsional response at a probe over the frequencies, Re(amplitude e^{iωt}) each.
 
     Attributes
     ----------
@@ -310,7 +310,7 @@ def solve_torsion(
 
 
 def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bool) -> FloatArray:
-    """As given; else even steps up to beyond the third elastic mode, with the modes' own where damping bounds them."""
+    """Return given frequencies, or even steps beyond the third elastic mode, with the modes' own where damped."""
     if wanted.frequency is not None:
         return _HERTZ * np.array(wanted.frequency.frequencies)
     elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
@@ -337,7 +337,7 @@ _PLACES = 101  # along a rotor, of its shapes
 
 @dataclass(frozen=True)
 class SolvedRotor:
-    """What is known of one rotor on grounded bearings.
+    """A solved rotor on grounded bearings.
 
     Attributes
     ----------
@@ -402,7 +402,7 @@ class SolvedRotor:
 
     @property
     def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
-        """Which of the frequencies at rest are of motions across the axis for the most part."""
+        """Mask of the frequencies at rest whose motions are across the axis for the most part."""
         return np.asarray(self.rest.axial_share <= MOSTLY_AXIAL)
 
     @property
@@ -437,7 +437,7 @@ def _largest_over_cycle(x: ComplexArray, y: ComplexArray) -> FloatArray:
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
-    """Every rotor of the case, alone on grounded bearings.
+    """Solve every rotor of the case, alone on grounded bearings.
 
     Raises
     ------

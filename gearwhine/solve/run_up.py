@@ -29,7 +29,7 @@ _BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lo
 
 @dataclass(frozen=True)
 class RunSignature:
-    """What the signals of a run show, by their names.
+    """Spectrograms and orders of a run's signals, by their names.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class RunSignature:
         return np.array([[table.order_slice(order) for order in self.named.values()] for table in self.orders.values()])
 
     def highest(self) -> list[dict[str, Any]]:
-        """Where along the run each named order of each signal is highest."""
+        """Return the peak of each named order of each signal along the run."""
         rows = []
         for (name, orders), courses in zip(self.orders.items(), self.followed(), strict=True):
             for (what, order), along in zip(self.named.items(), courses, strict=True):
@@ -76,7 +76,7 @@ class RunSignature:
 
 @dataclass(frozen=True)
 class _Windows:
-    """How a run is cut: the samples in which the machine turns, and the turns of an order map's windows.
+    """Windows of a run: the samples in which the machine turns, and the turns of an order map's windows.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str
 
 
 def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
-    """How a run is cut; in words why it cannot be, and None at steady speed or without gears."""
+    """Return the windows of a run; in words why there are none, and None at steady speed or without gears."""
     turning, times = solved.turning, solved.histories.times
     if turning is None or case.operation is None or not case.gear_pair:
         return None

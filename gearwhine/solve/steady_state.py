@@ -70,7 +70,7 @@ class SteadyMotion:
 
     @property
     def told_lines(self) -> int:
-        """Number of the highest lines of a signal that are told of."""
+        """Number of the highest lines of a signal that are reported."""
         return _LINES
 
     def lines(self, signal: FloatArray) -> list[tuple[float, float]]:
@@ -96,7 +96,7 @@ class SteadyMotion:
 
     @property
     def sensor_rms(self) -> dict[str, float]:
-        """Of each sensor's acceleration up to the trusted limit [m/s²]."""
+        """Rms value of each sensor's acceleration up to the trusted limit [m/s²]."""
         signals = self.histories.sensor_acceleration
         return {name: float(self.spectrum(signal).rms(self.trusted_limit)) for name, signal in signals.items()}
 

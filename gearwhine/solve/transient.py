@@ -87,12 +87,12 @@ class SolvedTransient:
 
     @property
     def histories(self) -> Histories:
-        """Of the signals."""
+        """Histories of the recorded signals."""
         return self.signals.histories
 
     @property
     def modal(self) -> ModalRecord:
-        """Of the signals."""
+        """Modal coordinates of the recorded signals."""
         return self.signals.modal
 
     @property
@@ -285,7 +285,7 @@ def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
 
 
 def _trusted_limit(housing: SolvedHousing | ReducedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
-    """Up to where the housing's modes are complete [Hz]; without a housing, what the gears excite."""
+    """Return the limit up to which the housing's modes are complete [Hz]; without a housing, that of the gears."""
     if housing is not None:
         return housing.trusted_limit_hz
     return 4.0 * max(mesh_frequencies, default=1000.0)

@@ -296,7 +296,7 @@ def transient_duration(case: Case) -> float:
 
 
 def _record_from(case: Case, period: float, turning: SpeedProfile | None) -> float:
-    """When the discarded revolutions are done [s].
+    """Return the time at which the discarded revolutions end [s].
 
     Raises
     ------
@@ -352,7 +352,7 @@ class Signals:
 
     @property
     def columns(self) -> FloatArray:
-        """Every signal beside the others, shape (s, k)."""
+        """All signals side by side, shape (s, k)."""
         return np.concatenate([self.histories.columns, self.modal.columns], axis=1)
 
     def with_columns(self, times: FloatArray, columns: FloatArray) -> "Signals":

@@ -234,7 +234,7 @@ def random_frequency_sets(
 
 
 def default_workers() -> int:
-    """As many as this process may use of the machine's cores."""
+    """Return the number of cores that this process may use."""
     from gearwhine.sweep.workers import default_workers as of_the_machine
 
     return of_the_machine()

@@ -59,7 +59,7 @@ class Point:
 
 
 def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey]) -> tuple[Point, ...]:
-    """Every point of the grid, the last key fastest.
+    """Return every point of the grid, the last key fastest.
 
     Parameters
     ----------

@@ -107,7 +107,7 @@ def run_sweep(
 def _shared_housings(
     points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
 ) -> tuple[dict[str | None, ReducedHousing], SolvedHousing | None]:
-    """By its key, each housing of the points where all have the same modes; nothing where they differ or are none.
+    """Solve each housing that its points share, by its key; nothing where they differ or are none.
 
     Beside it the solution that is still to be cached.
     """

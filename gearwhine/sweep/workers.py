@@ -35,7 +35,7 @@ _CLOSES = 10.0  # seconds
 
 
 def default_workers() -> int:
-    """As many as this process may use of the machine's cores."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

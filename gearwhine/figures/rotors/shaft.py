@@ -296,7 +296,7 @@ class OutlinePanel:
 
     @property
     def height(self) -> float:
-        """Of the whole panel."""
+        """Height of the whole panel."""
         return self.above.height + self.rise + self.drop + self.below.height + 2.0 * _CLEAR
 
     @property
