@@ -108,7 +108,7 @@ def _expanded(document: Any, steps: tuple[str, ...], resolved: Any) -> list[tupl
 
 
 def matching_places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:
-    """Return every location of a document that a key path leads to, ``*`` standing for each entry of a table."""
+    """Yield every location of a document that a key path leads to; ``*`` is each entry of a table or a list."""
     if not steps:
         yield place
         return

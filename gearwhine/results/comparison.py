@@ -345,7 +345,7 @@ def _responses(responses: Document) -> Iterator[str]:
 
 
 def _survey(survey: Document) -> Iterator[str]:
-    """Return lines on the alignment of the measured survey with the model."""
+    """Yield lines on the alignment of the measured survey with the model."""
     yield (
         f"Survey: {counted(survey['points'], 'point')}, {counted(survey['degrees_of_freedom'], 'measured direction')}; "
         f"{1e3 * survey['rms_distance_m']:.3g} mm from the surface in the mean, "

@@ -625,7 +625,7 @@ def _nearest(rows: Sequence[Document]) -> Iterator[str]:
 
 
 def _orders(campbell: Document) -> Iterator[str | Table]:
-    """Return the crossings of whirl frequencies with other multiples of the speed of rotation."""
+    """Yield the crossings of whirl frequencies with other multiples of the speed of rotation."""
     rows: list[dict[str, Any]] = []
     for one in campbell["orders"]:
         order = f"{one['order']:g}×"

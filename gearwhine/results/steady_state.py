@@ -78,7 +78,7 @@ def _lines(motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str) ->
         for motion, signal in zip(motions, signals, strict=True)
         for frequency, amplitude in motion.lines(signal)
     ]
-    return sorted(found, key=lambda line: -float(line[key]))[: motions[0].told_lines]
+    return sorted(found, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
 
 
 def _multipliers(row: Any) -> Any:

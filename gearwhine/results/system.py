@@ -481,7 +481,7 @@ def _stability(stability: Document) -> Iterator[str]:
 
 
 def _peaks(response: Document) -> Iterator[str | Table]:
-    """Return the highest responses of dynamic mesh force and sensors to a micrometre of mesh error."""
+    """Yield the highest responses of dynamic mesh force and sensors to a micrometre of mesh error."""
     rows: list[dict[str, Any]] = []
     for key, what in (
         ("mesh_force_n", "mesh force [N/µm]"),

@@ -377,7 +377,7 @@ def _identifiability(told: Document) -> Iterator[str]:
 
 
 def _null(null: Document) -> Iterator[str]:
-    """Return lines on how often random frequencies are fitted as well as the measured ones."""
+    """Yield lines on how often random frequencies are fitted as well as the measured ones."""
     five, two, one, met, rms = (
         f"{100 * null[key]:.0f} %"
         for key in ("within_5_percent", "within_2_percent", "within_1_percent", "all_met", "as_good_in_rms")

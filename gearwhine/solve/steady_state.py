@@ -69,7 +69,7 @@ class SteadyMotion:
         return amplitude_spectrum(signal, self.response.period / len(signal))
 
     @property
-    def told_lines(self) -> int:
+    def reported_lines(self) -> int:
         """Number of the highest lines of a signal that are reported."""
         return _LINES
 
