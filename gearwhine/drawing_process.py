@@ -40,7 +40,7 @@ def draw_in_process(
     Raises
     ------
     RendererUnavailableError
-        Where nothing here draws without a screen, or the drawing process dies.
+        Where no library draws without a display, or the drawing process dies.
     EncoderUnavailableError
         Where MP4 is asked for and nothing encodes it.
     """
@@ -109,7 +109,7 @@ def _how_it_died(code: int, troubles: str) -> str:
 
 
 def _environment() -> dict[str, str]:
-    """The same code is imported there, wherever the command was started from."""
+    """Return the environment of the process, in which the same code is imported wherever the command was started."""
     root = str(Path(gearwhine.__file__).parent.parent)
     return os.environ | {"PYTHONPATH": os.pathsep.join([root, *filter(None, [os.environ.get("PYTHONPATH")])])}
 

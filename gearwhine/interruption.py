@@ -96,7 +96,7 @@ def each_from_thread(items: Iterable[T]) -> Iterator[T]:
 
 
 def in_thread(work: Callable[[], T]) -> T:
-    """Result of a call on a thread of its own; see :func:`each_from_thread`."""
+    """Return the result of a call on a thread of its own; see :func:`each_from_thread`."""
     (found,) = each_from_thread(work() for _ in range(1))
     return found
 

@@ -1,4 +1,4 @@
-"""Mode pictures: the selection of shapes, and their drawing as pictures, films or animated models."""
+"""Mode pictures: the selection of mode shapes, and their drawing as pictures, films or animated models."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -16,7 +16,8 @@ class Progress(Protocol):
     Words after a colon are news of the same work: its clock goes on.
     """
 
-    def __call__(self, message: str, fraction: float | None = None) -> None: ...
+    def __call__(self, message: str, fraction: float | None = None) -> None:
+        """Report the present work and its completed fraction."""
 
 
 def silent(message: str, fraction: float | None = None) -> None:

@@ -114,6 +114,7 @@ class Study:
         self._housing: SolvedHousing | None = None
 
     def __repr__(self) -> str:
+        """Return the case's title."""
         return f"<Study of {self.case.title or 'an untitled case'!r}>"
 
     @property
@@ -139,7 +140,7 @@ class Study:
         return describe_machine(self.case, part)
 
     def check(self) -> dict[str, Any]:
-        """Derived quantities of the case: ratios, mesh frequencies, contact ratios, sizes. Nothing is solved."""
+        """Return derived quantities of the case without solving: ratios, mesh frequencies, contact ratios, sizes."""
         from gearwhine.results.check import check_document
 
         return check_document(self.case, self.progress)
@@ -239,7 +240,7 @@ class Study:
         )
 
     def simulate(self) -> Result[RunSolution]:
-        """March the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
+        """Integrate the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
         from gearwhine.analyses import run
 
         return run.simulate(self.case, housing=self.housing, progress=self.progress)
@@ -258,14 +259,14 @@ class Study:
         workers: int | None = None,
         fresh: bool = False,
     ) -> Result[Sequence[SweptPoint]]:
-        """March the transient at every point of a sweep; see :func:`gearwhine.analyses.machine.sweep`.
+        """Integrate the transient at every point of a sweep; see :func:`gearwhine.analyses.machine.sweep`.
 
         Parameters
         ----------
         over : sequence of str
             Values of keys, such as ``"operation.torque=10 N*m:100 N*m:10"``, beside the speeds of `[sweep]`.
         folder : path
-            Where the points are kept; those that it holds already are not done again.
+            Where the points are stored; those that it holds already are not done again.
         workers : int, optional
             Number of processes; as many as cores by default.
         fresh : bool
@@ -287,12 +288,12 @@ class Study:
 
 
 def _text(value: object) -> str:
-    """A value as it stands behind ``--set KEY=``, where a text needs no quotes."""
+    """Return a value as it stands behind ``--set KEY=``, where a text needs no quotes."""
     return value if isinstance(value, str) else _toml(value)
 
 
 def _toml(value: object) -> str:
-    """A value in TOML, on one line."""
+    """Return a value in TOML, on one line."""
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{json.dumps(key)} = {_toml(inner)}" for key, inner in value.items()) + " }"
     if isinstance(value, list | tuple):
@@ -303,7 +304,7 @@ def _toml(value: object) -> str:
 
 
 def _plain(value: object) -> object:
-    """A table of plain dictionaries and lists, as TOML gives it."""
+    """Return a table as plain dictionaries and lists, as TOML gives it."""
     from pydantic import BaseModel
 
     if isinstance(value, BaseModel):

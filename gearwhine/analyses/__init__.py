@@ -1,4 +1,5 @@
-"""What can be asked of a case: one function for each analysis, from the case to its :class:`Result`.
+"""Analyses of a case: one function for each, from the case to its :class:`Result`.
 
-Each module is imported by the analyses that need it: those of housings go without rotors and gears.
+A command, a method of :class:`gearwhine.Study` and an analysis have one name. The analyses of housings are imported
+without rotors and gears.
 """

@@ -9,12 +9,12 @@ from gearwhine.output.sections import Column, Document, Section, table_of
 
 
 def list_examples() -> dict[str, Any]:
-    """The bundled cases and their titles."""
+    """Return the names and titles of the bundled cases."""
     return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()]}
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The bundled cases as a table."""
+    """Return the bundled cases as a table."""
     columns = (Column("name", "name"), Column("what it is", "title"))
     usage = ("Run one:   gearwhine run NAME", "Change one: gearwhine examples copy NAME")
     return (Section("", (*table_of(columns, document["examples"]), *usage)),)
@@ -36,7 +36,7 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
 
 
 def report_case(case: Case, folder: Path) -> dict[str, Any]:
-    """The results in a folder as one HTML page, which marks those that do not fit the case any more."""
+    """Write the results in a folder as one HTML page, which marks those that no longer fit the case."""
     from gearwhine.output.html import report_page
     from gearwhine.results.chapters import chapters_of
 

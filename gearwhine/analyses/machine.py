@@ -257,7 +257,7 @@ def sweep(
     fresh: bool = False,
     progress: Progress = silent,
 ) -> "Result[Sequence[SweptPoint]]":
-    """March the transient at every point of a sweep, side by side.
+    """Integrate the transient at every point of a sweep, in parallel.
 
     Parameters
     ----------
@@ -267,7 +267,7 @@ def sweep(
     over : sequence of str
         Values of keys, such as ``operation.torque=10 N*m:100 N*m:10``; beside the speeds of `[sweep]`.
     folder : path
-        Where the points are kept; those that it holds already are not done again.
+        Where the points are stored; those that it holds already are not done again.
     workers : int, optional
         Number of processes; as many as cores by default.
     scheduler : str, optional
@@ -280,7 +280,7 @@ def sweep(
     ------
     CaseError
         Where a key cannot be swept.
-    gearwhine.sweep.WorkersError
+    gearwhine.failures.WorkersError
         Where the processes do not start.
     """
     start = time.perf_counter()

@@ -50,7 +50,7 @@ def _no_files(place: Path, *, pictures: bool) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Result(Generic[Solved]):
-    """What an analysis of a case found.
+    """Result of an analysis of a case.
 
     Attributes
     ----------
@@ -76,9 +76,11 @@ class Result(Generic[Solved]):
     _started: float | None = None
 
     def __post_init__(self) -> None:
+        """Give the document its list of warnings."""
         add_warnings(self.document)
 
     def __repr__(self) -> str:
+        """Return the command, the case's title and the keys of the document."""
         return f"<Result of {self.command!r} on {self.case.title!r}: {', '.join(self.document)}>"
 
     @cached_property
@@ -95,7 +97,7 @@ class Result(Generic[Solved]):
 
     @property
     def warnings(self) -> list[str]:
-        """What the user should know of the result, a sentence each."""
+        """Warnings about the result, a sentence each."""
         return [str(entry["message"]) for entry in self.document["warnings"]]
 
     @property
@@ -129,7 +131,7 @@ class Result(Generic[Solved]):
         raise KeyError(f"no figure {name!r} of {self.command!r}; there are: {listed}")
 
     def json(self) -> str:
-        """The document as JSON, as the command prints it with ``--json``."""
+        """Return the document as JSON, as the command prints it with ``--json``."""
         return json_text(finite(self.document))
 
     def write(self, folder: str | Path, *, pictures: bool = True, progress: Progress = silent) -> list[str]:

@@ -1,4 +1,4 @@
-"""The whole run of a case: every analysis that it asks for, and the transient."""
+"""The whole run of a case: every analysis that the case asks for, and the transient."""
 
 from __future__ import annotations
 
@@ -70,14 +70,14 @@ def run(
     housing : SolvedHousing, optional
         Where it is solved already.
     folder : path, optional
-        A results folder: modes of the same housing kept there are read, and what is marched of the transient is kept
+        A results folder: modes of the same housing cached there are read, and the blocks of the transient are stored
         there, so that a run that dies goes on from there when it is started again.
     fresh : bool
         Whether to begin anew where there is such a folder.
     pictures : bool
         Whether modes will be drawn: where no renderer is found, that is said before the work.
     until_written : ExitStack, optional
-        Closed by the caller when the results are written; what is marched is kept until then.
+        Closed by the caller when the results are written; the blocks of the transient are stored until then.
     progress : callable
 
     Raises
@@ -133,14 +133,14 @@ def run(
         timed("system", begin)
         if case.transient is not None:
             if folder is not None and housing is not None and not housing.source_holds:
-                # Now, not with the results: who goes on with a long march need not solve them again.
+                # Now, not with the results: who goes on with a long transient need not solve them again.
                 with staging(folder) as place:
                     write_mode_cache(place, housing)
                 housing = replace(housing, source=folder / MODE_CACHE_FILE, source_holds=True)
             begin = time.perf_counter()
             keep = None
             if folder is not None and until_written is not None:
-                keep = partial(_kept, folder, until_written, fresh=fresh)
+                keep = partial(_checkpoints, folder, until_written, fresh=fresh)
             transient = transient_stage.solve_transient(
                 case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep
             )
@@ -186,7 +186,7 @@ def run(
 def simulate(
     case: Case, *, housing: SolvedHousing | None = None, folder: Path | None = None, progress: Progress = silent
 ) -> Result[RunSolution]:
-    """March the machine of a case through its transient.
+    """Integrate the motion of a case's machine in time: its transient.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def run_into(
     pictures: bool = True,
     progress: Progress = silent,
 ) -> Result[RunSolution]:
-    """Do everything that the case asks for and write it; what is marched is kept until it is written.
+    """Do everything that the case asks for and write it; the blocks of the transient are stored until then.
 
     The parameters are those of :func:`run`.
     """
@@ -245,13 +245,13 @@ def _require_renderer() -> None:
         raise RendererUnavailableError(f"{error}\nor do without pictures: --no-pictures") from error
 
 
-def _kept(folder: Path, until_written: ExitStack, key: str, *, fresh: bool) -> Any:
+def _checkpoints(folder: Path, until_written: ExitStack, key: str, *, fresh: bool) -> Any:
     return until_written.enter_context(stored_record(folder, key, fresh=fresh))
 
 
 @dataclass(frozen=True)
 class RunSolution:
-    """All that a run has found, and None or empty for what the case does not ask for."""
+    """Solution of a whole run, None or empty where the case does not ask for an analysis."""
 
     rotors: tuple[SolvedRotor, ...]
     pairs: tuple[PairAnalysis, ...]
@@ -264,7 +264,7 @@ class RunSolution:
 
 
 def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
-    """The quantities of what there is."""
+    """Return the labelled arrays of the analyses that were made."""
     streams = () if solved.transient is None else (HistoryStream(solved.transient),)
     return labelled(
         case,
@@ -279,7 +279,7 @@ def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
 
 
 def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:
-    """The figures of what there is."""
+    """Draw the figures of the analyses that were made, each with its name."""
     from gearwhine import figures
 
     if solved.pairs:

@@ -1,6 +1,6 @@
 """Case file: TOML with units, read into one checked, frozen object in SI.
 
-What the room offers:
+Public names:
 
 - :func:`load_case` -- a file or a bundled case, with changes from the command line; :func:`parse_case` for a
   dictionary. Everything wrong comes in one :class:`CaseError`, a :class:`Problem` each.

@@ -1,6 +1,7 @@
-"""Rolling bearings of a case, by their geometry or by the main dimensions of a catalogue; stops; bearing loads.
+"""Bearings of a case, `[[bearing]]`: stiffness, damping, pedestals, stops and mean loads; rolling bearings.
 
-Bearings of a case, `[[bearing]]`: stiffness, damping, pedestal. Attributes are named as the keys and are in SI.
+A rolling bearing is given by its geometry, or by the main dimensions of a catalogue, from which its inside is
+estimated. Attributes are named as the keys and are in SI.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class Stop(Table):
     gap: LengthFromZero = 0.0
 
     def build(self) -> GapLaw:
-        """The law of the stop."""
+        """Build the force law of the stop."""
         from coupling import GapLaw
 
         return GapLaw(self.force, self.depth, self.exponent, self.gap)
@@ -115,7 +116,7 @@ class _Mounted(Table):
         raise NotImplementedError
 
     def build(self, name: str) -> RollingBearing:
-        """The bearing of one or two rows.
+        """Build the rolling bearing, of one or two rows.
 
         Raises
         ------
@@ -138,7 +139,7 @@ class _Mounted(Table):
 
 
 class RollingGeometry(_Mounted):
-    """By its geometry [m, rad]; a groove is its radius over the ball's diameter."""
+    """A rolling bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter."""
 
     element: Literal["ball", "roller"] = "ball"
     count: Annotated[int, Whole(3, 500)]
@@ -211,7 +212,7 @@ class Catalogue(Table):
 
 
 class RollingCatalogue(_Mounted):
-    """By its main dimensions."""
+    """A rolling bearing by its main dimensions."""
 
     catalogue: Catalogue
 
@@ -243,7 +244,7 @@ class _Radial(Table):
     """A 2×2 matrix over x and y by its entries, each a number or a list over speeds."""
 
     def build(self) -> npt.NDArray[np.float64]:
-        """The matrix, (2, 2), or with lists in it one for each speed, (s, 2, 2)."""
+        """Build the coefficient matrix, (2, 2), or with lists in it one for each speed, (s, 2, 2)."""
         import numpy as np
 
         entries = np.broadcast_arrays(*(getattr(self, key) for key in ("xx", "xy", "yx", "yy")))
@@ -300,7 +301,7 @@ class Pedestal(Table):
     damping: PedestalDamping = PedestalDamping()
 
     def build(self) -> RotorPedestal:
-        """The pedestal."""
+        """Build the pedestal."""
         from rotors import Pedestal as BuiltPedestal
 
         return BuiltPedestal(self.stiffness.build(), self.damping.build(), self.mass)
@@ -332,7 +333,7 @@ class _Matrix(Table):
     matrix: MatrixRows
 
     def build(self) -> npt.NDArray[np.float64]:
-        """The matrix, (5, 5)."""
+        """Build the coefficient matrix, (5, 5)."""
         import numpy as np
 
         return np.array(self.matrix)

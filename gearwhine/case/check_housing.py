@@ -1,6 +1,7 @@
-"""Checks of the housing: one geometry; seats, supports, sensors and masses in their places on a box.
+"""Checks of a case's housing: one geometry, a box whose parts fit, fixtures and sensors in their places.
 
-Box geometry: the box of a case as an object of `meshes`, and its misfits as findings.
+The box of a case is built as an object of `meshes`, and what does not fit is yielded as findings. Seats, supports,
+sensors and masses are held against it.
 """
 
 from __future__ import annotations
@@ -27,7 +28,6 @@ def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
     meshes.GeometryError
         Where its parts do not fit each other.
     """
-
     walls, cover = box.walls, box.cover
     bores = []
     for seat in seats:

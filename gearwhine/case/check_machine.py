@@ -1,12 +1,10 @@
-"""Checks of operation: a train in which every shaft turns, balanced torques, a transient that can be run.
+"""Checks of a case's machine: shafts, bearings, gears and operation.
 
-Checks of stations on rotors, and of rotor axes against bearing seats.
-
-Checks of bearings: tables over speed that fit and reach far enough, pedestals on the ground.
-
-Checks of gears and gear pairs: teeth that can be cut, gears that can mesh on their axes, loops that can turn.
-
-The geometry is that of :mod:`coupling.gears`; its errors are put in the words of the case file.
+- Shafts: stations on their rotors, and rotor axes against bearing seats.
+- Bearings: tables over speed that fit and reach far enough, pedestals on the ground.
+- Gears: teeth that can be cut, gears that can mesh on their axes, loops that can turn. The geometry is that of
+  :mod:`coupling.gears`; its errors are put in the words of the case file.
+- Operation: a train in which every shaft turns, balanced torques, a transient that can be run.
 """
 
 from __future__ import annotations
@@ -378,7 +376,7 @@ def _check_run(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 
 def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
-    """Yield what the exact march, where it is asked for, knows nothing of."""
+    """Yield what exact integration, where it is asked for, does not cover."""
     given = draft.transient
     if given is None or given.method != "exact":
         return

@@ -1,10 +1,7 @@
-"""Checks across the tables of a case, and warnings about a sound one.
+"""Checks across the tables of a case: names and provenance; all checks of a case in turn, and its warnings.
 
-Checks of names: each belongs to one entry, and each reference finds its entry.
-
-Names are read from the document itself, so an entry in which something else is wrong still counts.
-
-Checks of provenance, `[provenance]`: the origin of numbers as published, nominal or found.
+A name belongs to one entry, and a reference finds its entry. Names are read from the document itself, so an entry in
+which something else is wrong still counts. `[provenance]` gives the origin of numbers: published, nominal or found.
 """
 
 from __future__ import annotations
@@ -143,12 +140,12 @@ def without_changed(
     table = document.get("provenance")
     if not isinstance(table, dict) or ("provenance",) in changed:
         return document
-    kept = {}
+    unchanged = {}
     for key, value in table.items():
         steps = parse_key_path(key)
         if steps is None or ("provenance", key) in changed or _values_at(document, steps) == _values_at(before, steps):
-            kept[key] = value
-    return {**document, "provenance": kept}
+            unchanged[key] = value
+    return {**document, "provenance": unchanged}
 
 
 def _values_at(document: object, steps: tuple[str, ...]) -> list[object]:

@@ -99,13 +99,14 @@ class Problem:
         return f"expected {self.expected}, got {show_value(self.value)}{note}"
 
     def __str__(self) -> str:
+        """Return the file, the key path with its label, and the message."""
         key, source = _shortened(self.key), _shortened(self.source)
         place = f"{key} ({self.label})" if self.label else key
         return f"{source}: {place}: {self.message}" if source else f"{place}: {self.message}"
 
 
 def _shortened(text: str) -> str:
-    """A text, or where it is long its beginning and its end."""
+    """Return a text whole, or where it is long its beginning and its end."""
     if len(text) <= _LONGEST_SHOWN:
         return text
     half = _LONGEST_SHOWN // 2

@@ -1,10 +1,8 @@
 """Field types of a case: quantities with unit and range, names, files, and the base class of all tables.
 
-Directions in a case: an axis by its letter, or a vector of any length.
-
-Coefficients over speed: one quantity, or a list with one for each speed of a table.
-
-Patches of the housing surface: a named surface, or the surface in a box or on a plane.
+Further types are a direction, an axis by its letter or a vector of any length; a coefficient over speed, one quantity
+or a list with one for each speed of a table; and a patch of the housing's surface, which is a named surface, or the
+surface in a box or on a plane.
 """
 
 from __future__ import annotations
@@ -71,7 +69,7 @@ class Quantity:
     at_most: float | None = None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Schema for pydantic: validation and serialisation of this field."""
+        """Return pydantic's schema for validation and serialisation of this field."""
         writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
         return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
@@ -159,7 +157,7 @@ class Whole:
     at_most: int
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Schema for pydantic: validation of this field."""
+        """Return pydantic's schema for validation of this field."""
         return core_schema.no_info_plain_validator_function(self.validate)
 
     @property
@@ -294,7 +292,7 @@ class OverSpeed:
     each: Quantity
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        """Schema for pydantic: validation and serialisation of this field."""
+        """Return pydantic's schema for validation and serialisation of this field."""
         writer = core_schema.plain_serializer_function_ser_schema(self.write, when_used="json")
         return core_schema.no_info_plain_validator_function(self.validate, serialization=writer)
 
@@ -357,7 +355,7 @@ class Patch(Table):
         return (x * self.plane.at, y * self.plane.at, z * self.plane.at), (x, y, z)
 
     def build_patch(self) -> HousingPatch:
-        """The patch of the mesh's surface."""
+        """Build the patch of the mesh's surface."""
         from housing import Patch as BuiltPatch
 
         return BuiltPatch(self.surface, self.corners, self.point_and_normal)

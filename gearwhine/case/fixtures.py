@@ -150,7 +150,7 @@ class Bushing(Table):
         return unit_vector(_cross(x, y)), x
 
     def build_bushing(self) -> HousingBushing:
-        """The springs and dashpots along their axes."""
+        """Build the bushing: springs and dashpots along its axes."""
         from housing import Bushing as BuiltBushing
         from housing.model.bushings import GLOBAL_AXES, Axial, axes_along
 
@@ -184,7 +184,7 @@ class Mount(Patch, Bushing):
         return self.stiffness is not None and any(amounts(self.stiffness))
 
     def build(self) -> HousingMount:
-        """The mount."""
+        """Build the mount."""
         from housing import Mount as BuiltMount
 
         return BuiltMount(self.name, self.build_patch(), self.build_bushing(), self.center)
@@ -212,7 +212,7 @@ class Joint(Bushing):
         return self
 
     def build(self) -> HousingJoint:
-        """The joint of two surfaces, or of circles on the faces that look along its axis and against it."""
+        """Build the joint of two surfaces, or of circles on the faces that look along its axis and against it."""
         from housing import Joint as BuiltJoint
         from housing import Patch as BuiltPatch
 
@@ -286,7 +286,7 @@ class LumpedMass(Patch):
         return self
 
     def build(self) -> HousingLumpedMass:
-        """The mass."""
+        """Build the lumped mass."""
         from housing import LumpedMass as BuiltMass
         from housing.model.lumped_mass import NO_INERTIA
 

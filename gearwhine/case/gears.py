@@ -1,8 +1,7 @@
-"""Gears and gear pairs of a case: `[[gear]]` and `[[gear_pair]]`. Attributes are named as the keys and are in SI.
+"""Gears and gear pairs of a case, `[[gear]]` and `[[gear_pair]]`, and the gear train that the pairs form.
 
-Flank modifications, manufacturing errors and faults of a `[[gear]]`; each builds its object of `coupling.gears`.
-
-Gear train of a case: pairs of shafts with their tooth numbers.
+Flank modifications, manufacturing errors and faults of a gear each build their object of `coupling.gears`. The train
+lists pairs of shafts with their tooth numbers. Attributes are named as the keys and are in SI.
 """
 
 from __future__ import annotations
@@ -63,13 +62,13 @@ class Relief(Table):
         return self
 
     def build_tip_relief(self) -> TipRelief:
-        """The relief as one of a tip."""
+        """Build the relief as a tip relief."""
         from coupling.gears import TipRelief
 
         return TipRelief(**self.model_dump())
 
     def build_root_relief(self) -> RootRelief:
-        """The relief as one of a root."""
+        """Build the relief as a root relief."""
         from coupling.gears import RootRelief
 
         return RootRelief(**self.model_dump())
@@ -97,7 +96,7 @@ class ProfileErrors(Table):
         return rows
 
     def build(self) -> ProfileDeviation:
-        """The deviation of the profile."""
+        """Build the profile deviation."""
         from coupling.gears import ProfileDeviation
 
         return ProfileDeviation(**self.model_dump())
@@ -122,7 +121,7 @@ class HelixErrors(Table):
         return self
 
     def build(self) -> HelixDeviation:
-        """The deviation across the face."""
+        """Build the helix deviation across the face."""
         from coupling.gears import HelixDeviation
 
         return HelixDeviation(**self.model_dump())
@@ -215,7 +214,7 @@ class Fault(Table):
         return self
 
     def build(self) -> GearFault:
-        """The fault of this kind."""
+        """Build the gear fault of this kind."""
         from coupling.gears import MissingTooth, Spall, ToothCrack, Wear
 
         kinds = {"wear": Wear, "spall": Spall, "crack": ToothCrack, "missing-tooth": MissingTooth}
@@ -328,7 +327,7 @@ class Gear(Table):
         return self.tooth_module / module_from_base_radius(1.0, self.teeth, self.pressure_angle, self.helix_angle)
 
     def build(self, material: Material | None = None) -> GearGear:
-        """The gear, of a material or by default of steel.
+        """Build the gear, of a material or by default of steel.
 
         A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
 

@@ -1,8 +1,7 @@
-"""Housing of a case, `[housing]`: geometry, seats, supports, sensors and fixtures; and the materials.
+"""Housing of a case, `[housing]`: geometry, seats, supports, sensors and fixtures; materials and their regions.
 
-Attributes are named as the keys of the case file and are in SI; frequencies are in Hz.
-
-Material regions of the housing, `[[housing.region]]`.
+Regions, `[[housing.region]]`, are parts of the housing of another material. Attributes are named as the keys of the
+case file and are in SI; frequencies are in Hz.
 """
 
 from __future__ import annotations
@@ -99,7 +98,7 @@ class Material(Table):
 
     @property
     def shear_modulus(self) -> float:
-        """As given, else E / (2 (1 + ν)) [Pa]."""
+        """Shear modulus as given, else E / (2 (1 + ν)) [Pa]."""
         return self._isotropic_shear_modulus if self.own_shear_modulus is None else self.own_shear_modulus
 
     @property
@@ -118,7 +117,7 @@ class Turn(Table):
 
     @property
     def matrix(self) -> Rotation:
-        """By Rodrigues' formula, rows of a 3 x 3 matrix."""
+        """Rotation matrix by Rodrigues' formula, rows of a 3 x 3 matrix."""
         x, y, z = unit_vector(self.axis)
         sine, cosine = math.sin(self.angle), math.cos(self.angle)
         rest = 1.0 - cosine
@@ -212,7 +211,7 @@ class Seat(Table):
         return self
 
     def build(self) -> HousingSeat:
-        """The seat, by its surface in the mesh."""
+        """Build the bearing seat, by its surface in the mesh."""
         from housing import Seat as BuiltSeat
 
         return BuiltSeat(self.name, self.center)
@@ -260,7 +259,7 @@ class Support(Patch):
         return self.fixed is not None or self.stiffness is not None
 
     def build(self) -> HousingSupport:
-        """The support."""
+        """Build the support."""
         from housing import Support as BuiltSupport
 
         springs, dashpots, fixed = self.stiffness or Springs(), self.damping or Dashpots(), self.fixed or ()
@@ -288,7 +287,7 @@ class Sensor(Table):
         return None if self.direction is None else unit_vector(self.direction)
 
     def build(self) -> HousingSensor:
-        """The sensor."""
+        """Build the sensor."""
         from housing import Sensor as BuiltSensor
 
         return BuiltSensor(self.name, self.position, self.unit_vector)

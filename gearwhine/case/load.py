@@ -1,8 +1,6 @@
-"""Reading a case, from a file or a bundled name, to a checked `Case`; all problems in one error.
+"""Loading a case, from a file or a bundled name, to a checked `Case`; all problems in one error.
 
-Bundled cases: their names, titles and files.
-
-Validation errors of pydantic as findings in the case file's terms.
+Bundled cases are found by their names. Validation errors of pydantic become findings in the case file's terms.
 """
 
 from __future__ import annotations
@@ -299,7 +297,7 @@ def _parse(content: bytes, source: str) -> dict[str, Any]:
 
 
 def _as_case(document: dict[str, Any], path: Path) -> dict[str, Any]:
-    """The document, or for a rotor saved by ROSS a case of that rotor alone."""
+    """Return the document, or for a rotor saved by ROSS a case of that rotor alone."""
     if "ross_version" not in document:
         return document
     return {"title": f"{path.name}, a rotor saved by ROSS", "rotor": [{"name": path.stem, "file": path.name}]}

@@ -1,6 +1,7 @@
-"""Measured modes of a case, `[measured]`: frequencies, or a modal survey and its alignment with the model.
+"""Measured modes of a case, `[measured]`, and model updating by them, `[update]`.
 
-Model updating of a case, `[update]`: the fitted parameters, and the modes they are fitted to.
+Measured are frequencies alone, or a modal survey with its alignment on the model. An update has the parameters that
+are fitted, and the modes that they are fitted to.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ class Align(Table):
 
 
 class Pairing(Table):
-    """`[measured.pairing]`: what makes a pair of a measured shape and a model's; see `housing.PairingRule`.
+    """`[measured.pairing]`: conditions for a pair of a measured shape and a model's.
+
+    See `housing.correlation.pairing.PairingRule`.
 
     `least_mac` is the MAC below which a measured mode stays alone, `frequency_spread` the relative spread of frequency
     that a pair may well have, `closeness` within which neighbours are close modes, and `duplicate_mac` from which on
@@ -153,7 +156,7 @@ class Measured(Table):
 
 
 class _AmountRule:
-    """Validates a quantity of any kind, kept as it is written: text with a unit, or a plain number in SI."""
+    """Validates a quantity of any kind, left as it is written: text with a unit, or a plain number in SI."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(self.validate)

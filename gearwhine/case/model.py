@@ -1,10 +1,8 @@
-"""Case: all tables of the file, in SI.
+"""Case model: all tables of the file in SI, as one frozen object, as a draft, and as TOML again.
 
-Readable tables of a case, sound or not, so that the checks see all of them at once.
-
-Required tables: the error for a table that a command needs and a case lacks.
-
-Resolved case as TOML: defaults written out, every quantity with its unit.
+A draft holds the readable tables of a case, sound or not, so that the checks see all of them at once.
+:func:`require` raises the error for a table that a command needs and a case lacks. :func:`dump_case` writes the
+resolved case: defaults included, every quantity with its unit.
 """
 
 from __future__ import annotations

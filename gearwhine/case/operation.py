@@ -1,10 +1,7 @@
-"""Operation, transient and sweep of a case.
+"""Operation, transient and sweep of a case: torques, the speed profile of a run, base motion, sampling.
 
-Attributes are named as the keys and are in SI; speeds in rad/s.
-
-Torques over time and speed, torque ripple, and the speed profile of a run. All in SI, speeds in rad/s.
-
-Base motion of a case, `[operation.base]`: accelerations of the ground. All in SI, frequencies in Hz.
+Torques are constant, or vary over time and speed, with ripple. Base motion, `[operation.base]`, is the acceleration of
+the ground. Attributes are named as the keys and are in SI: speeds in rad/s, frequencies in Hz.
 """
 
 from __future__ import annotations
@@ -64,7 +61,7 @@ class TorqueHistory(Table):
         return self
 
     def build(self, rotor: str, at: float, factor: float) -> CoupledTorqueHistory:
-        """The history, times a factor, on a rotor at a station [m]."""
+        """Build the torque history, times a factor, on a rotor at a station [m]."""
         from numpy import array
 
         from coupling.machine.loads import TorqueHistory as BuiltHistory
@@ -87,7 +84,7 @@ class TorqueRipple(Table):
         return self
 
     def build(self, rotor: str, at: float, sense: float) -> CoupledTorqueRipple:
-        """The ripple on a rotor at a station [m], in the sense of the torque that it is about."""
+        """Build the torque ripple on a rotor at a station [m], in the sense of the torque that it is about."""
         from coupling.machine.loads import TorqueRipple as BuiltRipple
 
         frequency = None if self.frequency is None else 2.0 * math.pi * self.frequency
@@ -226,7 +223,7 @@ class Base(Table):
         return turning or (self.over_time is not None and any(map(any, self.over_time.rows[3:5])))
 
     def build(self) -> BaseMotion:
-        """The motion of the ground."""
+        """Build the base motion, the acceleration of the ground."""
         import numpy as np
 
         from coupling import BaseMotion
@@ -290,7 +287,7 @@ class Transient(Table):
     """`[transient]`: revolutions of the first driver's rotor, those discarded, and the steps.
 
     `start`: from static equilibrium under the load, or from turning unloaded, so that the load comes on at once.
-    `modal_coordinates`: how many of each part's modes to record in time. `method`: Newmark's steps, the exact march
+    `modal_coordinates`: how many of each part's modes to record in time. `method`: Newmark's steps, exact integration
     between tooth events, or `auto`, the exact one where it applies.
 
     With a `run` the speed varies over its time, in place of a number of revolutions; then none is discarded by default.

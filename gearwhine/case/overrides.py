@@ -97,7 +97,7 @@ class _LeadsNowhereError(Exception):
 
 
 def _expanded(document: Any, steps: tuple[str, ...], resolved: Any) -> list[tuple[str, ...]]:
-    """The paths that a path with wildcards stands for, in a document or once it is resolved; itself without any."""
+    """Expand the wildcards of a path to the paths in a document or once it is resolved; a plain path gives itself."""
     if "*" not in steps:
         return [steps]
     places = [place for known in (resolved, document) for place in matching_places(known, steps)]
@@ -108,7 +108,7 @@ def _expanded(document: Any, steps: tuple[str, ...], resolved: Any) -> list[tupl
 
 
 def matching_places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:
-    """Every location of a document that a key path leads to, ``*`` standing for each entry of a table or a list."""
+    """Yield every location of a document that a key path leads to; ``*`` is each entry of a table or a list."""
     if not steps:
         yield place
         return

@@ -1,8 +1,7 @@
-"""Rotors of a case, `[[rotor]]`: shaft segments, couplings, discs, unbalance, bow; each builds its object of `rotors`.
+"""Rotors of a case, `[[rotor]]`, and the analyses of them, `[rotor_analysis]`.
 
-Attributes are named as the keys and are in SI.
-
-Rotor analyses of a case, `[rotor_analysis]`. Attributes are named as the keys and are in SI.
+Shaft segments, couplings, discs, unbalance and bow each build their object of `rotors`. Attributes are named as the
+keys and are in SI.
 """
 
 from __future__ import annotations
@@ -119,7 +118,7 @@ class Segment(Table):
         return self
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorSegment:
-        """The segment, with its rotor's properties where it has none of its own."""
+        """Build the shaft segment, with its rotor's properties where it has none of its own."""
         from rotors import Segment as BuiltSegment
         from rotors import ShaftMaterial
 
@@ -137,8 +136,10 @@ class Segment(Table):
 
 
 class Coupling(Table):
-    """A flexible coupling: stiffness across the axis and along it [N/m], against an angle between the axes and about
-    them [N m/rad]; dashpots beside these [N s/m, N m s/rad]; mass [kg] and inertias [kg m²] of the whole.
+    """A flexible coupling by its stiffness, damping, mass and inertia.
+
+    Stiffness across the axis and along it [N/m], against an angle between the axes and about them [N m/rad]; dashpots
+    beside these [N s/m, N m s/rad]; mass [kg] and inertias [kg m²] of the whole.
     """
 
     lateral_stiffness: PositiveStiffness
@@ -161,7 +162,7 @@ class CouplingSegment(Table):
     coupling: Coupling
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorCoupling:
-        """The coupling; it takes nothing of its rotor."""
+        """Build the coupling; it takes no property from its rotor."""
         from rotors import Coupling as BuiltCoupling
 
         return BuiltCoupling(self.length, **self.coupling.model_dump())
@@ -176,7 +177,7 @@ class Disc(Table):
     diametral_inertia: Inertia = 0.0
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorDisc:
-        """The disc; it takes nothing of its rotor."""
+        """Build the disc; it takes no property from its rotor."""
         from rotors import Disc as BuiltDisc
 
         return BuiltDisc(**self.model_dump())
@@ -201,7 +202,7 @@ class RoundDisc(Table):
         return self
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorDisc:
-        """The disc by its dimensions and density."""
+        """Build the disc by its dimensions and density."""
         from rotors import Disc as BuiltDisc
 
         density = self.density or materials[_named(self.material, rotor)].density
@@ -324,7 +325,7 @@ class Rotor(Table):
         return sum(segment.length for segment in self.segments)
 
     def build(self, materials: Mapping[str, Material]) -> RotorRotor:
-        """The shaft with its discs, without the gears on it; its own file's discs stand first."""
+        """Build the shaft with its discs, without the gears on it; the discs of the rotor's own file stand first."""
         from rotors import Rotor as BuiltRotor
 
         discs = [disc.build(self, materials) for disc in self.discs]
@@ -335,13 +336,13 @@ class Rotor(Table):
         return BuiltRotor(self.name, segments, discs, self.mass)
 
     def build_unbalance(self) -> list[RotorUnbalance]:
-        """The unbalances."""
+        """Build the unbalances."""
         from rotors import Unbalance as BuiltUnbalance
 
         return [BuiltUnbalance(one.at, one.moment, one.phase) for one in self.unbalance]
 
     def build_bow(self) -> RotorBow | None:
-        """The residual bow; None for a straight shaft."""
+        """Build the residual bow; None for a straight shaft."""
         if not self.bow:
             return None
         from numpy import array

@@ -1,8 +1,7 @@
 """Shaft speeds, torques and mesh frequencies of a case, by arithmetic alone.
 
-Speeds of rotor analyses: whirl, Campbell diagram and response, as given in the case or by default.
-
-All are speeds of the rotor itself [rad/s], positive counter-clockwise from +z.
+The speeds of rotor analyses follow from them: of whirl, the Campbell diagram and responses, as given in the case or by
+default. They are speeds of the rotor itself [rad/s], positive counter-clockwise from +z.
 """
 
 from __future__ import annotations

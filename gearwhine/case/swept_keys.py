@@ -62,7 +62,7 @@ class SweptKey:
 
 
 def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
-    """The keys of a sweep, the slowest first: the speeds of ``[sweep]``, then each ``--over``.
+    """Return the keys of a sweep, the slowest first: the speeds of ``[sweep]``, then each ``--over``.
 
     An ``--over`` of the speed itself takes the place of ``[sweep]``.
 
@@ -99,7 +99,7 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
 
 
 def _paths(case: Case, key: str) -> list[tuple[str, ...]]:
-    """The steps of a key, or of all that it stands for, by numbers where entries of lists have names."""
+    """Return the paths that a key stands for; entries of lists that have names are given by their numbers."""
     document, steps = case_document(case), parse_key_path(key) or ()
     found = [parse_key_path(key_of(place)) or () for place in matching_places(document, steps)]
     return found if found or "*" in steps else [steps]
@@ -150,7 +150,7 @@ def _listed(text: str, key: str, entries: list[str]) -> SweptKey:
 
 
 def _speeds(speeds: Iterable[float]) -> SweptKey:
-    """The speeds of ``[sweep]`` [rad/s], in rpm, exact as they are in the case."""
+    """Return the speeds of ``[sweep]`` [rad/s] as a key in rpm, exact as they are in the case."""
     values = tuple(speeds)
     texts = tuple(str(units.format_quantity(speed, units.SPEED)) for speed in values)
     return SweptKey(SPEED_KEY, texts, tuple(float(f"{speed * 30.0 / math.pi:.12g}") for speed in values), "rpm")
@@ -178,14 +178,14 @@ def _rounded(number: Decimal) -> Decimal:
 
 
 def _written(number: Decimal, unit: str) -> str:
-    """As ``--set`` takes it: a whole number without a point, so that it may be a number of teeth."""
+    """Write a value as ``--set`` takes it: a whole number without a point, so that it may be a number of teeth."""
     whole = number == number.to_integral_value() and abs(number) < Decimal(10) ** _DIGITS
     digits = f"{int(number)}" if whole else f"{number:f}" if abs(number) > Decimal("1e-6") else f"{float(number)!r}"
     return f"{digits} {unit}" if unit else digits
 
 
 def _divided(text: str, mark: str) -> list[str]:
-    """The parts of a text between marks that stand outside quotes and brackets."""
+    """Split a text at the marks that stand outside quotes and brackets."""
     parts, open_marks = [""], list[str]()
     for letter in text:
         if open_marks and letter == open_marks[-1]:

@@ -95,7 +95,7 @@ _DIMENSIONS = (
 
 @dataclass(frozen=True)
 class _Unit:
-    """A unit in SI: ``factor`` times a product of base units to whole powers; cycles kept apart."""
+    """A unit in SI: ``factor`` times a product of base units to whole powers; cycles counted apart."""
 
     factor: Decimal
     powers: tuple[tuple[str, int], ...]
@@ -105,7 +105,7 @@ class _Unit:
 
 
 def _common() -> dict[str, _Unit]:
-    """The symbols of nearly every case, for which the registry need not be read; as it has them, the tests say."""
+    """Return the symbols of nearly every case without reading the registry; tests hold them against it."""
     force = (("kilogram", 1), ("meter", 1), ("second", -2))
     pressure = (("kilogram", 1), ("meter", -1), ("second", -2))
     # Power of ten and powers of base units, with prefixes.
@@ -151,7 +151,7 @@ def _symbol(symbol: str) -> _Unit | None:
 
 
 def registered_unit(symbol: str) -> _Unit | None:
-    """The same by the unit registry alone."""
+    """Parse a unit by the unit registry alone."""
     import pint
 
     registry = _registry()
@@ -287,7 +287,7 @@ def unit_ratio(unit: str, other: str) -> Decimal | None:
 
 
 def si_amount(value: object) -> float | None:
-    """A quantity of any kind in SI, where hertz and rpm are no angular speeds; None where it is none."""
+    """Return a quantity of any kind in SI, where hertz and rpm are no angular speeds; None for other text."""
     if isinstance(value, str):
         parts = split_quantity(value)
         unit = None if parts is None else _parse_unit(parts[1])
@@ -300,7 +300,7 @@ def si_amount(value: object) -> float | None:
 
 
 def amount(value: str | float) -> float:
-    """The same of what is known to be a quantity."""
+    """Return in SI the value of a text that is known to be a quantity."""
     number = si_amount(value)
     assert number is not None, value
     return number

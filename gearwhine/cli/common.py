@@ -1,6 +1,6 @@
-"""Running a command on a case: read the case, work under a progress display, show or print the document.
+"""Common course of a command on a case: options, reading the case, progress, and the result shown or printed.
 
-Common command-line options: the case's name, output folder, JSON, settings, quiet, fresh.
+The options are the case's name, the output folder, JSON, settings, quiet and fresh.
 """
 
 import os
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def _folder(type_: object, tokens: Sequence[Token]) -> Path:
-    """The named folder; an empty name is refused, though as a path it is the current folder."""
+    """Return the named folder; refuse an empty name, though as a path it is the current folder."""
     (token,) = tokens
     if not token.value.strip():
         raise ValueError("--output is empty; expected the name of a folder, such as results")
@@ -102,7 +102,7 @@ def written(result: "Result[Any]", folder: Path | None, progress: "Progress") ->
 
 
 def results_folder(case: str, common: Common) -> Path:
-    """The folder for a command that always writes, once it is known to take files."""
+    """Return the folder for a command that always writes, once it is known to take files."""
     folder = common.output if common.output is not None else Path(f"{Path(case).stem}-results")
     _check_folder(folder)
     return folder

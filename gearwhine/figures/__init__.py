@@ -1,4 +1,4 @@
-"""Figures by matplotlib, without a screen: arrays and results in, a `Figure` or a file out.
+"""Figures by matplotlib, without a display: arrays and results in, a `Figure` or a file out.
 
 ``draw_transient``, ``draw_run``, ``draw_gear_pairs``, ``draw_system``, ``draw_steady``, ``draw_sweep`` and
 ``draw_rotors`` yield the figures of an analysis with their names, which :func:`save_all` writes; the others return a

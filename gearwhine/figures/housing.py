@@ -1,13 +1,12 @@
-"""Model frequencies over measured ones with a band of ±5 %, and their errors; with shapes, the MAC of each pair.
+"""Comparison figures of housing modes: frequencies, MAC matrix, coordinate criteria and mode shapes.
 
-Circles whose area is the MAC, at the frequencies of both modes, are the FMAC of Fotsch and Ewins (2000): one picture of
-shapes, frequencies and what the survey confuses.
+Model frequencies stand over measured ones with a band of ±5 %, beside their errors. With shapes, the MAC of each pair
+is drawn as circles whose area is the MAC, at the frequencies of both modes: the FMAC of Fotsch and Ewins (2000), one
+picture of shapes, frequencies and what the survey confuses.
 
-Correlation matrix such as the MAC: a cell for each two modes, its number where it fits, pairs outlined.
-
-COMAC and enhanced COMAC over the degrees of freedom of a survey, the worst of them named.
-
-Measured mode shapes beside the model's at the survey's points, as wireframes of one scale and phase.
+A correlation matrix such as the MAC has a cell for each two modes, with its number where it fits, pairs outlined.
+COMAC and enhanced COMAC are bars over the survey's degrees of freedom, the worst named. Measured mode shapes stand
+beside the model's at the survey's points, as wireframes of one scale and phase.
 """
 
 from collections.abc import Collection, Sequence
@@ -390,7 +389,7 @@ def _projected(positions: FloatArray, towards_eye: FloatArray) -> tuple[FloatArr
 def _wires(
     axes: Axes, rest: FloatArray, moved: FloatArray, amplitude: FloatArray, edges: IntArray, near: FloatArray
 ) -> None:
-    """The wires at rest in grey, and moved, the far ones fainter and behind."""
+    """Draw the wireframe at rest in grey, and deformed, the far wires fainter and behind."""
     order = np.argsort(near[edges].mean(axis=1)) if len(edges) else np.zeros(0, dtype=np.int64)
     edges = edges[order]
     axes.add_collection(LineCollection(list(rest[edges]), colors=PALE, linewidths=0.5, zorder=1))

@@ -60,7 +60,7 @@ def spread(centres: npt.ArrayLike, widths: npt.ArrayLike, low: float, high: floa
 
     Minimises the sum of squared displacements with neighbours at least ``gap`` apart. Less the room that the labels
     before it need, a label's place may only rise: that is isotonic regression (Barlow et al. 1972), and bounds are
-    kept by clipping its solution.
+    held by clipping its solution.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def spread(centres: npt.ArrayLike, widths: npt.ArrayLike, low: float, high: floa
     widths
         (n,): theirs.
     low, high
-        Bounds, which are kept where the labels fit between them.
+        Bounds, which hold where the labels fit between them.
     gap
         Between neighbours.
     """

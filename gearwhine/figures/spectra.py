@@ -1,6 +1,6 @@
-"""Waterfall diagram: spectra over speed, with mesh orders and the housing's natural frequencies.
+"""Spectra figures: spectral lines on a logarithmic scale, and waterfall diagrams.
 
-Spectral lines on a logarithmic scale.
+A waterfall shows spectra over speed, with mesh orders and the housing's natural frequencies.
 """
 
 from collections.abc import Sequence
@@ -174,5 +174,5 @@ def _table(values: npt.ArrayLike, rows: int) -> FloatArray:
 
 
 def _spacing(values: Sequence[float] | FloatArray) -> float:
-    """Between neighbouring rows, in the middle."""
+    """Spacing between neighbouring rows, in the middle."""
     return float(np.median(np.diff(values))) if len(values) > 1 else max(abs(float(values[0])), 1.0)

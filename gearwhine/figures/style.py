@@ -38,7 +38,7 @@ def tidy(axes: Axes, *, size: float = 9.0) -> None:
 
 
 def sheet(height: float, title: str, note: str = "") -> Figure:
-    """A sheet for print, 160 mm wide and ``height`` mm high, with a title and a note in grey at its upper left.
+    """Return a sheet for print, 160 mm wide and ``height`` mm high, with a title and a grey note at its upper left.
 
     A title may share its line with a legend, so it is cut after 60 letters; a note takes two lines at most.
     """
@@ -95,12 +95,12 @@ def legend_beside_title(figure: Figure, axes: Axes, handles: Sequence[Artist]) -
 
 
 def name_in_legend(text: str, most: int = 16) -> str:
-    """A user's name on one line and cut, in which a dollar sign is one and not the beginning of a formula."""
+    """Return a user's name on one line and cut, in which a dollar sign begins no formula."""
     return shortened(text, most).replace("$", r"\$")
 
 
 def shortened(text: str, most: int = 28) -> str:
-    """A text on one line, cut with an ellipsis where it is longer than ``most`` letters."""
+    """Return a text on one line, cut with an ellipsis where it is longer than ``most`` letters."""
     line = " ".join(text.split())
     return line if len(line) <= most else f"{line[: most - 1].rstrip()}…"
 
@@ -114,7 +114,7 @@ def missing_glyphs_as_boxes() -> Iterator[None]:
 
 
 def save(figure: Figure, path: Path) -> str:
-    """Write a figure as PNG and return the file's name; sheets for print are finer than figures for the screen."""
+    """Write a figure as PNG and return the file's name; sheets for print are finer than figures for a monitor."""
     with missing_glyphs_as_boxes():
         figure.savefig(path, dpi=max(_SCREEN_DPI, int(figure.dpi)))
     return path.name

@@ -25,7 +25,7 @@ class CaseDriving(Driving):
 
     Attributes
     ----------
-    turning : coupling.Turning or None
+    turning : SpeedProfile or None
         Speed over time; None where it is the nominal one all along.
     """
 

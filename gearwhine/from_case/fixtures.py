@@ -21,13 +21,13 @@ _REACH = 0.05  # farthest that what sits on the surface may be given from it, as
 
 
 def build_supports(case: Case) -> list[HousingSupport]:
-    """The supports of a case, in the order of the file."""
+    """Build the supports of a case, in the order of the file."""
     assert case.housing is not None
     return [entry.build() for entry in case.housing.support]
 
 
 def build_attachments(case: Case) -> Iterator[tuple[str, str, Fixture]]:
-    """All that is fastened, each with its key and label."""
+    """Build all fixtures of the housing, each with its key and label."""
     given = case.housing
     assert given is not None
     for index, support in enumerate(given.support):
@@ -62,7 +62,7 @@ def check_places(case: Case, mesh: Mesh) -> None:
 
 
 def attach_all(case: Case, mesh: Mesh, free: Matrices) -> Matrices:
-    """The free housing's matrices with supports, mounts, joints and masses of a case on it.
+    """Add the supports, mounts, joints and masses of a case to the free housing's matrices.
 
     Raises
     ------

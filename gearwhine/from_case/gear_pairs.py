@@ -20,7 +20,7 @@ _DIFFERS = 0.1
 
 
 def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair, ...]:
-    """Every gear pair of the case.
+    """Solve every gear pair of the case.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair
 
 
 def build_pair(given: GivenPair, number: int = 0) -> GearPair:
-    """A gear pair of the case as the gear room's; ``number`` is its place in the list, for messages."""
+    """Build a gear pair of the case for `coupling.gears`; ``number`` is its place in the list, for messages."""
     stiffness: StiffnessModel | str = given.stiffness.model
     if given.stiffness.file is not None:
         position, values = _table(given.stiffness.file, f"gear_pair[{number}].stiffness.file")
@@ -67,7 +67,7 @@ def build_pair(given: GivenPair, number: int = 0) -> GearPair:
 
 
 def backlash_warnings(pair: GivenPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
-    """A warning where the given backlash is not the one that thicknesses and distance of the shafts say."""
+    """Warn where the given backlash differs from that of the tooth thicknesses and the shafts' centre distance."""
     made = geometry.designed_backlash
     if pair.backlash is None or made is None:
         return []
@@ -87,7 +87,7 @@ def pair_geometries(case: Case) -> tuple[GearPairGeometry, ...]:
 
 
 def pair_geometry(case: Case, pair: GivenPair) -> GearPairGeometry:
-    """The two gears at the distance of their shafts, or without backlash where there are no shafts."""
+    """Return the pair's geometry at the centre distance of its shafts, or without backlash where shafts are missing."""
     driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
     distance = pair.centre_distance
     if driver.rotor is not None and driven.rotor is not None:

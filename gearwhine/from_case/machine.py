@@ -48,7 +48,7 @@ class ReducedHousing:
 
     Attributes
     ----------
-    component : coupling.HousingComponent
+    component : HousingComponent
     frequencies_hz : ndarray, shape (n_modes,)
         Natural frequencies of its modes [Hz].
     trusted_limit_hz : float
@@ -56,7 +56,7 @@ class ReducedHousing:
     warnings : tuple of dict
         Warnings about the housing, as in the documents.
     sensors : mapping of str to SensorPlace
-    coarser : coupling.HousingComponent or None
+    coarser : HousingComponent or None
         The component with fewer residual modes; the difference estimates the truncation error.
     """
 
@@ -91,7 +91,7 @@ def build_machine(
 ) -> CoupledMachine:
     """Assemble the machine of a case at its operating speed.
 
-    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are kept.
+    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def require_machine(case: Case) -> None:
 
 
 def describe_machine(case: Case, housing: HousingComponent | None = None, *, grounded: bool = False) -> Machine:
-    """The shafts, gears, bearings and gear pairs of a case as the library's description of a machine.
+    """Build the library's description of a machine: the shafts, gears, bearings and gear pairs of a case.
 
     ``grounded`` puts every bearing on the ground: the machine is looked at before its housing is solved.
 
@@ -164,7 +164,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
 
 
 def _shaft(case: Case, given: Rotor) -> Shaft:
-    limit, count = _kept(case, given.name)
+    limit, count = _retained_modes(case, given.name)
     return Shaft(
         given.build(case.material),
         given.axis,
@@ -198,7 +198,7 @@ def solve_machine(
     return housing, pairs, build_machine(case, housing, pairs, progress)
 
 
-def _kept(case: Case, rotor: str) -> tuple[float | None, int | None]:
+def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
     """Retained modes of a rotor: a frequency limit [rad/s], or a number of each kind."""
     given = case.rotor_named(rotor)
     if given.modes is not None:
@@ -222,7 +222,7 @@ def basis_error(
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
 ) -> BasisError | None:
-    """The machine beside one with less of what the housing's limit leaves out and with more modes of its shafts.
+    """Estimate the modal truncation error: compare with a machine of other residual attachments and more shaft modes.
 
     None where there is no housing, and so no sensor.
     """
@@ -238,7 +238,7 @@ def basis_error(
 def _housing_components(
     case: Case, solved: SolvedHousing, progress: Progress
 ) -> tuple[HousingComponent, HousingComponent | None]:
-    """The housing with all its attachments, and with those of one order of response less."""
+    """Return the housing with all its attachments, and with those of one order of response less."""
     assert case.operation is not None
     participation = None
     if case.operation.base is not None or case.operation.gravity is not None:

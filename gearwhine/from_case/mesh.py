@@ -1,7 +1,4 @@
-"""Housing mesh of a case, from a box, a CAD file or a mesh file, with a surface for each seat.
-
-Material regions of a case's mesh: the material of each element.
-"""
+"""Housing mesh of a case, from a box, a CAD file or a mesh file, with bearing seats and each element's material."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -27,7 +24,7 @@ def ignore_warning(warning: str) -> None:
 
 
 def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, order: int = 2) -> Mesh:
-    """The housing's finite-element mesh.
+    """Mesh the housing of a case with finite elements.
 
     Parameters
     ----------
@@ -88,7 +85,7 @@ def _at_fault(key: str, expected: str, *, file: bool = False) -> Iterator[None]:
 
 
 def _with_seats(case: Case, mesh: Mesh) -> Mesh:
-    """The mesh with a surface for each seat: its own of that name, or the bore by centre and diameter.
+    """Return the mesh with a surface for each seat: its own of that name, or the bore by centre and diameter.
 
     Raises
     ------
@@ -111,7 +108,7 @@ def _with_seats(case: Case, mesh: Mesh) -> Mesh:
 
 
 def cover_joints(case: Case) -> list[Joint]:
-    """The bolts of a box's cover, each tying its two patches."""
+    """Return the bolts of a box's cover, each a joint of its two patches."""
     given = case.housing
     if given is None or given.box is None or given.box.cover is None or given.box.cover.bolts is None:
         return []
@@ -122,7 +119,7 @@ def cover_joints(case: Case) -> list[Joint]:
 
 
 def material_of(case: Case, name: str) -> Material:
-    """A material of the case, for a solid.
+    """Return a material of the case, for a solid.
 
     Raises
     ------
@@ -138,7 +135,7 @@ def material_of(case: Case, name: str) -> Material:
 
 
 def bores_along_axes(mesh: Mesh) -> list[tuple[str, CylindricalBore]]:
-    """The bores along each axis that a mesh has: those along z, where shafts are, then others, the widest first."""
+    """Return the mesh's bores along each axis: first along z, where shafts are, then others, the widest first."""
     return [
         (axis, bore)
         for axis, direction in zip("zxy", np.eye(3)[[2, 0, 1]], strict=True)
@@ -147,7 +144,7 @@ def bores_along_axes(mesh: Mesh) -> list[tuple[str, CylindricalBore]]:
 
 
 def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, Material, dict[str, Material]]:
-    """The mesh with the case's regions as its volumes, the material of the rest, and that of each region.
+    """Return the mesh with the case's regions as volumes, the material of the rest, and that of each region.
 
     Raises
     ------

@@ -73,7 +73,7 @@ def _wave(case: Case, limit_hz: float) -> WaveCarrier:
 
 
 @dataclass(frozen=True)
-class ForeseenMesh:
+class MeshPreview:
     """Mesh of a case's housing as far as it is known before anything is solved.
 
     Attributes
@@ -94,8 +94,8 @@ class ForeseenMesh:
     mesh: Mesh | None = None
 
 
-def preview_mesh(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh, list[dict[str, Any]]]:
-    """Size of the mesh and warnings about it, before anything is solved.
+def preview_mesh(case: Case, progress: Progress = silent) -> tuple[MeshPreview, list[dict[str, Any]]]:
+    """Preview the mesh: its size and warnings about it, before anything is solved.
 
     A CAD or mesh file is read and checked whole; for a box the element size is compared with the shortest wave.
 
@@ -107,9 +107,9 @@ def preview_mesh(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh,
     given = case.housing
     assert given is not None
     if given.box is not None:
-        load = _foresee_load(expected_elements(wall_volume(given.box), given.box.mesh_size))
-        foreseen = ForeseenMesh(np.array(given.box.size), given.box.mesh_size, bolts=cover_joints(case))
-        return foreseen, _foresee_size(case, given.box) + load
+        load = _preview_load(expected_elements(wall_volume(given.box), given.box.mesh_size))
+        preview = MeshPreview(np.array(given.box.size), given.box.mesh_size, bolts=cover_joints(case))
+        return preview, _preview_size(case, given.box) + load
     remarks: list[str] = []
     progress("meshing the drawing" if given.mesh is None else "reading the mesh")
     mesh = build_mesh(case, remarks.append, order=1)
@@ -117,13 +117,13 @@ def preview_mesh(case: Case, progress: Progress = silent) -> tuple[ForeseenMesh,
     with noted_on_failure(warnings):
         materials_of(case, mesh)
         check_places(case, mesh)
-    foreseen = ForeseenMesh(np.ptp(mesh.bounds, axis=0), None if given.cad is None else given.cad.mesh_size, mesh=mesh)
+    preview = MeshPreview(np.ptp(mesh.bounds, axis=0), None if given.cad is None else given.cad.mesh_size, mesh=mesh)
     if given.cad is not None:
-        return foreseen, warnings + _foresee_load(mesh.n_elements)
-    return foreseen, warnings + resolution_warnings(case, mesh, given.frequency_limit)
+        return preview, warnings + _preview_load(mesh.n_elements)
+    return preview, warnings + resolution_warnings(case, mesh, given.frequency_limit)
 
 
-def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
+def _preview_size(case: Case, box: Box) -> list[dict[str, Any]]:
     assert case.housing is not None
     limit = case.housing.frequency_limit
     if limit is None:
@@ -141,7 +141,7 @@ def _foresee_size(case: Case, box: Box) -> list[dict[str, Any]]:
     return [warning("size", message)]
 
 
-def _foresee_load(elements: float) -> list[dict[str, Any]]:
+def _preview_load(elements: float) -> list[dict[str, Any]]:
     """Warning about a mesh too large for most computers."""
     unknowns = _UNKNOWNS_EACH * elements
     if unknowns < _MANY_UNKNOWNS:

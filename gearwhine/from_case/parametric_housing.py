@@ -1,6 +1,6 @@
 """Parametric housing: modes at any values of the fitted parameters, and surrogates about solved ones.
 
-Parameters of a case's `[update]`: the numbers of the case that each one sets, and their values.
+The parameters of a case's `[update]` are numbers of the case; each sets one or more places in it.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -58,7 +58,7 @@ class FittedNumber:
         return 1.0 if self.given.factor else self.own[0]
 
     def as_written(self, value: float) -> float:
-        """A value as the updated case has it: five digits in the unit of its range."""
+        """Return a value as the updated case has it: five digits in the unit of its range."""
         unit = unit_in_si(self.given)
         return float(f"{value / unit:.5g}") * unit
 
@@ -83,7 +83,7 @@ class FittedCase:
     numbers: tuple[FittedNumber, ...]
 
     def at(self, values: Sequence[float]) -> Case:
-        """The case with these values in place.
+        """Return the case with these values in place.
 
         Raises
         ------
@@ -93,7 +93,7 @@ class FittedCase:
         return parse_case(self.document_at(values), source="update")
 
     def document_at(self, values: Sequence[float]) -> dict[str, Any]:
-        """The same as tables and lists."""
+        """Return the document of the case with these values, as tables and lists."""
         document = self.document
         for number, value in zip(self.numbers, values, strict=True):
             for place, entry in number.entries(value):
@@ -102,7 +102,7 @@ class FittedCase:
 
 
 def fitted_case(case: Case, mesh_size: float | None = None) -> FittedCase:
-    """The parameters of a case, with elements of another size if wanted [m].
+    """Return the case with its fitted parameters, with elements of another size if wanted [m].
 
     Raises
     ------
@@ -221,11 +221,11 @@ class ParametricHousing:
 
     @property
     def start(self) -> FloatArray:
-        """z of the case as it stands."""
+        """Coordinates z of the case as it stands."""
         return np.array([number.parameter.coordinate(number.start) for number in self.case.numbers])
 
     def case_at(self, coordinates: FloatArray) -> Case:
-        """The case at coordinates."""
+        """Return the case at coordinates."""
         values = values_at(self.parameters, coordinates).tolist()
         if self.as_written:
             values = [number.as_written(value) for number, value in zip(self.case.numbers, values, strict=True)]
@@ -252,7 +252,7 @@ class ParametricHousing:
             raise HousingError(str(error)) from error
 
     def _solved(self, coordinates: FloatArray, case: Case, mesh: Mesh) -> "HousingAtParameters":
-        """The case on a mesh of its housing."""
+        """Solve the modes of the case on a mesh of its housing."""
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, assemble(parted, material, materials, threads=self.threads))
         solved = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
@@ -302,7 +302,7 @@ class HousingAtParameters:
         return self._surrogate if self.known is None else self.known
 
     def light(self) -> "HousingAtParameters":
-        """The same with its neighbourhood and without its shapes, a twentieth of the size, for another process."""
+        """Return a copy for another process, with its neighbourhood and without its shapes: a twentieth of the size."""
         return replace(self, shapes=None, known=self.surrogate())
 
     @cached_property
@@ -314,7 +314,7 @@ class HousingAtParameters:
         return Surrogate.about(self.coordinates, self.state, rates)
 
     def rates(self) -> list[ModelSensitivity]:
-        """Derivatives of the model by each coordinate, by central differences of quantities linear in small steps."""
+        """Differentiate the model by each coordinate: central differences of quantities linear in small steps."""
         return [self._rate(number) for number in range(len(self.coordinates))]
 
     def _rate(self, number: int) -> ModelSensitivity:
@@ -386,7 +386,7 @@ def _geometry(case: Case) -> BoxGeometry | None:
 
 
 def _followed(near: HousingAtParameters, case: Case) -> Mesh | None:
-    """The neighbour's mesh, moved to a case's geometry; None where it cannot or should not be."""
+    """Return the neighbour's mesh, moved to a case's geometry; None where it cannot or should not be."""
     geometry, before = _geometry(case), _geometry(near.case)
     if geometry is None or geometry == before:
         return near.mesh

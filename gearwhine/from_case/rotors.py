@@ -1,6 +1,6 @@
-"""Bearings of a case as library objects; rolling bearings are linearised about their equilibrium under load.
+"""Rotors, gears and bearings of a case as library objects, with the materials that their entries name.
 
-Rotors and gears of a case as library objects, with the materials that their entries name.
+Rolling bearings are linearised about their equilibrium under load.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ from rotors import rolling_bearings as rolling
 
 
 def build_gear(case: Case, given: GivenGear) -> Gear:
-    """A gear of the case; see :meth:`gearwhine.case.Gear.build`."""
+    """Build a gear of the case; see :meth:`gearwhine.case.Gear.build`."""
     return given.build(case.material_of_gear(given))
 
 
@@ -29,7 +29,7 @@ def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
 
 
 def build_rotor(case: Case, given: GivenRotor) -> Rotor:
-    """A rotor of the case, its gears on it as discs."""
+    """Build a rotor of the case, its gears on it as discs."""
     bare = given.build(case.material)
     discs = list(bare.discs)
     for gear in case.gear:
@@ -44,7 +44,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:
-    """The bearings of one rotor, in the order of the file; first those of the rotor's own file.
+    """Build the bearings of one rotor, in the order of the file; first those of the rotor's own file.
 
     A bearing of the case takes the place of one of the same name in the rotor's file.
 
@@ -60,7 +60,7 @@ def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:
 
 
 def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
-    """A bearing's equilibrium under its load, with the shaft in line with its seat; None where it does not roll.
+    """Solve a bearing's equilibrium under its load, its shaft in line with its seat; None for other bearings.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
 
 
 def bearing_law(case: Case, index: int) -> BearingLaw | None:
-    """The law by which a bearing moves where that is not the linear one of its stiffness.
+    """Return the force law of a bearing whose force is not linear in its stiffness; None for a linear one.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def bearing_law(case: Case, index: int) -> BearingLaw | None:
 
 
 def rolling_states(case: Case, rotor: str) -> dict[str, rolling.RollingState]:
-    """The equilibria of one rotor's rolling bearings, by their names.
+    """Solve the equilibria of one rotor's rolling bearings, by their names.
 
     Raises
     ------

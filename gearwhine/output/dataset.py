@@ -59,7 +59,7 @@ class LabelledArrays:
             stream.append_to(path)
 
     def dataset(self) -> xr.Dataset:
-        """The same as an xarray dataset."""
+        """Return the arrays as an xarray dataset."""
         import xarray as xr
 
         variables = dict(self.variables)
@@ -93,7 +93,7 @@ def file_attributes(case: Case) -> dict[str, str]:
 
 
 def arrays_of(fields: Iterable[Field], solved: Any) -> Variables:
-    """The declared quantities of a solved object that have a name in the file, with their labels."""
+    """Return those declared quantities of a solved object that have a name in the file, with their labels."""
     found: Variables = {}
     _add_fields(fields, [solved], (), found)
     return found

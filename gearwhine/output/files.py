@@ -1,8 +1,7 @@
-"""Files that appear whole or not at all.
+"""Files of a results folder: files that appear whole or not at all, locks, content digests, JSON.
 
-Locks on folders, for runs that share a results folder.
-
-Content digests: files by their content, libraries by version, own code by its text.
+Locks on folders serve runs that share a results folder. Digests take files by their content, libraries by version, own
+code by its text.
 """
 
 import errno
@@ -85,7 +84,7 @@ def file_contents(table: Any) -> dict[str, Any]:
 
 
 def with_contents(value: Any, files: Mapping[str, Any]) -> Any:
-    """The same table with each file's content in place of its name."""
+    """Return the table with each file's content in place of its name."""
     if isinstance(value, Mapping):
         return {key: with_contents(inner, files) for key, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -94,7 +93,7 @@ def with_contents(value: Any, files: Mapping[str, Any]) -> Any:
 
 
 def texts_in(value: Any) -> set[str]:
-    """Every text in a table, however deep: the names of its materials are among them."""
+    """Return every text in a table, however deep: the names of its materials are among them."""
     if isinstance(value, str):
         return {value}
     return set().union(*(texts_in(inner) for inner in _inner(value)))
@@ -102,7 +101,7 @@ def texts_in(value: Any) -> set[str]:
 
 @cache
 def installed(library: str) -> str | None:
-    """The version of a library; None where it is not there."""
+    """Return the version of a library; None where it is not installed."""
     try:
         return version(library)
     except PackageNotFoundError:
@@ -156,7 +155,7 @@ _LONGEST = 60  # of a name in a file's [characters]
 
 @contextmanager
 def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -> Iterator[Path]:
-    """A folder inside the output folder whose files move out to it, one by one and whole, at the end.
+    """Stage files in a folder inside the output folder: they move out to it, one by one and whole, at the end.
 
     Where the work fails or is interrupted, the output folder keeps what it had. What a killed run left behind is
     cleared away first; what a living one is still at is left alone, and two runs move their files one after the other.
@@ -197,7 +196,7 @@ def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -
 
 
 def read_summary(folder: Path) -> Mapping[str, Any] | None:
-    """The summary of a command's results in a folder; None where there is none, or what is there is no such thing."""
+    """Read the summary of a command's results in a folder; None where there is none that can be read."""
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -233,12 +232,12 @@ def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """A document as JSON, refusing values that JSON has no word for."""
+    """Return a document as JSON, refusing values that JSON has no word for."""
     return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def finite(value: Any) -> Any:
-    """The same document with infinities and NaN as null, since JSON knows neither."""
+    """Return the document with infinities and NaN as null, since JSON knows neither."""
     if isinstance(value, Mapping):
         return {key: finite(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
@@ -249,7 +248,7 @@ def finite(value: Any) -> Any:
 
 
 def file_stems(names: Sequence[str], prefix: str = "") -> list[str]:
-    """A file's stem for each name, after a prefix: of letters that any file system takes, and no two alike."""
+    """Return a file stem for each name, after a prefix: of letters that any file system takes, and no two alike."""
     stems: list[str] = []
     for number, name in enumerate(names, start=1):
         plain = re.sub(r"[^A-Za-z0-9._+-]+", "-", name).strip("-.")[:_LONGEST]

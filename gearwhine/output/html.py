@@ -23,7 +23,7 @@ h1 { font-size: 1.5rem; margin-bottom: 0; }
 h2 { font-size: 1.3rem; margin: 2.6rem 0 .4rem; border-bottom: 2px solid #202428; }
 h3 { font-size: 1.1rem; margin-top: 1.8rem; border-bottom: 1px solid #e4e7ea; }
 h4 { font-size: 1rem; margin: 1.2rem 0 .2rem; }
-p { margin: .4rem 0; } .note { color: #6a7178; } .doubt { color: #a33; }
+p { margin: .4rem 0; } .note { color: #6a7178; } .warning { color: #a33; }
 table { border-collapse: collapse; margin: .8rem 0; }
 caption { text-align: left; color: #6a7178; padding: .2rem 0; }
 th, td { padding: .15rem .7rem; text-align: right; border-bottom: 1px solid #e4e7ea; }
@@ -38,7 +38,7 @@ Chapters = Callable[[Document], Iterable[Section]]
 
 
 def report_page(folder: Path, chapters: Chapters, case: Case | None = None) -> str:
-    """All results in a folder as HTML, the newest first, each with when it was made and whether it fits the case.
+    """Return all results in a folder as HTML, the newest first, each with its time and whether it fits the case.
 
     Parameters
     ----------
@@ -85,14 +85,14 @@ def _result(place: Path, document: Mapping[str, Any], present: Mapping[str, Any]
 
 
 def _origin(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> str:
-    """Which command made a result and when, and what of its case or input files is different now."""
+    """Return a result's command and time, and the differences of its case and input files from those of now."""
     command = document.get("command")
     heading = f"gearwhine {command}" if isinstance(command, str) else "Results"
     sentences = [f"Made {_moment(document.get('made_at'))}."] if document.get("made_at") else []
-    for doubt in (*_differences(_case_of(place), present), *_changed_files(document.get("input_files"))):
-        sentences.append(f"Does not fit the case any more: {doubt}.")
+    for mismatch in (*_differences(_case_of(place), present), *_changed_files(document.get("input_files"))):
+        sentences.append(f"Does not fit the case any more: {mismatch}.")
     told = "".join(
-        f'<p class="{"doubt" if sentence.startswith("Does not") else "note"}">{escape(sentence)}</p>\n'
+        f'<p class="{"warning" if sentence.startswith("Does not") else "note"}">{escape(sentence)}</p>\n'
         for sentence in sentences
     )
     return f"<h2>{escape(heading)}</h2>\n{told}"
@@ -161,7 +161,7 @@ def _results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
 
 
 def _case_of(place: Path) -> Mapping[str, Any] | None:
-    """The resolved case beside a result; None where it cannot be read."""
+    """Return the resolved case beside a result; None where it cannot be read."""
     try:
         return tomllib.loads((place / "case.toml").read_text(encoding="utf-8"))
     except (OSError, ValueError):

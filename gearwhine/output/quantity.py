@@ -135,7 +135,7 @@ Fields = tuple[Field, ...]
 
 
 def document_of(fields: Iterable[Field], solved: Any) -> dict[str, Any]:
-    """The declared quantities of a solved object as a document for JSON, keys in the order of the declaration."""
+    """Return the declared quantities of a solved object as a document for JSON, keys in the order of declaration."""
     document: dict[str, Any] = {}
     for field in fields:
         if isinstance(field, Quantity) and not field.key:
@@ -157,7 +157,7 @@ def _entry(field: Field, found: Any) -> Any:
 
 
 def plain(value: Any) -> Any:
-    """A value in JSON's own types."""
+    """Return a value in JSON's own types."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, np.generic):

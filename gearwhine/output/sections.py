@@ -40,7 +40,7 @@ class Column:
     scale: float = 1.0
 
     def text(self, row: Row) -> str:
-        """The cell of a row; empty where there is no value."""
+        """Return the cell of a row; empty where there is no value."""
         if not isinstance(self.of, str):
             return self.of(row)
         value: Any = row
@@ -64,10 +64,10 @@ class Table:
     caption: str = ""
 
     def filled(self) -> tuple[tuple[Column, ...], list[list[str]]]:
-        """The columns that hold something, and the text of each row in them."""
+        """Return the columns that hold a value in any row, and the text of each row in them."""
         texts = {column: [column.text(row) for row in self.rows] for column in self.columns}
-        kept = tuple(column for column in self.columns if any(text != NOTHING for text in texts[column]))
-        return kept, [[texts[column][number] for column in kept] for number in range(len(self.rows))]
+        filled = tuple(column for column in self.columns if any(text != NOTHING for text in texts[column]))
+        return filled, [[texts[column][number] for column in filled] for number in range(len(self.rows))]
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Section:
 
 
 def columns_of(fields: Iterable[object]) -> tuple[Column, ...]:
-    """The columns of declared quantities that have a heading."""
+    """Return the columns of declared quantities that have a heading."""
     return tuple(
         Column(one.heading, (one.shown if callable(one.shown) else one.key), _form(one), one.scale)
         for one in fields
@@ -114,17 +114,17 @@ def columns_of(fields: Iterable[object]) -> tuple[Column, ...]:
 
 
 def table_of(columns: tuple[Column, ...], rows: Sequence[Row], caption: str = "") -> tuple[Table, ...]:
-    """A table, or none where there are no rows."""
+    """Return a table, or none where there are no rows."""
     return (Table(columns, tuple(rows), caption),) if rows else ()
 
 
 def counted(number: int, what: str) -> str:
-    """A number of things, such as ``1 mode`` and ``2 modes``."""
+    """Return a number of things in words, such as ``1 mode`` and ``2 modes``."""
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def percent(part: float) -> str:
-    """A part of the whole that is never shown as nothing where there is some."""
+    """Return a part of the whole in per cent, shown as zero only where it is zero."""
     return "less than 0.01 %" if 0.0 < part < 1e-4 else f"{100 * part:.3g} %"
 
 

@@ -43,15 +43,15 @@ def store_results(
     command
         One of `gearwhine.output.COMMANDS`.
     document
-        What is printed and kept as the summary; it gains the command, the time, the input files and the files written.
+        Printed, and stored as the summary; it gains the command, the time, the input files and the files written.
     case
-        Kept as it is resolved.
+        Stored as it is resolved.
     folder
         The output folder.
     write
         Writes the command's own files into a folder.
     housing
-        Whose modes are kept.
+        Whose modes are stored.
     """
 
     def settle(place: Path) -> Path | None:
@@ -78,14 +78,14 @@ def store_results(
 
 
 def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
-    """The results that a folder holds: the place of each, relative to the folder, and its document; newest first."""
+    """Return the results in a folder, newest first: the relative place of each, and its document."""
     places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
     found = [(own, summary) for own in places if (summary := read_summary(folder / own)) is not None]
     return sorted(found, key=lambda one: str(one[1].get("made_at", "")), reverse=True)
 
 
 def _place_of(folder: Path, command: str) -> Path:
-    """Where a command's results go, relative to the folder, which is made ready for them."""
+    """Return the place of a command's results relative to the folder, which is made ready for them."""
     if not (folder / SUMMARY).exists():
         return Path()
     owner = (read_summary(folder) or {}).get("command")

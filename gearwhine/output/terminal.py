@@ -15,7 +15,7 @@ _WIDTH = 120
 
 
 def open_console() -> Console:
-    """Standard output, as wide as the terminal."""
+    """Return a console for standard output, as wide as the terminal."""
     # Without markup a bracket is a bracket: units and the names in a case are printed as they stand.
     console = Console(highlight=False, markup=False, emoji=False)
     if console.is_terminal:
@@ -27,7 +27,7 @@ def open_console() -> Console:
 def shown_by(
     sections: Callable[[Document], Iterable[Section]], *, timed: bool = False
 ) -> Callable[[dict[str, Any]], None]:
-    """Command's way to show its document: by the sections made of it, and the time where it is worth a line."""
+    """Return a command's way to show its document: by its sections, and the time where it is worth a line."""
     return lambda document: show(document, sections(document), timed=timed)
 
 
@@ -66,7 +66,7 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
 
 
 def show_written(console: Console, document: Document) -> None:
-    """The files written; a mode file that was only read is not among them."""
+    """Show the files written; a mode file that was only read is not among them."""
     read = document["modes_read_from"].rpartition("/")[2] if document.get("reused") else None
     written = [name for name in document.get("files", ()) if name != read]
     if written:
@@ -74,7 +74,7 @@ def show_written(console: Console, document: Document) -> None:
 
 
 def show_origin(console: Console, document: Document) -> None:
-    """Where modes were read from in place of being solved for."""
+    """Show the file that modes were read from in place of being solved for."""
     if document.get("reused"):
         console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
 

@@ -1,4 +1,4 @@
-"""Warnings of a command: results that are formally right and physically doubtful.
+"""Warnings of a command: results that are formally right and physically questionable.
 
 Every document has a list ``warnings`` of entries with a ``name``, a ``message`` and the figures that belong to it. The
 command prints the messages on standard error, the report shows them first.
@@ -27,7 +27,7 @@ def add_warnings(document: Document, found: Iterable[Mapping[str, Any]] = ()) ->
 
 
 def joined(*documents: Mapping[str, Any]) -> Document:
-    """Merge documents: the keys of later ones win, the warnings of all are kept."""
+    """Merge documents: the keys of later ones win, the warnings of all are joined."""
     whole: Document = {}
     for document in documents:
         found = document.get("warnings", ())

@@ -9,7 +9,7 @@ from gearwhine.results import steady_state as steady
 
 
 def chapters_of(document: Document) -> tuple[Section, ...]:
-    """The chapters of a command's document, those without anything left out."""
+    """Return the chapters of a command's document, leaving out empty ones."""
     modes = document.get("housing", document if "certificate" in document and "mesh" in document else {})
     makers: tuple[tuple[Callable[[Document], Section], Any], ...] = (
         (housing.report, modes),

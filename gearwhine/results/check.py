@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def _given(key: str, of: Any) -> Quantity:
-    """A quantity whose key is left out where there is none."""
+    """Declare a quantity whose key is left out where there is none."""
 
     def taken(one: Any) -> Any:
         found = of(one)
@@ -32,7 +32,7 @@ def _given(key: str, of: Any) -> Quantity:
 
 
 def _part(key: str, of: Any, fields: Any) -> Part:
-    """A part whose key is left out where there is none."""
+    """Declare a part whose key is left out where there is none."""
 
     def taken(one: Any) -> Any:
         found = of(one)
@@ -56,14 +56,14 @@ def _bushing(given: "Mount | Joint") -> dict[str, Any]:
 
 
 def _joint(joint: "Joint") -> dict[str, Any]:
-    """A joint with what it connects."""
+    """Return a joint with the surfaces that it connects."""
     if joint.surfaces is not None:
         return _bushing(joint) | {"surfaces": joint.surfaces}
     return _bushing(joint) | {"diameter_m": joint.diameter, "center_m": joint.center}
 
 
 def _bolt(joint: "BuiltJoint") -> dict[str, Any]:
-    """A bolt of a box's cover with its springs."""
+    """Return a bolt of a box's cover with its springs."""
     shear, _, axial, tilting, _, torsional = joint.bushing.stiffness
     return {
         "name": joint.name,
@@ -78,7 +78,7 @@ def _names(key: str, table: str) -> Quantity:
 
 
 def _of_mesh(key: str, of: Any) -> Quantity:
-    """A quantity of the mesh of a file."""
+    """Declare a quantity of the mesh of a file."""
     return _given(key, lambda checked: None if checked.mesh.mesh is None else of(checked.mesh.mesh))
 
 
@@ -303,7 +303,7 @@ CHECK = (
 
 
 def _bearings(case: Case) -> list[dict[str, Any]]:
-    """Every bearing and where it stands, those of the rotors' own files on the ground."""
+    """Return every bearing as a document; those of the rotors' own files are on the ground."""
     own = {(bearing.rotor, bearing.name) for bearing in case.bearing}
     return [document_of(BEARING, bearing) for bearing in case.bearing] + [
         {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}
@@ -319,7 +319,7 @@ def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
 
 
 def measured_document(case: Case) -> dict[str, Any]:
-    """What a case says was measured, before anything is solved."""
+    """Return the measured modes of a case, before anything is solved."""
     return document_of(MEASURED, case.measured)
 
 
@@ -327,7 +327,7 @@ _WIDTH = 12  # of the column with the names of parts
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The parts of a case in words, a part's name before its first line."""
+    """Return the parts of a case in words, a part's name before its first line."""
     return tuple(
         Section(part, tuple(f"{'':{_WIDTH - 2}}{line}" for line in lines), note=f"{'':{_WIDTH - len(part)}}{first}")
         for part, (first, *lines) in _parts(document)
@@ -368,7 +368,7 @@ def _operation_lines(operation: Document) -> Iterator[str]:
 
 
 def _measured_lines(given: Document) -> list[str]:
-    """The measured modes; of a file also what was read from it."""
+    """Return lines on the measured modes; for a file also on the content that was read."""
     lines = []
     if "frequencies_hz" in given:
         lines.append(", ".join(f"{one:.6g}" for one in given["frequencies_hz"]) + " Hz")
@@ -479,7 +479,7 @@ def _pair_lines(pair: Document) -> list[str]:
 
 
 def _contact_ratios(pair: Document) -> str:
-    """The contact ratio; of helical gears with the overlap."""
+    """Return the contact ratio; of helical gears with the overlap."""
     text = f"contact ratio {pair['contact_ratio']:.5f}"
     if pair["overlap_ratio"] == 0.0:
         return text
@@ -487,7 +487,7 @@ def _contact_ratios(pair: Document) -> str:
 
 
 def _tooth_line(gear: Document) -> str:
-    """A gear's circles, and the span over its teeth."""
+    """Return a gear's circles, and the span over its teeth."""
     angle = math.degrees(gear["helix_angle_rad"])
     helix = f", helix {abs(angle):.6g}° {'right' if angle > 0.0 else 'left'}" if angle else ""
     circles = ", ".join(f"{name} {1e3 * gear['diameters_m'][name]:.6g}" for name in ("tip", "form", "root"))
@@ -498,6 +498,6 @@ def _tooth_line(gear: Document) -> str:
 
 
 def _backlash(backlash: dict[str, float]) -> str:
-    """The backlash by centre distance and thickness, where there is any that could be measured."""
+    """Return the backlash by centre distance and thickness, where there is any that could be measured."""
     clearance = 1e3 * backlash["circumferential"]
     return "" if abs(clearance) < 1e-6 else f", backlash of the teeth {clearance:.4g} mm"

@@ -206,7 +206,7 @@ RESPONSES = (
 
 
 def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> dict[str, Any]:
-    """The comparison as the command's JSON."""
+    """Return the comparison as the command's JSON."""
     shapes = comparison.shapes
     last = comparison.pairs[-1].measured if shapes is None else float(shapes.measured_frequencies[-1])
     # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
@@ -216,12 +216,12 @@ def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> di
 
 
 def survey_document(survey: "MappedSurvey") -> dict[str, Any]:
-    """How a survey lies on the model, as the command's JSON."""
+    """Return the fit of a survey to the model, as the command's JSON."""
     return document_of(SURVEY, survey)
 
 
 def responses_document(likeness: "ResponseCorrelation | str") -> dict[str, Any]:
-    """The likeness of responses as the command's JSON, or why there is none."""
+    """Return the correlation of the responses as the command's JSON, or the reason why there is none."""
     return {"missing_because": likeness} if isinstance(likeness, str) else document_of(RESPONSES, likeness)
 
 
@@ -257,7 +257,7 @@ _PAIRS = (
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The pairs, how clear the pairing is, and how the measured survey lies on the model."""
+    """Return the pairs, how clear the pairing is, and how the measured survey lies on the model."""
     told = _by_shapes(document) if "auto_mac_off_diagonal" in document else _by_dominance(document)
     survey = _survey(document["survey"]) if "survey" in document else ()
     return (Section("", (*table_of(_PAIRS, document["pairs"]), *told, *survey)),)
@@ -279,7 +279,7 @@ def _by_dominance(document: Document) -> Iterator[str]:
 
 
 def _by_shapes(document: Document) -> Iterator[str]:
-    """What is missing, double, close or alike, and whether the survey serves."""
+    """Yield lines on missing, double, close and similar modes, and on the quality of the survey."""
     count = document["model_modes"]
     held = counted(count["count"], "model mode")
     if document["pairs"]:
@@ -345,7 +345,7 @@ def _responses(responses: Document) -> Iterator[str]:
 
 
 def _survey(survey: Document) -> Iterator[str]:
-    """How the measured survey lies on the model."""
+    """Yield lines on the alignment of the measured survey with the model."""
     yield (
         f"Survey: {counted(survey['points'], 'point')}, {counted(survey['degrees_of_freedom'], 'measured direction')}; "
         f"{1e3 * survey['rms_distance_m']:.3g} mm from the surface in the mean, "

@@ -1,4 +1,4 @@
-"""What a comparison of modes leaves in the output folder: tables as CSV, and its pictures."""
+"""Comparison files: the tables of a comparison of modes as CSV, and its pictures."""
 
 import csv
 from collections.abc import Iterable, Iterator, Sequence
@@ -27,7 +27,7 @@ def write_comparison(folder: Path, comparison: Comparison, geometry: MeasuredGeo
     Parameters
     ----------
     folder : path
-    comparison : housing.Comparison
+    comparison : Comparison
     geometry : housing.measured.MeasuredGeometry, optional
         Of the survey, which names the degrees of freedom; else they are numbered.
 
@@ -103,7 +103,7 @@ def dof_names(geometry: MeasuredGeometry) -> list[str]:
 
 
 def _pairs(comparison: Comparison) -> tuple[list[str], list[list[object]]]:
-    """The source's Table II with what the pairs rest on: heads and rows."""
+    """Return the source's Table II with the evidence for each pair: heads and rows."""
     heads = ["measured_mode", "measured_hz", "model_hz", "error_percent", "mode", "mac", "confidence", "strength"]
     rows: list[list[object]] = [
         [

@@ -14,7 +14,7 @@ from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls
 from gearwhine.from_case.gear_pairs import backlash_warnings
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
-from gearwhine.results.gear_documents import geometry_warnings
+from gearwhine.results.gear_warnings import geometry_warnings
 
 if TYPE_CHECKING:
     from gearwhine.solve.gear_pairs import PairAnalysis
@@ -121,7 +121,7 @@ def _points(path: PathOfContact) -> list[dict[str, Any]]:
 
 
 def _of_sides(name: str, unit: str, what: str) -> Quantity:
-    """A quantity of the named points on both gears."""
+    """Declare a quantity of the named points on both gears."""
     return Quantity(
         "",
         lambda path: np.array([getattr(path, f"{side}_{name}") for side in ("driver", "driven")]),
@@ -317,7 +317,7 @@ PRESSURE = (
 
 
 def _aim(pair: "PairAnalysis") -> dict[str, Any]:
-    """What the relief is sought for."""
+    """Return the aim of the relief search."""
     given, optimum = pair.given.relief_aim, pair.optimum
     assert optimum is not None
     kind = "peak-to-peak" if given is None else "harmonics" if given.sensor is None else "sensor"
@@ -420,13 +420,13 @@ GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
 
 
 def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
-    """The gear pairs as the command's JSON, with warnings where there are any."""
-    warnings = [doubt for pair in pairs for doubt in _doubts(pair)]
+    """Return the gear pairs as the command's JSON, with warnings where there are any."""
+    warnings = [entry for pair in pairs for entry in _warnings(pair)]
     return document_of(GEARS, pairs) | ({"warnings": warnings} if warnings else {})
 
 
-def _doubts(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
-    """Doubts of the shape and the clearance, and what the mesh at rest does not show, or cannot bear."""
+def _warnings(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
+    """Warn of the teeth's shape, the backlash, a runout that the curves leave out, and an overload."""
     solved, geometry = pair.solved, pair.solved.geometry
     yield from geometry_warnings(geometry)
     yield from backlash_warnings(pair.given, geometry)
@@ -476,7 +476,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _proportions(pair: Document) -> tuple[Table, ...]:
-    """The proportions of both gears, and what a micrometer reads over some of their teeth."""
+    """Return the proportions of both gears, and the span measured over some of their teeth."""
     first = pair["gears"][0]
     title = f"Gears: module {_MM * first['module_m']:.5g} mm, pressure angle {_degrees(first['pressure_angle_rad'])}"
     if helix := first["helix_angle_rad"]:
@@ -487,7 +487,7 @@ def _proportions(pair: Document) -> tuple[Table, ...]:
 
 
 def _path(pair: Document) -> tuple[Table, ...]:
-    """The named points of the path of contact on both gears."""
+    """Return the named points of the path of contact on both gears."""
     columns = [Column("", "point")]
     for side in ("driver", "driven"):
         columns += [
@@ -514,7 +514,7 @@ def _sliding(key: str, point: Document) -> str:
 
 
 def _mesh(pair: Document) -> list[str]:
-    """How the two stand, how often they mesh, how stiff they are and how they err."""
+    """Return lines on centre distance, contact ratio, mesh stiffness and transmission error."""
     ratio = f"Contact ratio {pair['contact_ratio']:.5f}"
     if pair["overlap_ratio"]:
         ratio += f", with the overlap of {pair['overlap_ratio']:.4f} in all {pair['total_contact_ratio']:.4f}"
@@ -568,7 +568,7 @@ def _load(pair: Document) -> list[str]:
 
 
 def _best_relief(pair: Document) -> list[str]:
-    """What the given relief does, which torque it suits best, and what would suit the case's torque."""
+    """Return lines on the given relief's effect, its best torque, and the best relief for the case's torque."""
     best = pair["optimal_tip_relief"]
     if best is None:
         return []
@@ -603,7 +603,7 @@ def _best_relief(pair: Document) -> list[str]:
 
 
 def _aim_in_words(aim: Document) -> str:
-    """What the relief is sought for."""
+    """Return the aim of the relief search in words."""
     if aim["kind"] == "peak-to-peak":
         return "peak-to-peak transmission error"
     if aim["kind"] == "sensor":
@@ -617,7 +617,7 @@ def _value(aim: Document, key: str) -> str:
 
 
 def _given(pair: Document) -> str:
-    """The reliefs of both gears in short, such as ``0.023/0.025 mm from 24°``."""
+    """Return the reliefs of both gears in short, such as ``0.023/0.025 mm from 24°``."""
     reliefs = [gear["tip_relief"] for gear in pair["gears"]]
     amounts = [_MM * relief["amount_m"] if relief else 0.0 for relief in reliefs]
     starts = [math.degrees(relief["start_roll_angle_rad"]) for relief in reliefs if relief]

@@ -146,7 +146,7 @@ ORIGIN = (
 
 
 def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
-    """The housing, where it has residual attachments whose static error is known."""
+    """Return the housing where it has residual attachments of known static error, else None."""
     return None if solved is None or solved.modes.residual_modes is None else solved
 
 
@@ -185,12 +185,12 @@ _SELECTED: Fields = (Part("selection", lambda solved: None if solved.selection i
 
 
 def modes_document(solved: "SolvedHousing", *, detail: bool = False) -> dict[str, Any]:
-    """The modes as the command's JSON; in detail also which of them carry the motion from bearings to sensors."""
+    """Return the modes as the command's JSON; in detail also the modes that carry motion from bearings to sensors."""
     return document_of((*HOUSING, *_SELECTED) if detail else HOUSING, solved)
 
 
 def origin_document(solved: "SolvedHousing | None") -> dict[str, Any]:
-    """Where a housing's modes come from, as every command's JSON says it; nothing without a housing."""
+    """Return the origin of a housing's modes, as every command's JSON has it; nothing without a housing."""
     return {} if solved is None else document_of(ORIGIN, solved)
 
 
@@ -247,7 +247,7 @@ _CHECKS = (
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The modes, the checks of the model that break their bounds, and the static compliance at the bearings."""
+    """Return the modes, the checks of the model that break their bounds, and the static compliance at the bearings."""
     lines = [line for line in document["health"]["lines"] if line["bound"] is not None]
     broken = [line for line in lines if not line["ok"]]
     health: tuple[str | Table, ...] = (
@@ -259,7 +259,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def detailed_sections(document: Document) -> tuple[Section, ...]:
-    """The modes with every check, effective masses, the supports, and the modes that carry the forces."""
+    """Return the modes with every check, effective masses, the supports, and the modes that carry the forces."""
     content: tuple[str | Table, ...] = (
         *_modes_content(document),
         *table_of(_CHECKS, document["health"]["lines"]),
@@ -276,7 +276,7 @@ def _modes_content(document: Document) -> tuple[str | Table, ...]:
 
 
 def modes_sentence(document: Document) -> str:
-    """How many modes, how they are proved, and what they cost."""
+    """Return the number of modes, their proof and their cost in words."""
     certificate, mesh = document["certificate"], document["mesh"]
     return (
         f"Housing: {counted(certificate['found'], 'mode')} below {certificate['limit_hz']:.5g} Hz, the inertia demands "
@@ -291,7 +291,7 @@ def _static_error(document: Document) -> Iterator[str]:
 
 
 def static_error_sentence(error: Document) -> str:
-    """The static compliance at the bearings in words."""
+    """Return the static compliance at the bearings in words."""
     return (
         f"Static compliance at the bearings: the modes alone lack up to {100 * error['without_attachments']:.3g} %; "
         f"with {counted(error['attachments'], 'residual attachment')} {error['with_attachments']:.0e} of it is left."
@@ -332,13 +332,13 @@ def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, .
 
 
 def _selection(selection: Document) -> str:
-    kept = len(selection["keep"])
+    retained = len(selection["keep"])
     modes = ", ".join(str(number) for number in selection["keep"]) or "none"
     low, high = selection["band_hz"]
     return (
         f"From {', '.join(selection['from'])} to {', '.join(selection['to'])}, {low:.4g} to {high:.4g} Hz: "
-        f"{kept} of {len(selection['ranking'])} modes carry the receptance to "
-        f"{100 * selection['error_left'][kept]:.2g} % of its largest: {modes}."
+        f"{retained} of {len(selection['ranking'])} modes carry the receptance to "
+        f"{100 * selection['error_left'][retained]:.2g} % of its largest: {modes}."
     )
 
 

@@ -37,7 +37,7 @@ MESH = (
 
 
 def mesh_document(mesh: Mesh, warnings: Sequence[Document]) -> dict[str, Any]:
-    """The mesh as the command's JSON."""
+    """Return the mesh as the command's JSON."""
     return document_of(MESH, mesh) | {"warnings": list(warnings)}
 
 
@@ -53,7 +53,7 @@ _KINDS = {
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The mesh's size and quality."""
+    """Return the mesh's size and quality in words."""
     return (Section("", tuple(_sentences(document))),)
 
 
@@ -69,12 +69,12 @@ def _sentences(document: Document) -> Iterator[str]:
 
 
 def kinds_of_elements(kinds: Mapping[str, int]) -> str:
-    """How many elements of which kind, in words."""
+    """Return the number of elements of each kind, in words."""
     return " and ".join(f"{count} {_KINDS[kind]}" for kind, count in kinds.items())
 
 
 def bore_line(bore: Document) -> str:
-    """A bore's diameter, axis, place and length."""
+    """Return a bore's diameter, axis, place and length in words."""
     place = ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in bore["center_m"])
     along = "" if bore["axis"] == "z" else f" along {bore['axis']}"
     return f"bore of {1e3 * bore['diameter_m']:.5g} mm{along} at ({place}) mm, {1e3 * bore['length_m']:.4g} mm long"

@@ -1,4 +1,4 @@
-"""Motion of a machine, marched or periodic: the quantities of its gear meshes and the lines of its sensors."""
+"""Motion of a machine, integrated in time or periodic: how its mesh forces and the lines of its sensors are shown."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -45,7 +45,7 @@ LINE_COLUMNS = (
 
 
 def mesh_sentence(pair: Document) -> str:
-    """Forces of a gear mesh in words."""
+    """Return the forces of a gear mesh in words."""
     side = " on its back flanks" if pair.get("flanks") == "back" else ""
     return (
         f"Gear mesh {pair['driver']} → {pair['driven']}{side}: mean force {pair['mean_force_n']:.0f} N, "
@@ -54,7 +54,7 @@ def mesh_sentence(pair: Document) -> str:
 
 
 def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
-    """The highest lines of each sensor, with the housing mode that has most of each."""
+    """Return the highest lines of each sensor, with the housing mode that has most of each."""
     rows: list[dict[str, Any]] = []
     for sensor in sensors:
         for line in sensor.get(key, ())[:_LINES_OF_A_SENSOR]:
@@ -64,7 +64,7 @@ def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
 
 
 def _line(line: Document) -> str:
-    """A sensor's line, such as ``733 (0.58)``; beside it the error that the modal basis may leave, where it counts."""
-    doubt = line.get("uncertainty", 0.0)
-    beside = "" if doubt <= _TOLD else f" ± {100.0 * doubt:.0f} %" if doubt < 1.0 else ", unsure"
+    """Return a sensor's line, such as ``733 (0.58)``, with its modal truncation error where that is large."""
+    error = line.get("uncertainty", 0.0)
+    beside = "" if error <= _TOLD else f" ± {100.0 * error:.0f} %" if error < 1.0 else ", unsure"
     return f"{line['frequency_hz']:.0f} ({line['amplitude_m_per_s2']:.2g}{beside})"

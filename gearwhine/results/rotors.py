@@ -437,7 +437,7 @@ ROTORS = (Rows("rotors", lambda solved: solved, ROTOR, "rotor"),)
 
 
 def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
-    """The rotors as the command's JSON, with warnings."""
+    """Return the rotors as the command's JSON, with warnings."""
     warnings = [
         warning("rotating damping", _ROTATING.format(one.rotor.name), rotor=one.rotor.name)
         for one in solved
@@ -509,7 +509,7 @@ def _at_rest(rotor: Document) -> tuple[Table, ...]:
 
 
 def _with_bearings_at(speed: float | None) -> str:
-    """Which of their tables' speeds bearings are taken at; None: they have no tables."""
+    """Return the speed at which the bearings' coefficients are taken, in words; nothing without tables."""
     return "" if speed is None else f", with the bearings' coefficients at {speed:.6g} rpm"
 
 
@@ -615,7 +615,7 @@ def _undamped(rotor: Document) -> Iterator[str | Table]:
 
 
 def _nearest(rows: Sequence[Document]) -> Iterator[str]:
-    """The critical speed nearest to operation of those that unbalance excites."""
+    """Yield the critical speed nearest to operation of those that unbalance excites."""
     # Circular backward whirl takes no work from unbalance.
     excited = [row for row in rows if row["margin"] is not None and row["way"] >= -1.0 + _PLANAR]
     if excited:
@@ -625,7 +625,7 @@ def _nearest(rows: Sequence[Document]) -> Iterator[str]:
 
 
 def _orders(campbell: Document) -> Iterator[str | Table]:
-    """Where whirl has another multiple of the speed of rotation for its frequency."""
+    """Yield the crossings of whirl frequencies with other multiples of the speed of rotation."""
     rows: list[dict[str, Any]] = []
     for one in campbell["orders"]:
         order = f"{one['order']:g}×"
@@ -641,7 +641,7 @@ def _orders(campbell: Document) -> Iterator[str | Table]:
 
 
 def _weight(static: Document) -> Iterator[str | Table]:
-    """What the bearings carry of the rotor's weight, and how far it sags."""
+    """Yield the bearing reactions to the rotor's weight, and its sag."""
     if static["bearings"] is None:
         yield f"No static deflection: {static['why_not']}"
         return
@@ -673,7 +673,7 @@ _PROBES = (
 
 
 def _torsion(response: Document) -> Iterator[str | Table]:
-    """The largest angle and torque at each probe, and the largest torque of the whole shaft."""
+    """Yield the largest angle and torque at each probe, and the largest torque of the whole shaft."""
     nothing = _ROUNDING * response["largest_torque_n_m"]
     columns = (
         Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm"),
@@ -716,7 +716,7 @@ def _map(found: Document) -> tuple[Table, ...]:
 
 
 def _beside(margin: float) -> str:
-    """How far a critical speed is from operation, which it exceeds by ``margin`` times operation."""
+    """Return the distance of a critical speed from operation, which it exceeds by ``margin`` times operation."""
     if margin > _REACH - 1.0:
         return f"{1.0 + margin:.3g} times"
     return f"{100.0 * abs(margin):.3g} % {'above' if margin > 0.0 else 'below'}"
@@ -731,12 +731,12 @@ def _whirl_name(direction: float, row: Document) -> str:
 
 
 def _with_axial(share: float) -> str:
-    """How much of a lateral motion is along the axis, where it is worth a word."""
+    """Return the axial share of a lateral motion, where it is worth a word."""
     return f", {100.0 * share:.0f} % along the axis" if share >= _PARTLY_AXIAL else ""
 
 
 def _stability(campbell: Document) -> str:
-    """Up to which speed no mode grows."""
+    """Return the speed up to which no mode grows."""
     span = f"{counted(len(campbell['speed_rpm']), 'speed')} from {_span(campbell)}"
     onset = campbell["unstable_from_rpm"]
     return f"Stable at {span}" if onset is None else f"UNSTABLE from {onset:.6g} rpm on, of {span}"

@@ -29,7 +29,7 @@ _HERTZ_LONG = ("Hz", "frequency")
 
 
 def _name(row: Any) -> Any:
-    """What a line is: the row holds the peak, its name and the coupled modes; nothing where it has none."""
+    """Return the name of a line, if any; its row holds the peak, the name and the coupled modes."""
     return row if row[1] is not None else None
 
 
@@ -82,7 +82,7 @@ def _peak(key: str) -> tuple[Quantity, Quantity]:
 
 
 def _sidebands(unit: str) -> tuple[Quantity, ...]:
-    """Of a mesh's shaft and one pair of sidebands."""
+    """Declare the quantities of a mesh's shaft and one pair of sidebands."""
     return (
         Quantity("gear_pair", lambda row: row[0].mesh),
         Quantity("shafts", lambda row: row[0].shafts),
@@ -386,7 +386,7 @@ TRANSIENT: Fields = (
 
 
 def transient_document(solved: "SolvedTransient", signature: "SolvedSignature | None" = None) -> dict[str, Any]:
-    """The transient as the command's JSON; with a signature also the origin of its lines."""
+    """Return the transient as the command's JSON; with a signature also the origin of its lines."""
     return document_of(TRANSIENT, (solved, signature))
 
 
@@ -466,7 +466,7 @@ RUN_SIGNATURE = (
 
 
 def run_signature_document(found: "RunSignature") -> dict[str, Any]:
-    """The orders of a run as the command's JSON: where each of them is highest."""
+    """Return the orders of a run as the command's JSON: where each of them is highest."""
     return document_of(RUN_SIGNATURE, found)
 
 
@@ -539,7 +539,7 @@ _TIME = {"units": "s", "long_name": "time from static equilibrium"}
 
 
 def _recorded(signals: "Signals") -> list[tuple[History, Any]]:
-    """Every history that was recorded, with the values of each of its signals."""
+    """Return every recorded history with the values of each of its signals."""
     found = [(history, history.of(signals.histories)) for history in HISTORY_QUANTITIES]
     found.append((_MODAL, signals.modal.coordinates))
     return [(history, values) for history, values in found if values]
@@ -579,7 +579,7 @@ def report(document: Document) -> Section:
 
 
 def _basis_error(document: Document) -> list[str]:
-    """The error that the modal basis may leave in responses, at worst in each band."""
+    """Return lines on the modal truncation error in responses, the largest in each band."""
     parts = []
     for band in document.get("basis_error", ()):
         worst = max((sensor["largest"] for sensor in band["sensors"]), default=0.0)
@@ -588,7 +588,7 @@ def _basis_error(document: Document) -> list[str]:
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The housing beside what was measured, forces of the meshes, lines of the sensors and their origin, the proof."""
+    """Return the measured comparison, mesh forces, the sensors' lines and their origin, and the proofs."""
     housing = (modes_sentence(document["housing"]),) if "housing" in document else ()
     compared = comparison.sections(document["compare"]) if "compare" in document else ()
     return (Section("", housing), *compared, Section("", tuple(_content(document))))
@@ -633,7 +633,7 @@ _SIGNATURE_COLUMNS = (
 
 
 def _signature_table(document: Document) -> tuple[Table, ...]:
-    """The leading lines, and the housing modes and bearings that they come from."""
+    """Return the leading lines, and the housing modes and bearings that they come from."""
     rows = [
         peak | {"sensor": sensor["name"] if number == 0 else ""}
         for sensor in document.get("sensors", ())

@@ -72,13 +72,13 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
 
 
 def _lines(motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str) -> list[dict[str, Any]]:
-    """The highest lines of all motions together, each with its excitation where that has a name."""
+    """Return the highest lines of all motions together, each with its excitation where that has a name."""
     found = [
         {"frequency_hz": frequency, key: amplitude} | ({"excitation": motion.excitation} if motion.excitation else {})
         for motion, signal in zip(motions, signals, strict=True)
         for frequency, amplitude in motion.lines(signal)
     ]
-    return sorted(found, key=lambda line: -float(line[key]))[: motions[0].told_lines]
+    return sorted(found, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
 
 
 def _multipliers(row: Any) -> Any:
@@ -285,7 +285,7 @@ STEADY = (
 
 
 def steady_document(title: str, solved: "SolvedSteady") -> dict[str, Any]:
-    """The steady state as the command's JSON, with warnings where motions are superposed that should not be."""
+    """Return the steady state as the command's JSON; warn where motions are superposed that should not be."""
     document = {"title": title} | document_of(STEADY, solved)
     if solved.superposed is not None:
         add_warnings(document, solved.superposition_warnings())
@@ -312,7 +312,7 @@ def report(document: Document) -> Section:
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """What repeats, whether it is stable, and the events of a branch."""
+    """Return the periodic motions, their stability, and the events of a branch."""
     return (Section("", tuple(_content(document))),)
 
 
@@ -359,7 +359,7 @@ def _proof(motion: Document, name: str) -> str:
 
 
 def curve_sentences(curve: Document) -> Iterator[str]:
-    """The branch over speed: how far it was followed, the largest forces, what happens along it."""
+    """Yield sentences on the branch over speed: its reach, the largest forces, the events along it."""
     speeds = curve["speed_rpm"]
     unstable = sum(not stable for stable in curve["stable"])
     yield (

@@ -59,7 +59,7 @@ PLAN = (
 
 
 def plan_document(planned: "PlannedSurvey", solved: "SolvedHousing") -> dict[str, Any]:
-    """The plan as the command's JSON."""
+    """Return the survey plan as the command's JSON."""
     return document_of(PLAN, planned) | document_of(ORIGIN, solved)
 
 
@@ -72,7 +72,7 @@ _SENSORS = (_POINT, *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, a
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """Where to measure and where to hit, and how well modes are told apart."""
+    """Return sensor positions, the hammer position, and how well they separate the modes."""
     return (Section("", (*table_of(_SENSORS, document["sensors"]), *_sentences(document))),)
 
 
@@ -91,7 +91,7 @@ def _sentences(document: Document) -> Iterator[str]:
 
 
 def _axis(direction: Sequence[float]) -> str:
-    """An axis by its name, any other direction by its numbers."""
+    """Return an axis by its name, any other direction by its numbers."""
     for axis, value in zip("xyz", direction, strict=True):
         if abs(value) > 1.0 - 1e-9:
             return axis if value > 0.0 else f"-{axis}"

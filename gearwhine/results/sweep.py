@@ -9,7 +9,7 @@ _MOST_SENSORS, _MOST_MESHES = 5, 2  # with a column each
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """The points of a sweep and what came of them."""
+    """Return the points of a sweep and their results as a table."""
     return (Section("", tuple(_content(document))),)
 
 
@@ -32,7 +32,7 @@ def _content(document: Document) -> Iterator[str | Table]:
 
 
 def _columns(document: Document, first: Document) -> tuple[Column, ...]:
-    """The swept keys, the levels of some sensors and the forces of some meshes, and the energy balance."""
+    """Return columns of the swept keys, some sensor levels, some mesh forces, and the energy balance."""
     columns = [
         Column(
             axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""),

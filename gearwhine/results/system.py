@@ -18,7 +18,7 @@ _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_
 
 
 def _of_components(key: str, name: str, unit: str, what: str, of: Any, document: Any = None) -> Quantity:
-    """A quantity of every component in a mode; ``of`` takes the values of a mode."""
+    """Declare a quantity of every component in a mode; ``of`` takes the values of a mode."""
 
     def taken(row: Any) -> dict[str, float]:
         solved, mode = row
@@ -29,7 +29,7 @@ def _of_components(key: str, name: str, unit: str, what: str, of: Any, document:
 
 
 def _of_parts(key: str, name: str, what: str, of: Any) -> Quantity:
-    """A quantity of every component, connector and contact in a mode; the document has them by these groups."""
+    """Declare a quantity of every component, connector and contact in a mode, in these groups."""
 
     def taken(row: Any) -> dict[str, float]:
         solved, mode = row
@@ -102,7 +102,7 @@ MODE = (
 
 
 def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
-    """The stiffness that each pressed flank is taken for, beside its mean without load."""
+    """Return the mesh stiffness at which each loaded flank is linearised, beside its mean without load."""
     contact, unloaded = solved.contact, solved.unloaded.stiffness
     found = []
     for number, tooth in enumerate(solved.machine.system.contacts):
@@ -370,7 +370,7 @@ SYSTEM = (
 
 
 def system_document(solved: "SolvedSystem") -> dict[str, Any]:
-    """All that was found, but for the curves, which are in the results file."""
+    """Return the coupled system as the command's JSON, without the curves of the results file."""
     return document_of(SYSTEM, solved)
 
 
@@ -420,7 +420,7 @@ def _content(document: Document) -> Iterator[str | Table]:
 
 
 def _mesh_sentence(mesh: Document) -> str:
-    """Which mesh stiffness the modes are about, and the mean without load beside it."""
+    """Return the mesh stiffness of the linearised contact, and the mean without load beside it."""
     taken, unloaded = 1e-6 * mesh["stiffness_n_per_m"], 1e-6 * mesh["unloaded_mean_n_per_m"]
     under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
     beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
@@ -445,7 +445,7 @@ def _share(kind: str, mode: Document) -> str:
 
 
 def _named(mode: Document) -> str:
-    """A mode's kind, its place, and the sense of its whirl about z."""
+    """Return a mode's kind, its place, and the sense of its whirl about z."""
     kind, where = mode["kind"], mode.get("where")
     if not where or where == kind or kind in ("rigid", "mesh", "residual"):
         return str(kind)
@@ -455,7 +455,7 @@ def _named(mode: Document) -> str:
 
 
 def _strained(mode: Document) -> str:
-    """The part with the most strain energy."""
+    """Return the part with the most strain energy."""
     if mode["kind"] == "rigid" or "strain_energy" not in mode:
         return ""
     parts = [(share, _NAMES[group] + name) for group, of in mode["strain_energy"].items() for name, share in of.items()]
@@ -481,7 +481,7 @@ def _stability(stability: Document) -> Iterator[str]:
 
 
 def _peaks(response: Document) -> Iterator[str | Table]:
-    """Where the dynamic mesh force and the sensors answer most to a micrometre of error."""
+    """Yield the highest responses of dynamic mesh force and sensors to a micrometre of mesh error."""
     rows: list[dict[str, Any]] = []
     for key, what in (
         ("mesh_force_n", "mesh force [N/µm]"),

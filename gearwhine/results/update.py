@@ -241,7 +241,7 @@ UPDATE = (
 
 
 def update_document(case: "Case", solved: "SolvedUpdate") -> dict[str, Any]:
-    """What was fitted, how well, and what that is worth, as the command's JSON."""
+    """Return the fitted numbers, the quality of the fit and its validation as the command's JSON."""
     document = {"title": case.title} | document_of(UPDATE, solved)
     if solved.left_out:
         message = f"{solved.left_out} degrees of freedom were not measured in every mode and took no part"
@@ -259,7 +259,7 @@ _FEW = 0.05  # part of random sets fitted as well, above which the errors alone 
 
 
 def report(document: Document) -> Section:
-    """Chapter of the report: the fitted numbers, and what the fit is worth."""
+    """Return the chapter of the report: the fitted numbers, and the validation of the fit."""
     before, learned = document["before"], document["identifiability"]
     sentences = [
         f"Before: {before['rms_error_percent']:.2f} % root mean square, {before['max_error_percent']:.2f} % at most.",
@@ -277,7 +277,7 @@ def report(document: Document) -> Section:
 
 
 def sections(document: Document) -> tuple[Section, ...]:
-    """Parameters, modes, what the data cannot tell apart, and the tests of the fit."""
+    """Return parameters, modes, combinations that the data do not determine, and the tests of the fit."""
     return (Section("", tuple(_content(document))),)
 
 
@@ -354,7 +354,7 @@ def _fit(document: Document) -> Iterator[str]:
 
 
 def _choice(document: Document) -> str:
-    """How clearly the modes paired are the ones that were measured."""
+    """Return lines on how certain the pairing of model and measured modes is."""
     if document["gap"] is None:
         values = [pair["mac"] for pair in document["pairs"]]
         alone = f", {document['wrong_pairs']} without a partner" if document["wrong_pairs"] else ""
@@ -377,7 +377,7 @@ def _identifiability(told: Document) -> Iterator[str]:
 
 
 def _null(null: Document) -> Iterator[str]:
-    """How often random frequencies are fitted as well as the measured ones."""
+    """Yield lines on how often random frequencies are fitted as well as the measured ones."""
     five, two, one, met, rms = (
         f"{100 * null[key]:.0f} %"
         for key in ("within_5_percent", "within_2_percent", "within_1_percent", "all_met", "as_good_in_rms")

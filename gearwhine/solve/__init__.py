@@ -1,7 +1,17 @@
-"""Solving a case: each module takes a case, and what is solved before it, to results.
+"""Solution of a case: each module takes a case, and what is solved before it, to results as plain objects.
 
-:mod:`gearwhine.solve.housing_modes` meshes and solves the housing and compares it with measured modes,
-:mod:`gearwhine.solve.rotors` solves each rotor, :mod:`gearwhine.from_case.gear_pairs` each gear pair, which
-:mod:`gearwhine.solve.gear_pairs` and :mod:`gearwhine.solve.gear_pairs` look at from all sides,
-:mod:`gearwhine.from_case.machine` couples them, and :mod:`gearwhine.solve.transient` sets them in motion.
+Library objects come from :mod:`gearwhine.from_case`; documents and arrays of the results are made by
+:mod:`gearwhine.results`.
+
+- :mod:`~gearwhine.solve.case_summary`: check of a case, without solving.
+- :mod:`~gearwhine.solve.housing_modes`, :mod:`~gearwhine.solve.housing_health`: the housing's modes and their checks.
+- :mod:`~gearwhine.solve.comparison`, :mod:`~gearwhine.solve.updating`, :mod:`~gearwhine.solve.survey_plan`: measured
+  modes beside the model's, model updating, and the plan of a modal survey.
+- :mod:`~gearwhine.solve.rotors`: each rotor alone.
+- :mod:`~gearwhine.solve.gear_pairs`, :mod:`~gearwhine.solve.relief_aims`: each gear pair, and its best tip relief.
+- :mod:`~gearwhine.solve.coupled_system`, :mod:`~gearwhine.solve.steady_state`, :mod:`~gearwhine.solve.transient`: the
+  machine's modes and responses, its periodic motion, and its motion over time.
+- :mod:`~gearwhine.solve.transient_record`, :mod:`~gearwhine.solve.signature`, :mod:`~gearwhine.solve.run_up`,
+  :mod:`~gearwhine.solve.operating_shapes`: the record of that motion, its spectra, orders and operating shapes.
+- :mod:`~gearwhine.solve.plausibility`: warnings and error estimates of solved machines.
 """

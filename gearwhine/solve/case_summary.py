@@ -1,4 +1,4 @@
-"""Check of a case before anything is solved: what cannot be built is refused, and the rest is known by arithmetic."""
+"""Summary of a case before anything is solved: parts that cannot be built are refused, the rest is arithmetic."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from gearwhine.from_case import mesh_health
 from gearwhine.from_case.gear_pairs import backlash_warnings, build_pair, pair_geometries
 from gearwhine.from_case.machine import require_machine
 from gearwhine.from_case.mesh import material_of
-from gearwhine.from_case.mesh_health import ForeseenMesh
+from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.warnings import warning
 from gearwhine.progress import Progress, silent
-from gearwhine.results.gear_documents import geometry_warnings
+from gearwhine.results.gear_warnings import geometry_warnings
 from rotors import Rotor as BuiltRotor
 
 
@@ -69,7 +69,7 @@ class CheckedCase:
     Attributes
     ----------
     case : Case
-    mesh : ForeseenMesh or None
+    mesh : MeshPreview or None
         Of the housing.
     rotors : tuple of CheckedRotor
     pairs : tuple of CheckedPair
@@ -78,7 +78,7 @@ class CheckedCase:
     """
 
     case: Case
-    mesh: ForeseenMesh | None
+    mesh: MeshPreview | None
     rotors: tuple[CheckedRotor, ...]
     pairs: tuple[CheckedPair, ...]
     warnings: list[dict[str, Any]]
@@ -98,7 +98,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         build_bearings(case, rotor.name)
     if case.update is not None:
         fitted_case(case)
-    mesh: ForeseenMesh | None = None
+    mesh: MeshPreview | None = None
     warnings: list[dict[str, Any]] = []
     if case.housing is not None:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:

@@ -1,8 +1,7 @@
 """Comparison of a solved housing with the measured modes of its case: read, aligned, paired.
 
-Measured modes of a case: read, aligned with the model, and mapped to its degrees of freedom.
-
-Measured frequency responses beside the model's at the same points, with FRAC.
+Measured modes are mapped to the model's degrees of freedom. Measured frequency responses are compared with the model's
+at the same points by FRAC.
 """
 
 from dataclasses import dataclass, replace
@@ -37,7 +36,7 @@ _HERTZ = 2.0 * np.pi
 
 
 def read_measured(case: Case, progress: Progress = silent) -> MeasuredModes:
-    """The measured modes of a case: listed in it, read from its file, or found in the file's responses.
+    """Read the measured modes of a case: listed in it, stored in its file, or identified from the file's responses.
 
     Raises
     ------
@@ -86,7 +85,7 @@ def map_measured(case: Case, mesh: Mesh, geometry: MeasuredGeometry) -> MappedSu
 
 
 def mapped_shapes(solved: SolvedHousing, survey: MappedSurvey) -> FloatArray:
-    """The model's modes at the survey's degrees of freedom, mass-normalised, shape (n_modes, n_dofs)."""
+    """Return the model's modes at the survey's degrees of freedom, mass-normalised, shape (n_modes, n_dofs)."""
     return survey.shapes(solved.modes.shapes)
 
 
@@ -159,7 +158,7 @@ class ResponseCorrelation:
 def compare_responses(
     case: Case, solved: SolvedHousing, survey: MappedSurvey, responses: MeasuredResponses
 ) -> ResponseCorrelation:
-    """The model's responses with its own damping beside the measured ones, up to where its modes are all known.
+    """Compare the model's responses, with its own damping, with measured ones up to where its modes are complete.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Linear analyses of the coupled system: its modes, their course over speed, and what reaches gears and sensors."""
+"""Linear analyses of the coupled system: modes, Campbell diagram, responses at gears and sensors to mesh errors."""
 
 import math
 from dataclasses import dataclass, replace
@@ -48,17 +48,17 @@ class SolvedSystem:
         Whose modes the machine stands on.
     mesh_phase : float or None
         Phase of the first mesh at which the contact stands; None for the mean contact.
-    contact : coupling.ContactState
+    contact : ContactState
         About which the modes and the responses to mesh errors are.
-    modes : coupling.CoupledModes
-    stability : coupling.Stability
-    responses : tuple of coupling.FrequencyResponse
+    modes : CoupledModes
+    stability : Stability
+    responses : tuple of FrequencyResponse
         To a unit transmission error of each mesh.
     superposition_error : float or None
         Largest difference of these from solving the system, at some frequencies, as a part of the largest amplitude.
-    campbell : coupling.SystemCampbell or None
+    campbell : SystemCampbell or None
         Where speeds were given or asked for.
-    unbalance : tuple of coupling.FrequencyResponse
+    unbalance : tuple of FrequencyResponse
         To the unbalances of each rotor that has any, over the speeds of the diagram.
     unbalance_speeds : ndarray, shape (u,)
         Of the leading rotor [rad/s].
@@ -159,7 +159,7 @@ def diagram_speeds(case: Case) -> tuple[float, ...]:
 
 
 def _instant(case: Case, machine: CoupledMachine, phase: float) -> ContactState:
-    """The contact when the first pair's teeth stand at a phase."""
+    """Return the state of contact when the first pair's teeth stand at a phase."""
     require(case, "gear_pair", command="system --mesh-phase")
     if not 0.0 <= phase <= 1.0:
         raise CaseError([Problem("--mesh-phase", phase, "a part of the mesh period, 0 to 1")])
@@ -199,7 +199,7 @@ def _mesh_responses(
 
 
 def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:
-    """Up to where responses are taken [Hz]: as far as the housing's modes, or over some harmonics of the meshes."""
+    """Return the upper frequency of responses [Hz]: that of the housing's modes, or some harmonics of the meshes."""
     if housing is not None:
         return housing.modes.certificate.limit / _HERTZ
     return _HARMONICS * max(mesh_frequencies(case)) if max(mesh_frequencies(case)) > 0.0 else 1000.0

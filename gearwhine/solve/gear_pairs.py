@@ -1,6 +1,6 @@
-"""What the teeth of a gear pair do under the torque of the case: who carries, how hard they press, how they err.
+"""Analysis of a gear pair under the case's torque: load sharing, contact pressure, transmission error.
 
-Harris maps of gear pairs over torque, and the optimal tip relief.
+Over a range of torques these give Harris maps and the optimal tip relief.
 """
 
 from collections.abc import Sequence
@@ -50,7 +50,7 @@ class ToothPairCurves:
     ----------
     phases : ndarray, shape (n,)
         Parts of the mesh period.
-    mesh : coupling.gears.StaticMesh
+    mesh : LoadedMesh
         Under the case's torque.
     stiffness : ndarray, shape (n,)
         Of all pairs on the path of contact [N/m].
@@ -78,7 +78,7 @@ class ToothPairCurves:
 
 @dataclass(frozen=True, eq=False)
 class PairAnalysis:
-    """A solved gear pair, looked at from all sides.
+    """A solved gear pair with its loaded and unloaded curves, contact pressure, Harris map and optimal relief.
 
     Attributes
     ----------
@@ -91,14 +91,15 @@ class PairAnalysis:
     unloaded : ndarray, shape (n,)
         Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
     pressure : ndarray, shape (n, m) or (n, m, s), or None
-        Hertzian pressure of every pair at every phase [Pa], see `coupling.gears.mesh_pressure`. None without load,
-        single pairs or face widths in the case.
+        Hertzian pressure of every pair at every phase [Pa], see
+        `coupling.gears.loaded.contact_pressure.mesh_pressure`. None without load, single pairs or face widths in the
+        case.
     pitch_pressure : float or None
         The largest at the pitch point [Pa]; None also where that is not on the path of contact.
-    harris : coupling.gears.HarrisMap or None
+    harris : HarrisMap or None
         From a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
         unless asked for, and without a torque.
-    optimum : coupling.gears.ReliefOptimum or None
+    optimum : ReliefOptimum or None
         The relief that suits the case's torque, with all teeth alike; None unless asked for, and without a torque or
         single pairs.
     """
@@ -159,7 +160,7 @@ class PairAnalysis:
         return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
 
     def curves(self) -> ToothPairCurves:
-        """The pair at even phases of the mesh period."""
+        """Return the pair's curves at even phases of the mesh period."""
         phases = np.arange(_PHASES) / _PHASES
         contact, faces = self.solved.contact, self.solved.contact.faces
         mesh = loaded_transmission_error(contact, self.solved.static.force, phases)
@@ -216,7 +217,7 @@ class PairAnalysis:
 
     @property
     def loaded_contact_ratio(self) -> float:
-        """How many pairs carry in the mean: less than the contact ratio by relief, more by corner contact."""
+        """Mean number of pairs in contact: less than the contact ratio by relief, more by corner contact."""
         return sum(count * part for count, part in self.pairs_in_contact.items())
 
     @property
@@ -232,7 +233,7 @@ class PairAnalysis:
 
 
 def analyse_pairs(case: Case, solved: Sequence[LoadedGearPair]) -> tuple[PairAnalysis, ...]:
-    """Look at each solved pair under the case's torque and without."""
+    """Analyse each solved gear pair under the case's torque and without load."""
     return tuple(_analysis(case, given, pair) for given, pair in zip(case.gear_pair, solved, strict=True))
 
 
@@ -252,7 +253,7 @@ def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair) -> PairAnalysi
 
 
 def _pitch_pressure(pair: LoadedGearPair) -> float | None:
-    """The largest pressure while a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
+    """Return the largest pressure as a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
     pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
     if not 0.0 <= pitch < pair.geometry.contact_ratio:
         return None
@@ -270,7 +271,7 @@ _LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
 def solve_over_torques(
     pairs: Sequence[PairAnalysis], progress: Progress = silent, aims: Sequence[ReliefAim] = ()
 ) -> tuple[PairAnalysis, ...]:
-    """The same pairs with their Harris maps and optimal reliefs, where the case has a torque.
+    """Add Harris maps and optimal reliefs to analysed pairs, where the case has a torque.
 
     ``aims`` are those of the reliefs, one for each pair; all peak to peak where not given.
     """
@@ -312,7 +313,7 @@ def _best_relief(pair: LoadedGearPair, aim: ReliefAim) -> ReliefOptimum:
 
 
 def with_coarser_slices(faces: FaceSlices, count: int) -> FaceSlices:
-    """The same face in at most `count` slices: quick enough to search with, and as good for finding a place."""
+    """Return the same face in at most `count` slices: faster to search with, and as good for finding a place."""
     if faces.z.size <= count:
         return faces
     z = faces.face_width * ((np.arange(count) + 0.5) / count - 0.5)
@@ -321,6 +322,6 @@ def with_coarser_slices(faces: FaceSlices, count: int) -> FaceSlices:
 
 
 def _alike(pair: GearPairGeometry) -> GearPairGeometry:
-    """A pair of gears with all their teeth alike: a relief is cut for all of them."""
+    """Return the pair with all teeth of a gear alike: a relief is cut for all of them."""
     driver, driven = (replace(gear, pitch_deviations=(), faults=()) for gear in (pair.driver, pair.driven))
     return replace(pair, driver=driver, driven=driven)

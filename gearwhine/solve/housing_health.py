@@ -1,4 +1,4 @@
-"""Checks of a solved housing, as they are kept with its modes: health report, effective masses, mass of the solid."""
+"""Checks of a solved housing, cached with its modes: health report, effective masses, mass of the solid."""
 
 from typing import Any
 

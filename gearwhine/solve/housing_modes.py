@@ -1,11 +1,10 @@
-"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance.
+"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance; and their cache.
 
-Mode cache: housing modes in the results folder, read again while the housing is unchanged.
-
-Modes are known again by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys
-that do not enter the modes, the materials it names, the places of the bearings for which the modes have attachments,
-the content of its files, and the versions and source of the code.
-A new key of the housing therefore counts until somebody says that it does not.
+The mode cache is a file in the results folder that is read again while the housing is unchanged. Modes are identified
+by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys that do not enter the
+modes, the materials it names, the places of the bearings for which the modes have attachments, the content of its
+files, and the versions and source of the code.
+A new key of the housing therefore counts until it is listed as one that changes no mode.
 """
 
 import time
@@ -20,7 +19,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 import gearwhine
-import housing as room
+import housing
 import meshes
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
@@ -61,13 +60,13 @@ from meshes import Mesh
 
 MODE_CACHE_FILE = "modes.nc"
 
-# Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the kept mesh afresh.
+# Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
 
 
 def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
-    """Inputs of a case's housing modes; their content key is that of the modes.
+    """Return the inputs of a case's housing modes; their content key is that of the modes.
 
     Parameters
     ----------
@@ -91,12 +90,12 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
         "attachment_orders": RESPONSE_ORDERS,
         "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
         "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-        "source": source_digest(meshes, room, gearwhine),
+        "source": source_digest(meshes, housing, gearwhine),
     }
 
 
 def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord | None, str | None]:
-    """Cached modes of these inputs, or None; and a warning where the file cannot be used."""
+    """Read the cached modes of these inputs, or None; and a warning where the file cannot be used."""
     path = folder / MODE_CACHE_FILE
     if not path.exists():
         return None, None
@@ -137,17 +136,17 @@ class SolvedHousing:
     seat_ports : dict of str to sparse array, shape (6, 3 n_nodes)
         The seats' motions from the nodes'.
     loaded : dict of str to sparse array, shape (5, 3 n_nodes)
-        Motions of each place where the machine bears on the housing, see :func:`housing.bearing_port`: the modes'
-        attachments are for these.
-    sensors : dict of str to housing.SensorPort
-    survey : housing.Survey
-    strengths : housing.Dominance or None
+        Motions of each place where the machine bears on the housing, see
+        :func:`housing.model.housing.bearing_port`: the modes' attachments are for these.
+    sensors : dict of str to SensorPort
+    survey : Survey
+    strengths : Dominance or None
         None where there are no seats.
     checks : dict
         Health report, effective masses and the mass of the solid as their documents.
     seconds : dict of str to float
         Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
-    record : housing.ModeRecord
+    record : ModeRecord
         Content of its mode-set file.
     source : Path or None
         The file that the modes were read from; None where they were solved.
@@ -239,7 +238,7 @@ def solve_housing(
     command : str
         On whose behalf, for messages.
     folder : path, optional
-        A results folder; modes of the same housing kept there are read in place of solving.
+        A results folder; modes of the same housing cached there are read in place of solving.
     fresh : bool
         Solve also where they are.
 
@@ -257,9 +256,9 @@ def solve_housing(
     remarks: list[str] = []
     mesh = build_mesh(case, remarks.append) if given.mesh is not None else None
     inputs = mode_cache_inputs(case, mesh)
-    kept, spoilt = read_mode_cache(folder, inputs) if folder is not None and not fresh else (None, None)
-    if kept is not None and folder is not None:
-        mesh, warnings = kept.mesh, list(kept.notes["warnings"])
+    cached, spoilt = read_mode_cache(folder, inputs) if folder is not None and not fresh else (None, None)
+    if cached is not None and folder is not None:
+        mesh, warnings = cached.mesh, list(cached.notes["warnings"])
         progress(f"modes read from {folder / MODE_CACHE_FILE} (unchanged housing)")
     else:
         if mesh is None:
@@ -276,13 +275,13 @@ def solve_housing(
         sensors = described.sensor_ports()
         bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
         survey = survey_grid(mesh, bounds)
-        if kept is None:
+        if cached is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
             warnings += resolution_warnings(case, mesh, modes.certificate.limit / _HERTZ)
         else:
-            modes, mass, checks = kept.modes, kept.mass, kept.notes["checks"]
-            damping_matrix = kept.extras[_DAMPING].values if _DAMPING in kept.extras else None
+            modes, mass, checks = cached.modes, cached.mass, cached.notes["checks"]
+            damping_matrix = cached.extras[_DAMPING].values if _DAMPING in cached.extras else None
             seconds = {"mesh": 0.0, "assembly": 0.0, "factorisation": 0.0, "eigensolver": 0.0, "reading": meshed}
     seats_in_modes = {name: modes.project(matrix) for name, matrix in seat_ports.items()}
     strengths = None
@@ -290,7 +289,7 @@ def solve_housing(
         radial = np.stack([motion[:, :2] for motion in seats_in_modes.values()], axis=1)
         strengths = dominance(modes.frequencies, radial, survey.normal_motion(modes.shapes))
     seconds["total"] = time.perf_counter() - begin
-    record = kept or ModeRecord(
+    record = cached or ModeRecord(
         mesh,
         modes,
         mass,
@@ -317,8 +316,8 @@ def solve_housing(
         checks=checks,
         seconds=seconds,
         record=record,
-        source=None if kept is None or folder is None else folder / MODE_CACHE_FILE,
-        source_holds=kept is not None and kept.sensors == record.sensors,
+        source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
+        source_holds=cached is not None and cached.sensors == record.sensors,
         warnings=warnings + ([] if spoilt is None else [warning("modes file", spoilt)]),
     )
 
@@ -330,7 +329,7 @@ def _damping_array(matrix: FloatArray) -> LabelledArray:
 def _solve_modes(
     case: Case, described: Housing, loaded: dict[str, sparse.csr_array], progress: Progress
 ) -> tuple[ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
-    """The modes, the housing's mass [kg], what damps it in its modes, its checks, and the seconds of each step."""
+    """Solve the modes; return them, the mass [kg], the damping matrix, the checks, and the seconds of each step."""
     given = case.housing
     assert given is not None
     begin, mesh = time.perf_counter(), described.mesh
@@ -361,7 +360,7 @@ def _solve_modes(
 
 
 def describe_housing(case: Case, mesh: Mesh) -> Housing:
-    """The housing of a case on its mesh as the library's description.
+    """Build the library's description of a case's housing on its mesh.
 
     Raises
     ------
@@ -408,7 +407,7 @@ def pair_modes(
     measured : housing.measured.MeasuredModes
     shapes : ndarray, shape (n_modes, n_dofs), optional
         The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
-    rule : housing.PairingRule, optional
+    rule : PairingRule, optional
         Of the pairing by shape.
 
     Raises

@@ -44,7 +44,7 @@ class RunLine:
 
 
 def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
-    """The lines nearest to frequencies [Hz] in a results folder, each once, ascending.
+    """Read the spectral lines nearest to frequencies [Hz] from a results folder, each once, ascending.
 
     Raises
     ------
@@ -62,9 +62,9 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
     if "housing_acceleration_spectrum" not in content:
         raise _missing(folder, "a run at steady speed on ground at rest, whose spectra have lines; 'gearwhine run' it")
     survey = solved.survey.matrix @ solved.modes.shapes.reshape(len(solved.modes.shapes), -1).T
-    kept = content["survey_shape"].values.reshape(len(content["housing_mode"]), -1).T
+    stored = content["survey_shape"].values.reshape(len(content["housing_mode"]), -1).T
     # Signs count too: amplitudes are those of these very shapes.
-    if kept.shape != survey.shape or np.abs(kept - survey).max() > _SAME * np.abs(survey).max():
+    if stored.shape != survey.shape or np.abs(stored - survey).max() > _SAME * np.abs(survey).max():
         raise _missing(folder, "a run with this housing; these results are another's: 'gearwhine run' again")
     lines = content["housing_line"].values
     spacing = float(lines[1] - lines[0])
@@ -86,7 +86,7 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
 
 
 def operating_shape_of_line(line: RunLine, solved: SolvedHousing, housing: DrawnHousing) -> DrawnShape:
-    """A line's shape in micrometres, with the modes that have most of its kinetic energy."""
+    """Return a line's operating shape in micrometres, with the modes that have most of its kinetic energy."""
     try:
         motion = line.shape.displacement(solved.modes, housing.nodes)
         largest = float(peak_displacement(motion).max())
@@ -108,7 +108,7 @@ def operating_shape_of_line(line: RunLine, solved: SolvedHousing, housing: Drawn
 
 
 def lines_document(lines: list[RunLine], solved: SolvedHousing, housing: DrawnHousing) -> list[dict[str, Any]]:
-    """The lines as the command's JSON."""
+    """Return the lines as the command's JSON."""
     document = []
     for line in lines:
         largest = float(peak_displacement(line.shape.displacement(solved.modes, housing.nodes)).max())
@@ -134,7 +134,7 @@ def lines_document(lines: list[RunLine], solved: SolvedHousing, housing: DrawnHo
 
 
 def _leading(line: RunLine, solved: SolvedHousing) -> list[tuple[int, float, float]]:
-    """Number, frequency [Hz] and share of the first few modes."""
+    """Return number, frequency [Hz] and share of the first few modes."""
     shares = line.shape.kinetic_shares
     return [
         (int(mode) + 1, float(solved.modes.frequencies_hz[mode]), float(shares[mode]))

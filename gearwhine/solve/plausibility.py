@@ -1,8 +1,8 @@
-"""Bearing loads of a run beside the loads that the bearings' stiffness was computed for.
+"""Plausibility of a solved machine: bearing loads, unstable modes and modal truncation error.
 
-Warnings of unstable coupled modes: negative damping, or negative stiffness.
-
-Modal truncation error of sensors' lines, line by line and by bands.
+Bearing loads of a run are held against the loads that the bearings' stiffness was computed for. Coupled modes with
+negative damping or negative stiffness are warned of. The modal truncation error is given for the sensors' lines, line
+by line and by bands.
 """
 
 from collections.abc import Mapping
@@ -118,7 +118,7 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     ----------
     document : dict
         With ``sensors``, whose ``peaks`` or ``lines`` have a ``frequency_hz``, or with ``motions`` that have such.
-    error : coupling.BasisError or None
+    error : BasisError or None
         None, where no basis is behind the lines: nothing is added.
     limit_hz : float or None
         Upper end of the bands; no bands where it is not given.

@@ -1,8 +1,7 @@
-"""The rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, weight, unbalance and bow.
+"""Rotors of a case, each alone: modes at rest, whirl at speed, critical speeds, static deflection and responses.
 
-What a rotor's weight, unbalance and bow do to it, by the speeds and probes of `[rotor_analysis]`.
-
-What swinging torques do to a rotor's torsion, by the torques and probes of `[rotor_analysis.torsional_response]`.
+The response to unbalance and bow follows the speeds and probes of `[rotor_analysis]`, the torsional response to
+alternating torques those of `[rotor_analysis.torsional_response]`.
 """
 
 from collections.abc import Mapping
@@ -75,7 +74,7 @@ class SolvedWeight:
 
     Attributes
     ----------
-    deflection : rotors.StaticDeflection
+    deflection : StaticDeflection
     speed : float
         Where tables over speed were read [rad/s].
     places : (p,) array
@@ -99,7 +98,7 @@ class SolvedWeight:
 
 @dataclass(frozen=True)
 class ProbeReading:
-    """What a probe reads at every speed.
+    """Response at a probe over the speeds.
 
     Attributes
     ----------
@@ -119,7 +118,7 @@ class ProbeReading:
 
     @property
     def phase_lag(self) -> FloatArray:
-        """By which the reading is behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
+        """Phase lag of the reading behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
         return np.asarray(np.mod(-np.angle(self.amplitude), 2.0 * np.pi))
 
     @property
@@ -136,7 +135,7 @@ class SolvedResponse:
 
     Attributes
     ----------
-    response : rotors.SynchronousResponse
+    response : SynchronousResponse
     readings, at_operation : tuple of ProbeReading
         Of every probe over the speeds of the response; and at the speed of operation alone, empty where there is none.
     """
@@ -195,7 +194,7 @@ def _read(response: SynchronousResponse, probe: Probe) -> ProbeReading:
 
 
 def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Probe]:
-    """The probes of one rotor; where the case names none at all, one at each bearing and unbalance, along x."""
+    """Return the probes of one rotor; where the case names none, one at each bearing and unbalance, along x."""
     chosen = analysis.unbalance_response.probes
     if chosen:
         return [probe for probe in chosen if probe.rotor == given.name]
@@ -214,7 +213,7 @@ _TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
 
 @dataclass(frozen=True)
 class TorsionReading:
-    """What a probe reads at every frequency, Re(amplitude e^{iωt}) each.
+    """Torsional response at a probe over the frequencies, Re(amplitude e^{iωt}) each.
 
     Attributes
     ----------
@@ -253,7 +252,7 @@ class SolvedTorsion:
 
     Attributes
     ----------
-    response : rotors.TorsionalResponse
+    response : TorsionalResponse
     readings : tuple of TorsionReading
     places : (p,) array
         Along the shaft [m].
@@ -279,7 +278,7 @@ class SolvedTorsion:
 def solve_torsion(
     analysis: RotorAnalysis, given: GivenRotor, rotor: Rotor, modes: TorsionalModes
 ) -> SolvedTorsion | None:
-    """The torsional response of one rotor; None where no torque acts on it. ``modes`` are its own, free to turn."""
+    """Solve the torsional response of one rotor; None without a torque. ``modes`` are its own, free to turn."""
     wanted = analysis.torsional_response
     torques = [] if wanted is None else [torque for torque in wanted.torques if torque.rotor == given.name]
     if wanted is None or not torques:
@@ -311,7 +310,7 @@ def solve_torsion(
 
 
 def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bool) -> FloatArray:
-    """As given; else even steps up to beyond the third elastic mode, with the modes' own where damping bounds them."""
+    """Return given frequencies, or even steps beyond the third elastic mode, with the modes' own where damped."""
     if wanted.frequency is not None:
         return _HERTZ * np.array(wanted.frequency.frequencies)
     elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
@@ -321,7 +320,7 @@ def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bo
 
 
 def _torsion_probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: Rotor) -> list[TorsionProbe]:
-    """The probes of one rotor; where the case names none at all, one at each torque and at either end."""
+    """Return the probes of one rotor; where the case names none, one at each torque and at either end."""
     if wanted.probes:
         return [probe for probe in wanted.probes if probe.rotor == given.name]
     places = {0.0: "left end", rotor.length: "right end"}
@@ -338,7 +337,7 @@ _PLACES = 101  # along a rotor, of its shapes
 
 @dataclass(frozen=True)
 class SolvedRotor:
-    """What is known of one rotor on grounded bearings.
+    """A solved rotor on grounded bearings.
 
     Attributes
     ----------
@@ -348,21 +347,21 @@ class SolvedRotor:
         As given, with their tables over speed; and as they hold the rotor at rest.
     rest_speed : float or None
         The speed of their tables that stands for rest, the lowest that all of them hold [rad/s]; None without tables.
-    rest : rotors.RestFrequencies
+    rest : RestFrequencies
     axial : ndarray, shape (a,)
         Natural frequencies at rest of motions along the axis, ascending [rad/s]; none where no bearing holds it.
-    lateral : rotors.LateralModes
+    lateral : LateralModes
         In one plane at averaged support stiffness.
-    torsional : rotors.TorsionalModes
+    torsional : TorsionalModes
     whirl : tuple of rotors.WhirlModes
         At the speed of operation, then at those of the sweep.
     campbell : rotors.Campbell or None
         None without speeds.
-    crossings : tuple of rotors.Crossing or str
+    crossings : tuple of Crossing or str
         Damped critical speeds of whirl within the Campbell diagram, of once a revolution; or why they are not known.
-    orders : mapping of float to (tuple of rotors.Crossing or str)
+    orders : mapping of float to (tuple of Crossing or str)
         The same of each other multiple of the speed that the case asks for.
-    critical : rotors.CriticalSpeeds
+    critical : CriticalSpeeds
         Undamped, of whirl alone; with tables, within the speeds that they hold.
     operation : float or None
         Speed of operation [rad/s].
@@ -372,7 +371,7 @@ class SolvedRotor:
         To unbalance and bow; None where there is neither.
     torsion : SolvedTorsion or None
         Response to torques that swing; None where none does.
-    stiffness_map : rotors.CriticalSpeedMap or None
+    stiffness_map : CriticalSpeedMap or None
         Where the case asks for it.
     rolling : mapping of str to rotors.rolling_bearings.RollingState
         What its rolling bearings carry, by their names.
@@ -403,7 +402,7 @@ class SolvedRotor:
 
     @property
     def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
-        """Which of the frequencies at rest are of motions across the axis for the most part."""
+        """Mask of the frequencies at rest whose motions are across the axis for the most part."""
         return np.asarray(self.rest.axial_share <= MOSTLY_AXIAL)
 
     @property
@@ -438,7 +437,7 @@ def _largest_over_cycle(x: ComplexArray, y: ComplexArray) -> FloatArray:
 
 
 def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
-    """Every rotor of the case, alone on grounded bearings.
+    """Solve every rotor of the case, alone on grounded bearings.
 
     Raises
     ------
@@ -495,7 +494,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
 
 
 def _rated_lives(case: Case, states: Mapping[str, RollingState]) -> dict[str, float]:
-    """Basic rating lives in revolutions."""
+    """Return basic rating lives in revolutions."""
     ratings = {
         bearing.name: bearing.stiffness.rolling.dynamic_rating
         for bearing in case.bearing

@@ -1,4 +1,4 @@
-"""The signature of a run-up or a run-down: spectra along the run, and orders over the speed."""
+"""Signature of a run-up or run-down: spectra along the run, and orders over the speed."""
 
 import math
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ _SLOWEST = 0.1  # part of the highest speed below which nothing is looked at: a 
 _ROWS = 28  # of the waterfall; its stretches overlap by half
 _WINDOWS = 60  # of the order map, about, each overlapping the next by half
 _HARMONICS = 3  # of each mesh that are followed
-_ABOVE = 1.25  # orders up to this over the highest of interest are kept
+_ABOVE = 1.25  # orders up to this over the highest of interest are followed
 _APART, _PARTED = 3.0, 2.0  # lines of a window between orders: as wished, and where Hann's window just parts them
 _FEWEST = 20  # windows that make a course over speed, where the run has turns for them
 _FEWEST_TURNS = 4
@@ -29,7 +29,7 @@ _BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lo
 
 @dataclass(frozen=True)
 class RunSignature:
-    """What the signals of a run show, by their names.
+    """Spectrograms and orders of a run's signals, by their names.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class RunSignature:
         return np.array([[table.order_slice(order) for order in self.named.values()] for table in self.orders.values()])
 
     def highest(self) -> list[dict[str, Any]]:
-        """Where along the run each named order of each signal is highest."""
+        """Return the peak of each named order of each signal along the run."""
         rows = []
         for (name, orders), courses in zip(self.orders.items(), self.followed(), strict=True):
             for (what, order), along in zip(self.named.items(), courses, strict=True):
@@ -76,7 +76,7 @@ class RunSignature:
 
 @dataclass(frozen=True)
 class _Windows:
-    """How a run is cut: the samples in which the machine turns, and the turns of an order map's windows.
+    """Windows of a run: the samples in which the machine turns, and the turns of an order map's windows.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
 
 
 def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
-    """What of a run's signature is missing, and why; nothing at steady speed."""
+    """Warn of missing parts of a run's signature, with the reason; steady speed has none."""
     cut = _windows(case, solved)
     if cut is None:
         return []
@@ -147,7 +147,7 @@ def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str
 
 
 def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
-    """How a run is cut; in words why it cannot be, and None at steady speed or without gears."""
+    """Return the windows of a run; in words why there are none, and None at steady speed or without gears."""
     turning, times = solved.turning, solved.histories.times
     if turning is None or case.operation is None or not case.gear_pair:
         return None
@@ -169,20 +169,20 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
         # Windows of whole turns of every shaft have every order as a line.
         turns = math.ceil(turns / whole) * whole
     turns = min(turns, max(2 * total // _FEWEST, 2))
-    # Of orders too close to each other the lower harmonic or the shaft that comes first is kept.
-    kept: dict[str, float] = {}
+    # Of orders too close to each other the lower harmonic or the shaft that comes first is followed.
+    followed: dict[str, float] = {}
     for name, order in named.items():
-        others = [0.0, *(one for one in kept.values() if one != order)]
+        others = [0.0, *(one for one in followed.values() if one != order)]
         if min(abs(order - one) for one in others) * turns >= _PARTED - 1e-9:
-            kept[name] = order
-    merged = tuple(name for name in named if name not in kept)
-    if not kept:
+            followed[name] = order
+    merged = tuple(name for name in named if name not in followed)
+    if not followed:
         return f"windows of {turns} turns tell no order apart"
-    return _Windows(span, turns, kept, merged)
+    return _Windows(span, turns, followed, merged)
 
 
 def _turning_span(rates: FloatArray) -> slice:
-    """The longest stretch of samples in which the machine turns fast enough."""
+    """Return the longest stretch of samples in which the machine turns fast enough."""
     fast = np.concatenate([[0], (rates >= _SLOWEST * rates.max()).astype(np.int64), [0]])
     changes = np.diff(fast)
     begins, ends = np.flatnonzero(changes == 1), np.flatnonzero(changes == -1)
@@ -199,10 +199,10 @@ def _named_orders(case: Case, solved: SolvedTransient) -> dict[str, float]:
 
 
 def _up_to(found: signature.Spectrogram, limit: float) -> signature.Spectrogram:
-    kept = found.frequencies <= limit * (1.0 + 1e-9)
-    return signature.Spectrogram(found.times, found.frequencies[kept], found.amplitude[:, kept], found.window)
+    below = found.frequencies <= limit * (1.0 + 1e-9)
+    return signature.Spectrogram(found.times, found.frequencies[below], found.amplitude[:, below], found.window)
 
 
 def _orders_up_to(found: signature.OrderMap, limit: float) -> signature.OrderMap:
-    kept = found.orders <= limit
-    return replace(found, orders=found.orders[kept], amplitude=found.amplitude[:, kept])
+    below = found.orders <= limit
+    return replace(found, orders=found.orders[below], amplitude=found.amplitude[:, below])

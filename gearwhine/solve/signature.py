@@ -1,4 +1,4 @@
-"""The signature of a machine in motion: what the lines of its spectra are, and where they come from."""
+"""Signature of a machine in motion: the names of the lines in its spectra, and the transfer paths behind them."""
 
 from dataclasses import dataclass
 
@@ -135,11 +135,11 @@ class SolvedSignature:
         Of each sensor.
     force_sidebands : dict of str to tuple of ShaftSidebands
         Of each mesh's force.
-    bearing_spectra : dict of str to coupling.Spectrum
+    bearing_spectra : dict of str to Spectrum
         Of the forces in all directions that a bearing holds, shape (d, m).
-    modes : coupling.CoupledModes
+    modes : CoupledModes
         That names refer to.
-    housing : coupling.Spectrum or None
+    housing : Spectrum or None
         Of the accelerations of the housing's modes [m √kg / s²], shape (n_modes, m), where there are any.
     """
 

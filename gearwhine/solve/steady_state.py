@@ -1,4 +1,4 @@
-"""The steady state of a case directly: the motion that repeats with its excitation, and its branch over speed."""
+"""Steady state of a case: the periodic motion under its excitation, and the branch of such motions over speed."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -49,8 +49,8 @@ class SteadyMotion:
     ----------
     speed : float
         Of the first driver's rotor [rad/s].
-    response : coupling.PeriodicResponse
-    histories : coupling.Histories
+    response : PeriodicResponse
+    histories : Histories
         Of one period.
     trusted_limit : float
         Highest frequency that the model carries [Hz].
@@ -69,8 +69,8 @@ class SteadyMotion:
         return amplitude_spectrum(signal, self.response.period / len(signal))
 
     @property
-    def told_lines(self) -> int:
-        """Number of the highest lines of a signal that are told of."""
+    def reported_lines(self) -> int:
+        """Number of the highest lines of a signal that are reported."""
         return _LINES
 
     def lines(self, signal: FloatArray) -> list[tuple[float, float]]:
@@ -89,14 +89,14 @@ class SteadyMotion:
         ]
 
     def resampled(self, signal: FloatArray, count: int) -> FloatArray:
-        """A whole period of a signal at another number of samples, by its own lines."""
+        """Resample a whole period of a signal to another number of samples, by its own lines."""
         if len(signal) == count:
             return signal
         return np.asarray(np.fft.irfft(np.fft.rfft(signal), count) * (count / len(signal)))
 
     @property
     def sensor_rms(self) -> dict[str, float]:
-        """Of each sensor's acceleration up to the trusted limit [m/s²]."""
+        """Rms value of each sensor's acceleration up to the trusted limit [m/s²]."""
         signals = self.histories.sensor_acceleration
         return {name: float(self.spectrum(signal).rms(self.trusted_limit)) for name, signal in signals.items()}
 
@@ -112,9 +112,9 @@ class SolvedSteady:
     motions : tuple of SteadyMotion
         At the speed of operation: one, or all that a branch has there; where they are superposed, one of each group
         of excitations.
-    superposed : coupling.SuperposedResponse or None
+    superposed : SuperposedResponse or None
         Their sum, where the excitations have no short common period.
-    curve : coupling.ResponseCurve or None
+    curve : ResponseCurve or None
         The branch over the speed of the first driver's rotor [rad/s].
     branch_rms : dict of str to ndarray, shape (p,)
         Of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].

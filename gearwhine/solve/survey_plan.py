@@ -82,7 +82,7 @@ def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | N
 
 
 def write_plan(place: Path, planned: PlannedSurvey) -> None:
-    """The survey as a universal file (points, directions, trace lines) and as a table."""
+    """Write the survey plan as a universal file (points, directions, trace lines) and as a table."""
     survey = SurveyData(planned.geometry)
     write_universal(place / _FILES[0], survey, points=15)
     write_table(place / _FILES[1], survey)

@@ -1,4 +1,4 @@
-"""The transient of a case: the machine turning under load, and what its sensors, gears and bearings show."""
+"""Transient of a case: time integration of the loaded machine; histories of sensors, gears and bearings."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-import coupling as room
+import coupling
 import gearwhine
 from coupling import CoupledMachine, SpeedProfile
 from coupling.signals.histories import (
@@ -33,9 +33,9 @@ from gearwhine.solve.transient_record import (
     RECORD_BYTES,
     Arrays,
     Blocks,
-    MarchRecord,
     Sampling,
     Signals,
+    TransientRecord,
     block_arrays,
     record_spectra,
     sampling,
@@ -58,17 +58,17 @@ class SolvedTransient:
     speed : float
         Of the first driver's rotor at operation [rad/s].
     method : str
-        By which it was marched, "newmark" or "exact".
-    turning : coupling.Turning or None
+        The method of time integration, "newmark" or "exact".
+    turning : SpeedProfile or None
         Speed over time; None where it is the nominal one all along.
-    result : coupling.TransientFigures
-    record : MarchRecord
+    result : TransientFigures
+    record : TransientRecord
         Everything recorded, piece by piece.
     signals : Signals
         The same at once; of a long record its last stretch.
-    sensor_spectra : dict of str to coupling.Spectrum
+    sensor_spectra : dict of str to Spectrum
         Acceleration [m/s²]; of a long record averaged over stretches, up to the trusted limit.
-    force_spectra : dict of str to coupling.Spectrum
+    force_spectra : dict of str to Spectrum
         Gear-mesh force [N]; likewise.
     trusted_limit : float
         Highest frequency that the housing's modes carry [Hz].
@@ -79,7 +79,7 @@ class SolvedTransient:
     method: str
     turning: SpeedProfile | None
     result: TransientFigures
-    record: MarchRecord
+    record: TransientRecord
     signals: Signals
     sensor_spectra: dict[str, Spectrum]
     force_spectra: dict[str, Spectrum]
@@ -87,17 +87,17 @@ class SolvedTransient:
 
     @property
     def histories(self) -> Histories:
-        """Of the signals."""
+        """Histories of the recorded signals."""
         return self.signals.histories
 
     @property
     def modal(self) -> ModalRecord:
-        """Of the signals."""
+        """Modal coordinates of the recorded signals."""
         return self.signals.modal
 
     @property
     def steps_per_second(self) -> float | None:
-        """Speed of the march; None where it took no time that a clock shows."""
+        """Speed of the integration; None where it took no time that a clock shows."""
         return self.result.steps / self.result.seconds if self.result.seconds > 0.0 else None
 
     @property
@@ -117,11 +117,11 @@ class SolvedTransient:
         return float(self.sensor_spectra[sensor].rms(self.trusted_limit))
 
     def sensor_peaks(self, sensor: str) -> list[Peak]:
-        """The lines of a sensor that are told of, highest first."""
+        """Return the reported spectral peaks of a sensor, highest first."""
         return spectrum_peaks(self.sensor_spectra[sensor], count=20, limit=self.trusted_limit, floor=1e-5)
 
     def force_peaks(self, contact: str) -> list[Peak]:
-        """The lines of a gear-mesh force that are told of, highest first."""
+        """Return the reported spectral peaks of a gear-mesh force, highest first."""
         return spectrum_peaks(self.force_spectra[contact], count=8)
 
     def back_flank_peak(self, pair: int) -> float | None:
@@ -169,20 +169,20 @@ def solve_transient(
     record_bytes: int = RECORD_BYTES,
     samples_per_block: int | None = None,
 ) -> SolvedTransient:
-    """March the machine through the case's revolutions, or its run, and take the spectra of what is not discarded.
+    """Integrate the machine's motion through the case's revolutions or run, and take the spectra of its record.
 
     The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
     the spectra are taken as they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled
     for its highest speed, and ``discard`` counts revolutions as they are turned. A record that is too long for memory
-    is filtered and kept at fewer samples, see :mod:`gearwhine.solve.transient_record`.
+    is filtered and stored at fewer samples, see :mod:`gearwhine.solve.transient_record`.
 
     Parameters
     ----------
     keep : callable, optional
-        Gives the blocks kept under a key of all that the march depends on; the march goes on behind them. By default
-        none are kept, and all are held in memory.
+        Gives the blocks stored under a key of all that the integration depends on, which goes on behind them. By
+        default none are stored, and all are held in memory.
     record_bytes, samples_per_block : int
-        The longest record kept as sampled, and about how many samples are marched from checkpoint to checkpoint.
+        The longest record stored as sampled, and about how many samples are integrated from checkpoint to checkpoint.
 
     Raises
     ------
@@ -208,26 +208,26 @@ def solve_transient(
     signals = nothing.columns.shape[1]
     chosen = sampling(case, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block)
     progress("compiling the time stepper (the first time takes longer)")
-    march = (machine.system, chosen.settings, outputs)
+    integration = (machine.system, chosen.settings, outputs)
     start = starting_state(case, machine)
-    key = integration_key(*march, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
+    key = integration_key(*integration, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
     blocks: Blocks = _InMemory()
     if keep is not None:
         blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
     last = blocks[len(blocks) - 1] if len(blocks) else None
     held = nothing.columns if last is None else last["held"]
-    marched = integrate_blocks(
-        *march,
+    integrated = integrate_blocks(
+        *integration,
         turning=turning,
         initial=start,
         after=None if last is None else Checkpoint.from_arrays(last),
         samples_per_block=chosen.samples_per_block,
         progress=lambda fraction: progress("marching through the transient", fraction),
     )
-    for block in marched:
+    for block in integrated:
         columns, held = chosen.decimation.through(held, named(block).columns)
         blocks.append(block_arrays(columns, held, block.after))
-    record = MarchRecord(chosen, blocks, nothing)
+    record = TransientRecord(chosen, blocks, nothing)
     figures = transient_figures(chosen.settings, record.end)
     stretch = record.last_stretch()
     of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
@@ -250,15 +250,15 @@ def _in_space(case: Case, housing: SolvedHousing | ReducedHousing | None, named:
 
 
 def _with_code(key: str, chosen: Sampling) -> str:
-    """The key of a march with what is kept of it, by which code, and on which processor: no other rounds alike."""
+    """Return the key of a time integration and its stored data, for this code and processor: no other rounds alike."""
     from llvmlite import binding
 
     return content_key(
         {
-            "march": key,
-            "kept": [chosen.decimation.factor, len(chosen.decimation.taps)],
+            "integration": key,
+            "stored": [chosen.decimation.factor, len(chosen.decimation.taps)],
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-            "source": source_digest(room, gearwhine),
+            "source": source_digest(coupling, gearwhine),
             "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
         }
     )
@@ -285,7 +285,7 @@ def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
 
 
 def _trusted_limit(housing: SolvedHousing | ReducedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
-    """Up to where the housing's modes are complete [Hz]; without a housing, what the gears excite."""
+    """Return the limit up to which the housing's modes are complete [Hz]; without a housing, that of the gears."""
     if housing is not None:
         return housing.trusted_limit_hz
     return 4.0 * max(mesh_frequencies, default=1000.0)

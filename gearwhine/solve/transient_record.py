@@ -1,19 +1,16 @@
-"""Record of a time integration in blocks: histories block by block, and their spectra.
+"""Record of a time integration in blocks: sampling, checkpoint files, histories block by block, and their spectra.
 
-Checkpoint files of a time integration: each block of the record with the state after it, for a later restart.
+Checkpoints: a run stores its blocks in a hidden folder of the output folder, each with the state after it, for a later
+restart. The folder bears the key of everything that the integration depends on, and goes when the results are written.
+A block and its checkpoint are one file that appears whole: it is written beside, forced to the disk, and renamed. A run
+that is killed, interrupted or fails leaves its blocks; the next run with the same key goes on behind the last one
+before any damage. A run of anything else clears them away.
 
-A run keeps its blocks in a hidden folder of the output folder, which bears the key of everything the march depends on
-and goes when the results are written. A block and its checkpoint are one file that appears whole: it is written beside,
-forced to the disk, and renamed. Who is killed, interrupted or fails leaves the blocks it has; the next run with the
-same key goes on behind the last one before any damage. A run of anything else clears them away.
-
-Sampling of a transient: steps, record length, decimation and spectral windows.
-
-Stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times the
-highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record that
-fits in memory is kept like that, and its spectra are those of the whole. A longer one is filtered as it comes and kept
-at four times that frequency: its histories and spectra are right up to there, which is also as far as the model's
-modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
+Sampling: stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times
+the highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record
+that fits in memory stays like that, and its spectra are those of the whole. A longer one is filtered as it comes and
+stored at four times that frequency: its histories and spectra are right up to there, which is also as far as the
+model's modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
 """
 
 import math
@@ -41,8 +38,8 @@ from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked
 
-_KEPT = ".resume-"
-_KEY_DIGITS = 16  # of the folder's name: no two marches of one folder share them by chance
+_FOLDER_PREFIX = ".resume-"
+_KEY_DIGITS = 16  # of the folder's name: no two integrations of one folder share them by chance
 
 Arrays = Mapping[str, npt.NDArray[Any]]
 
@@ -50,9 +47,14 @@ Arrays = Mapping[str, npt.NDArray[Any]]
 class Blocks(Protocol):
     """Blocks in their order, in memory or on file."""
 
-    def __len__(self) -> int: ...
-    def append(self, arrays: Arrays, /) -> None: ...
-    def __getitem__(self, number: int, /) -> Arrays: ...
+    def __len__(self) -> int:
+        """Return the number of blocks."""
+
+    def append(self, arrays: Arrays, /) -> None:
+        """Add the arrays of the next block."""
+
+    def __getitem__(self, number: int, /) -> Arrays:
+        """Return the arrays of a block."""
 
 
 class BlockFiles:
@@ -66,6 +68,7 @@ class BlockFiles:
             self._count += 1
 
     def __len__(self) -> int:
+        """Return the number of whole blocks, up to the first damaged or missing one."""
         return self._count
 
     @property
@@ -86,6 +89,7 @@ class BlockFiles:
         self._count += 1
 
     def __getitem__(self, number: int) -> Arrays:
+        """Read the arrays of a block."""
         return self._read(range(self._count)[number])
 
     def _file(self, number: int) -> Path:
@@ -109,7 +113,7 @@ class BlockFiles:
 def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
     """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
 
-    Where a living run is at the same march in the same folder, this one keeps blocks of its own.
+    Where a living run is at the same integration in the same folder, this one stores blocks of its own.
 
     Parameters
     ----------
@@ -123,7 +127,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
     made = not folder.exists()
     with ExitStack() as stack:
         with exclusive_lock(folder):
-            place = _place(folder, f"{_KEPT}{key[:_KEY_DIGITS]}", fresh=fresh)
+            place = _place(folder, f"{_FOLDER_PREFIX}{key[:_KEY_DIGITS]}", fresh=fresh)
             stack.enter_context(held_lock(place))
         blocks = BlockFiles(place)
         try:
@@ -138,9 +142,9 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
 
 
 def _place(folder: Path, name: str, *, fresh: bool) -> Path:
-    """A folder for the blocks, after those of dead runs of anything else are cleared away."""
+    """Return a folder for the blocks, after those of any other ended run are cleared away."""
     wanted = folder / name
-    for other in folder.glob(f"{_KEPT}*"):
+    for other in folder.glob(f"{_FOLDER_PREFIX}*"):
         if other.is_dir() and not other.is_symlink() and (fresh or other != wanted) and not is_locked(other):
             shutil.rmtree(other, ignore_errors=True)
     if wanted.exists() and is_locked(wanted):
@@ -166,11 +170,11 @@ def _force_names(folder: Path) -> None:
 
 
 _HERTZ = 2.0 * math.pi
-_OVERSAMPLING = 100.0  # of the march over the highest frequency of interest
-_FEWEST_SAMPLES = 16  # of a march: fewer show nothing
-_KEPT_SAMPLING = 4.0  # of what is kept of long records: what folds onto that frequency is a wide transition away
+_OVERSAMPLING = 100.0  # of the integration over the highest frequency of interest
+_FEWEST_SAMPLES = 16  # of an integration: fewer show nothing
+_STORED_SAMPLING = 4.0  # of stored long records: what folds onto that frequency is a wide transition away
 RECORD_BYTES = 128 << 20
-"""The longest record that is kept as it was sampled, all signals together."""
+"""The longest record that is stored as it was sampled, all signals together."""
 _STRETCH_BYTES = 64 << 20
 _LONGEST_STRETCH = 1 << 18  # samples
 _BLOCK_BYTES = 32 << 20
@@ -184,11 +188,11 @@ class Sampling:
     Attributes
     ----------
     settings : coupling.TransientSettings
-        Of the march.
+        Of the integration.
     samples_per_block : int
-        Of the march, about.
-    decimation : coupling.Decimation
-        From what is recorded to what is kept; by 1 for a record that fits in memory.
+        Of the integration, about.
+    decimation : Decimation
+        From recorded to stored samples; by 1 for a record that fits in memory.
     stretch : int
         Kept samples over which a spectrum is taken.
     window : {"uniform", "hann"}
@@ -228,14 +232,14 @@ def sampling(
     ----------
     case : Case
         With an operation and a transient.
-    turning : coupling.Turning or None
+    turning : SpeedProfile or None
         Speed over time; None where it is the nominal one all along.
     limit : float
         Highest frequency of interest [Hz].
     signals, rows : int
-        Numbers in a kept sample, and in one of the march.
+        Numbers in a stored sample, and in one of the integration.
     largest : int
-        The longest record that is kept as it was sampled [bytes].
+        The longest record that is stored as it was sampled [bytes].
     block : int, optional
         Samples in a block, about; by default as many as suit the length.
 
@@ -266,16 +270,16 @@ def sampling(
     if 8 * signals * settings.samples <= largest:
         decimation = coupled_decimation(1, 0.25)
         return Sampling(settings, block or SAMPLES_PER_BLOCK, decimation, settings.samples, _window(case))
-    kept_per_revolution = min(_power_of_two(_KEPT_SAMPLING * limit * period), per_revolution // 2)
-    factor = per_revolution // kept_per_revolution
-    decimation = coupled_decimation(factor, limit * period / kept_per_revolution)
-    kept = decimation.kept(settings.samples)
-    most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), kept_per_revolution)
+    stored_per_revolution = min(_power_of_two(_STORED_SAMPLING * limit * period), per_revolution // 2)
+    factor = per_revolution // stored_per_revolution
+    decimation = coupled_decimation(factor, limit * period / stored_per_revolution)
+    stored = decimation.kept(settings.samples)
+    most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), stored_per_revolution)
     whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
-    repeats = turning is None and whole * kept_per_revolution <= min(most, kept)
-    unit = kept_per_revolution * (whole if repeats else 1)
-    units = max(kept // unit, 1)
-    stretch = unit * (units // math.ceil(units * unit / most)) if unit <= kept else kept
+    repeats = turning is None and whole * stored_per_revolution <= min(most, stored)
+    unit = stored_per_revolution * (whole if repeats else 1)
+    units = max(stored // unit, 1)
+    stretch = unit * (units // math.ceil(units * unit / most)) if unit <= stored else stored
     if block is None:
         block = min(max(_BLOCK_BYTES // (8 * rows), SAMPLES_PER_BLOCK), _LARGEST_BLOCK)
     return Sampling(settings, block, decimation, stretch, "uniform" if repeats else "hann")
@@ -292,7 +296,7 @@ def transient_duration(case: Case) -> float:
 
 
 def _record_from(case: Case, period: float, turning: SpeedProfile | None) -> float:
-    """When the discarded revolutions are done [s].
+    """Return the time at which the discarded revolutions end [s].
 
     Raises
     ------
@@ -330,7 +334,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def block_arrays(columns: FloatArray, held: FloatArray, after: Checkpoint) -> Arrays:
-    """Stored arrays of a block: its samples, the filter's state, and the state to restart from."""
+    """Return the stored arrays of a block: its samples, the filter's state, and the state to restart from."""
     return {"columns": columns, "held": held, **after.as_arrays()}
 
 
@@ -348,7 +352,7 @@ class Signals:
 
     @property
     def columns(self) -> FloatArray:
-        """Every signal beside the others, shape (s, k)."""
+        """All signals side by side, shape (s, k)."""
         return np.concatenate([self.histories.columns, self.modal.columns], axis=1)
 
     def with_columns(self, times: FloatArray, columns: FloatArray) -> "Signals":
@@ -361,8 +365,8 @@ class Signals:
 
 
 @dataclass(frozen=True)
-class MarchRecord:
-    """A finished march.
+class TransientRecord:
+    """The record of a finished time integration.
 
     Attributes
     ----------
@@ -388,7 +392,7 @@ class MarchRecord:
         return self.sampling.decimation.kept(self.end.sample)
 
     def pieces(self) -> Iterator[Signals]:
-        """The histories, block by block."""
+        """Yield the histories, block by block."""
         done = 0
         for number in range(len(self.blocks)):
             columns = self.blocks[number]["columns"]
@@ -396,7 +400,7 @@ class MarchRecord:
             done += len(columns)
 
     def stretches(self) -> Iterator[Signals]:
-        """The histories in stretches of equal length, the last of which ends with the record."""
+        """Yield the histories in stretches of equal length, the last of which ends with the record."""
         length = min(self.sampling.stretch, self.samples)
         skipped = self.samples % length
         waiting, done = self.signals.columns[:0], 0
@@ -411,7 +415,7 @@ class MarchRecord:
                 waiting, done = waiting[length:], done + length
 
     def last_stretch(self) -> Signals:
-        """The last of them; of a record that fits in memory, all of it."""
+        """Return the last stretch; of a record that fits in memory, all of it."""
         length = min(self.sampling.stretch, self.samples)
         parts: list[FloatArray] = []
         for number in reversed(range(len(self.blocks))):
@@ -422,7 +426,7 @@ class MarchRecord:
         return self._named(columns[len(columns) - length :], self.samples - length)
 
     def _named(self, columns: FloatArray, first: int) -> Signals:
-        """The samples under their names, counted from a first one."""
+        """Return the samples under their names, counted from a first one."""
         recorded = self.sampling.decimation.delay + self.sampling.decimation.factor * np.arange(
             first, first + len(columns), dtype=np.float64
         )
@@ -439,12 +443,12 @@ class MarchRecord:
 
 
 def record_spectra(
-    record: MarchRecord, last: Histories, limit: float
+    record: TransientRecord, last: Histories, limit: float
 ) -> tuple[dict[str, Spectrum], dict[str, Spectrum]]:
     """Spectra of the sensors' accelerations and of the mesh forces.
 
     Of the whole where it fits in memory, and given as ``last``; of a long record averaged over its stretches, up to the
-    limit [Hz] below which all of it was kept.
+    limit [Hz] below which all of it is stored.
     """
     sensors, meshes = list(last.sensor_acceleration), list(last.mesh_force)
     if not record.sampling.is_long:
@@ -468,11 +472,11 @@ def record_spectra(
 
 
 def _below(spectrum: Spectrum, limit: float) -> Spectrum:
-    """The lines up to a limit [Hz], and two more: a line at the limit stands out only beside its neighbours."""
-    kept = int(np.searchsorted(spectrum.frequencies, limit + 2.0 * spectrum.frequencies[1], side="right"))
+    """Return the lines up to a limit [Hz], and two more: a peak at the limit stands out only beside its neighbours."""
+    count = int(np.searchsorted(spectrum.frequencies, limit + 2.0 * spectrum.frequencies[1], side="right"))
     return replace(
         spectrum,
-        frequencies=spectrum.frequencies[:kept],
-        amplitude=spectrum.amplitude[..., :kept],
-        phase=spectrum.phase[..., :kept],
+        frequencies=spectrum.frequencies[:count],
+        amplitude=spectrum.amplitude[..., :count],
+        phase=spectrum.phase[..., :count],
     )

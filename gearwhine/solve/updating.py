@@ -1,19 +1,15 @@
-"""Model updating of a case's housing: the search, and the validation of the fit.
+"""Model updating of a case's housing: the search, the cross-validation of the fit, and the updated case.
 
-The search is made on a mesh of its own, coarse enough for many solves, that moves with the box, with that mesh's bias
-taken off. The box's own mesh decides: it judges every few solves, and the search ends with a few designs more there,
-each meshed anew.
+The targets are measured frequencies, and shapes where a survey holds some. The search is made on a mesh of its own,
+coarse enough for many solves, that moves with the box, with that mesh's bias taken off. The box's own mesh decides: it
+judges every few solves, and the search ends with a few designs more there, each meshed anew.
 
-Targets of an update: measured frequencies, and shapes where a survey holds some.
+Cross-validation leaves modes out in turn, and fits random frequency sets as the null hypothesis. Each is the whole
+search again. On the housing's own mesh it would take as long as the update itself, so all are made on the coarser one,
+as if that were the housing; the measured set too, with which the random ones are compared. Local processes share these
+long tasks with small results.
 
-Cross-validation of an update: modes left out in turn, and random frequency sets as the null hypothesis.
-
-Each is the whole search again. On the housing's own mesh it would take as long as the update itself, so all are made on
-the coarser one, as if that were the housing; the measured set too, with which the random ones are compared.
-
-Parallel work by local processes, for long tasks with small results.
-
-Updated case: the case file with the fitted numbers, their provenance and their prior.
+The updated case is the case file with the fitted numbers, their provenance and their prior.
 """
 
 import tempfile
@@ -207,7 +203,7 @@ class NullTest:
 
 
 def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -> Procedure[HousingAtParameters]:
-    """The update's search as it is made on the mesh of one design alone, by one thread, from there.
+    """Return the update's search as made on the mesh of one design alone, by one thread, from that design.
 
     Parameters
     ----------
@@ -238,7 +234,7 @@ def random_frequency_sets(
 
 
 def default_workers() -> int:
-    """As many as this process may use of the machine's cores."""
+    """Return the number of cores that this process may use."""
     from gearwhine.sweep.workers import default_workers as of_the_machine
 
     return of_the_machine()
@@ -529,7 +525,7 @@ def _raced(
     threads: int,
     progress: Progress,
 ) -> tuple[HousingAtParameters, HousingAtParameters, MultistartResult[HousingAtParameters]]:
-    """The housing as it stands on both meshes, and the search from there and from other starts.
+    """Solve the housing as it stands on both meshes, and search from there and from other starts.
 
     Where there are several starts all is done by one thread each, from the first solution on: with other numbers of
     threads sums are rounded otherwise, and a search that is led by its last digits ends elsewhere.
@@ -557,7 +553,7 @@ def _as_it_stands(task: tuple[ParametricHousing, bool]) -> HousingAtParameters:
 
 
 def updated_case(case: Case, solved: SolvedUpdate) -> str:
-    """The case with what was found, as TOML; what each number was, is and why stands at the top and in [provenance].
+    """Return the updated case as TOML; each fitted number's old value, new value and reason stand in [provenance].
 
     The prior stays where it was: an update of the updated case begins at what was found, and is drawn to what was
     nominal.
@@ -601,7 +597,7 @@ def _clear(misfit: Misfit) -> str:
 
 
 def _prior(number: FittedNumber) -> dict[str, Any]:
-    """The prior as it was, now that the case's own number is another one."""
+    """Return the prior as it was, now that the case's own number is another one."""
     parameter, given = number.parameter, number.given
     if given.factor:
         return {}
@@ -613,7 +609,7 @@ def _exact(value: float, given: UpdateParameter) -> str | float:
 
 
 def _shown(value: float, given: UpdateParameter) -> str:
-    """A value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
+    """Return a value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
     return f"{value / unit_in_si(given):.5g} {given.unit}".strip()
 
 

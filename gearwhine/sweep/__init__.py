@@ -1,13 +1,11 @@
 """Sweeps: a case at many speeds, or over any of its keys, by many processes.
 
 - :func:`sweep_points` -- the case at every point of the grid, checked, each with the key of its content.
-- :func:`run_sweep` -- what is on file already is read, the rest goes to the workers, each point is written as it
-  ends.
+- :func:`run_sweep` -- points on file are read, the others go to the workers, each point is written as it ends.
 - :func:`collected_sweep`, :func:`sweep_document` -- all points in one labelled dataset, and as JSON.
 
-A point is known again by its content (:mod:`gearwhine.sweep.points`), is solved by :mod:`gearwhine.sweep.solution`
-wherever a worker is (:mod:`gearwhine.sweep.workers`), and lives in a file of its own
-(:mod:`gearwhine.sweep.solution`).
+A point is identified by its content (:mod:`gearwhine.sweep.points`), is solved wherever a worker is
+(:mod:`gearwhine.sweep.workers`), and lives in a file of its own (both in :mod:`gearwhine.sweep.solution`).
 """
 
 from gearwhine.sweep.collect import collected_sweep, sweep_document

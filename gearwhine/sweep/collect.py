@@ -24,7 +24,7 @@ _SAME_ORDER = 9  # decimals to which two lines are one
 
 
 def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> xr.Dataset:
-    """Every point of a sweep over its swept keys; NaN where a point failed or has no such line.
+    """Collect every point of a sweep over its swept keys; NaN where a point failed or has no such line.
 
     Spectra stand over *order*, cycles for each turn of the first driver: records hold a number of its turns, so the
     lines of all speeds fall on each other without any interpolation. ``frequency`` has each point's in Hz.
@@ -75,7 +75,7 @@ def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptP
 
 
 def sweep_document(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> dict[str, Any]:
-    """A sweep as the command's JSON."""
+    """Return a sweep as the command's JSON."""
     rows = []
     for one in swept:
         values = {axis_name(key.key): key.values[place] for key, place in zip(keys, one.point.place, strict=True)}
@@ -116,7 +116,7 @@ class _Grid:
         of: Callable[[PointResult], Any],
         attributes: dict[str, str],
     ) -> Any:
-        """A variable with further dimensions, NaN where there is no result."""
+        """Return a variable with further dimensions, NaN where there is no result."""
         values = np.full((*self.shape, *shape), np.nan)
         for one in self.swept:
             if isinstance(one.outcome, PointResult):
@@ -215,7 +215,7 @@ def _add_bearings(grid: _Grid, variables: dict[str, Any], coordinates: dict[str,
 
 
 def _orders(results: Sequence[PointResult]) -> FloatArray:
-    """Every order that some point has a line at."""
+    """Return every order at which some point has a line."""
     lines = [np.round(result.orders, _SAME_ORDER) for result in results]
     return np.unique(np.concatenate(lines)) if lines else np.empty(0)
 

@@ -59,7 +59,7 @@ class Point:
 
 
 def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey]) -> tuple[Point, ...]:
-    """Every point of the grid, the last key fastest.
+    """Return every point of the grid, the last key fastest.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def code_digest() -> str:
 
 
 def axis_name(key: str) -> str:
-    """A swept key as the name of a dimension: ``speed`` for the speed, else letters, digits and underscores."""
+    """Return a swept key as a dimension's name: ``speed`` for the speed, else letters, digits and underscores."""
     if key == SPEED_KEY:
         return "speed"
     return "_".join("".join(letter if letter.isalnum() else " " for letter in key).split())
@@ -129,6 +129,6 @@ def _described(keys: Sequence[SweptKey], place: tuple[int, ...]) -> str:
 
 
 def _of_the_sweep(problem: Problem, overrides: Sequence[str]) -> Problem:
-    """A problem with a value that the sweep has set, as one of the sweep."""
+    """Return a problem with a swept value as a problem of the sweep."""
     text = problem.source.removeprefix("--set ")
     return replace(problem, source=f"sweep, {text}") if text in overrides else problem

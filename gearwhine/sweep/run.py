@@ -52,8 +52,8 @@ def run_sweep(
 ) -> tuple[SweptPoint, ...]:
     """Solve every point that the folder does not hold yet; each is written there as it ends.
 
-    Points that failed before are tried again. The housing's modes are solved here and kept where they are those of all
-    points; where the sweep changes them, by the workers.
+    Points that failed before are tried again. Where all points share the housing's modes, these are solved here and
+    cached; where the sweep changes them, they are solved by the workers.
 
     Parameters
     ----------
@@ -86,14 +86,14 @@ def run_sweep(
             with connected(workers, scheduler, place, [WarmUp()]) as client:
                 # What takes long goes first, lest all wait for it at the end.
                 todo.sort(key=lambda number: -points[number].duration)
-                shared, unkept = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
+                shared, uncached = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
                 if scheduler is None:
                     await_workers(client, workers)
                 told = _teller(len(points), len(resumed), progress)
                 told(0)
                 futures = in_thread(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
                 # Now, not before: the points need not wait for this.
-                _keep(unkept, folder)
+                _cache(uncached, folder)
                 _read_what_writes()
                 for count, (number, outcome) in enumerate(each_from_thread(_as_they_end(client, futures)), start=1):
                     outcomes[number] = outcome
@@ -107,9 +107,9 @@ def run_sweep(
 def _shared_housings(
     points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
 ) -> tuple[dict[str | None, ReducedHousing], SolvedHousing | None]:
-    """By its key, each housing of the points where all have the same modes; nothing where they differ or are none.
+    """Solve each housing that its points share, by its key; nothing where they differ or are none.
 
-    Beside it the solution that is still to be kept.
+    Beside it the solution that is still to be cached.
     """
     found: dict[str | None, ReducedHousing] = {}
     solved = None
@@ -119,13 +119,13 @@ def _shared_housings(
         if point.housing_key in found:
             continue
         # The next one reads the modes that this one keeps.
-        _keep(solved, folder)
+        _cache(solved, folder)
         solved = solve_housing(point.case, progress, command="sweep", folder=folder, fresh=fresh and not found)
         found[point.housing_key] = reduce_housing(point.case, solved)
     return found, solved
 
 
-def _keep(solved: SolvedHousing | None, folder: Path) -> None:
+def _cache(solved: SolvedHousing | None, folder: Path) -> None:
     if solved is not None:
         with staging(folder) as place:
             write_mode_cache(place, solved)

@@ -1,6 +1,6 @@
-"""Solving one sweep point on a worker: the transient, reduced to the quantities that a sweep collects.
+"""Solution of one sweep point on a worker: the transient, reduced to the quantities that a sweep collects.
 
-Point files of a sweep: NetCDF4, written whole or not at all.
+Each point is a file of NetCDF4, written whole or not at all.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ def _reduced(case: Case, solved: SolvedTransient, housing: ReducedHousing | None
     turning_hz = abs(case.operation.speed) / _HERTZ
     spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
     lines = spectra[0].frequencies if spectra else np.empty(0)
-    kept = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))
+    count = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))
     contacts = solved.machine.system.contacts
     # Under the drive flanks' name at every point, whichever are pressed there.
     pressed = {contacts[i].name: contacts[number].name for i, number in enumerate(solved.machine.loaded_contacts)}
@@ -159,9 +159,9 @@ def _reduced(case: Case, solved: SolvedTransient, housing: ReducedHousing | None
     forces = solved.histories.bearing_load
     return PointResult(
         document=document,
-        orders=lines[:kept] / turning_hz,
-        sensor_spectra={name: spectrum.amplitude[:kept] for name, spectrum in solved.sensor_spectra.items()},
-        force_spectra={name: solved.force_spectra[one].amplitude[:kept] for name, one in pressed.items()},
+        orders=lines[:count] / turning_hz,
+        sensor_spectra={name: spectrum.amplitude[:count] for name, spectrum in solved.sensor_spectra.items()},
+        force_spectra={name: solved.force_spectra[one].amplitude[:count] for name, one in pressed.items()},
         bearing_force_mean={name: force.mean(axis=0) for name, force in forces.items()},
         bearing_force_rms={name: force.std(axis=0) for name, force in forces.items()},
         housing_frequencies_hz=np.empty(0) if housing is None else housing.frequencies_hz,

@@ -15,7 +15,7 @@ _BRIEF = ("transient.revolutions=1", "transient.discard=0", "transient.tolerance
 
 
 class WarmUp(WorkerPlugin):
-    """Lets a worker march a pair of gears for a moment before its first point."""
+    """Lets a worker integrate a pair of gears for a moment before its first point."""
 
     name = "rehearsal"
 

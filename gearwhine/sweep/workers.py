@@ -35,7 +35,7 @@ _CLOSES = 10.0  # seconds
 
 
 def default_workers() -> int:
-    """As many as this process may use of the machine's cores."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -43,7 +43,7 @@ def default_workers() -> int:
 def connected(
     workers: int, scheduler: str | None, place: Path, plugins: Sequence[WorkerPlugin] = ()
 ) -> Iterator[Client]:
-    """A client of the workers; those started here end with the block, whatever ends it.
+    """Yield a client of the workers; those started here end with the block, whatever ends it.
 
     They are not waited for here, but by :func:`await_workers`. Workers of our own die with this process even where it
     is killed. A worker that dies is replaced, and what it was at is done again.

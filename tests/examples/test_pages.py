@@ -60,6 +60,14 @@ def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert float(names["force"].mean()) == pytest.approx(mean, rel=5e-3)
 
 
+def test_files_that_contributing_names_exist() -> None:
+    """A path in the tables of the tree is that of a file or folder."""
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    places = re.findall(r"`([\w./-]+/[\w.-]+)`", page)
+    assert len(places) >= 40
+    assert not [place for place in places if not (ROOT / place).exists() and not place.startswith(".venv")]
+
+
 def test_names_of_the_glossary_exist() -> None:
     """Every row names a module and something in it."""
     page = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")

@@ -1,6 +1,6 @@
-"""Contact pattern: load and pressure over the flank while a pair of teeth passes through its mesh.
+"""Tooth contact figures: load sharing, pressure and sliding along the path of contact, and the contact pattern.
 
-Load sharing, contact pressure and sliding velocity along the path of contact.
+The contact pattern shows load and pressure over the flank while a pair of teeth passes through its mesh.
 """
 
 import numpy as np

@@ -1,6 +1,7 @@
-"""Tooth pair in mesh: true tooth shapes, line of action and points of contact.
+"""Tooth figures: a tooth pair in mesh, and inspection charts of the flanks.
 
-Inspection charts of flanks: profile over the roll angle, helix across the face, pitch tooth by tooth.
+The pair is drawn with its true tooth shapes, line of action and points of contact. The charts show the profile over
+the roll angle, the helix across the face, and the pitch tooth by tooth.
 """
 
 import math
@@ -105,7 +106,7 @@ def _circles(axes: Axes, pair: GearPairGeometry, centres: tuple[FloatArray, Floa
 
 
 def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: FloatArray) -> None:
-    """The line, the named points on it, and the places of contact at the phase."""
+    """Draw the line of action, the named points on it, and the points of contact at the phase."""
     angle = pair.line_of_action_angle(_UP)
     along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([math.sin(angle), -math.cos(angle)])
     # The tangent point is where the line meets the driver's base circle at a right angle.
@@ -197,7 +198,7 @@ def draw_flank_charts(title: str, pair: GearPairGeometry, best: TipRelief | None
 
 
 def _rows(pair: GearPairGeometry, best: TipRelief | None) -> Sequence[Callable[[Axes, Gear], None]]:
-    """The rows of the chart, each a function that draws one gear's."""
+    """Return the rows of the chart, each a function that draws one gear's."""
     gears = pair.driver, pair.driven
     path = path_of_contact(pair)
     active = {id(pair.driver): path.driver_roll_angle[[0, -1]], id(pair.driven): path.driven_roll_angle[[-1, 0]]}

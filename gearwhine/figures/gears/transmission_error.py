@@ -1,8 +1,7 @@
-"""Static transmission error of a gear pair: its curve with and without load, and its harmonics.
+"""Transmission error figures: static transmission error, mesh stiffness and Harris map of a gear pair.
 
-Mesh stiffness over a mesh period, and the load shares of the tooth pairs.
-
-Harris map: transmission error over a mesh period for a range of torques, and its peak to peak over torque.
+The transmission error is drawn over a mesh period with and without load, and by its harmonics; the mesh stiffness with
+the load shares of the tooth pairs; the Harris map for a range of torques, with the peak to peak over torque.
 """
 
 import numpy as np

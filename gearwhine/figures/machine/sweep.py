@@ -69,7 +69,7 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
 def _waterfalls(
     title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]
 ) -> Iterator[tuple[str, Figure]]:
-    """A waterfall for each sensor and each combination of the other keys that has a spectrum."""
+    """Draw a waterfall for each sensor and each combination of the other keys that has a spectrum."""
     pictures = []
     for sensor, place in product([str(name) for name in dataset["sensor"].values], places):
         data = dataset.isel(place).transpose(along, ...)
@@ -128,7 +128,7 @@ def _finish(figure: Figure, dataset: xr.Dataset, along: str, places: list[dict[s
 
 
 def _numbers(data: xr.Dataset | xr.DataArray, along: str) -> Any:
-    """The swept values; where they are words, their places."""
+    """Return the swept values; where they are words, their positions."""
     values = data[along].values
     return values.astype(np.float64) if values.dtype.kind in "fiu" else np.arange(len(values), dtype=np.float64)
 
@@ -148,7 +148,7 @@ def _axis_label(dataset: xr.Dataset, along: str) -> str:
 
 
 def _described(dataset: xr.Dataset, place: dict[str, int]) -> list[str]:
-    """A combination of the other keys in words."""
+    """Return a combination of the other keys in words."""
     texts = []
     for name, index in place.items():
         value, unit = dataset[name].values[index], dataset[name].attrs.get("units", "")

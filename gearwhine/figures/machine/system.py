@@ -1,8 +1,7 @@
-"""Figures of the coupled system: Campbell diagram and transmissibility.
+"""Coupled system figures: Campbell diagram and transmissibility.
 
-Campbell diagram of the coupled machine: modes coloured by the part that moves, shaft and mesh orders across.
-
-Transmissibility: mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency.
+In the Campbell diagram the modes are coloured by the part that moves, with shaft and mesh orders across. The
+transmissibility gives mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -115,7 +114,7 @@ def _draw_branches(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> 
 
 
 def _draw_line(axes: Axes, line: ExcitationLine, last: float, top: float) -> None:
-    """An order, named at its end where that is at the right of the panel."""
+    """Draw the line of an order, named at its end where that is at the right of the panel."""
     slope = line.order / 60.0
     if line.kind == "sideband":
         axes.plot([0.0, last], [0.0, slope * last], color=_PALE_GREY, lw=0.5, zorder=1.5, label=line.name)

@@ -1,14 +1,10 @@
-"""Transient figures: spectra, mesh forces, orbits.
+"""Transient figures: sensor spectra, transfer paths, tooth friction, modal coordinates and orbits.
 
-Sensor spectra, a panel each, their leading lines named.
-
-Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars.
-
-Tooth friction over time: force across the line of action, and power loss.
-
-Modal coordinates in time and frequency, after Figs. 7, 8, 10 and 11 of NASA TM-101442.
-
-Orbits of gears: mean position of each centre, and its motion about it.
+- Sensor spectra, a panel each, their leading lines named.
+- Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars.
+- Tooth friction over time: force across the line of action, and power loss.
+- Modal coordinates in time and frequency, after Figs. 7, 8, 10 and 11 of NASA TM-101442.
+- Orbits of gears: the mean position of each centre, and its motion about it.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -226,13 +222,13 @@ def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, 
     rows = figure.subplots(len(shown), 2, squeeze=False)
     for (left, right), (name, found) in zip(rows, shown.items(), strict=True):
         times = 1e3 * (histories.times - histories.times[0])
-        kept = times <= 1e3 * _PERIODS / mesh_frequencies[name]
-        left.plot(times[kept], found[kept, 0], color=BLUE, lw=1.0)
+        shown = times <= 1e3 * _PERIODS / mesh_frequencies[name]
+        left.plot(times[shown], found[shown, 0], color=BLUE, lw=1.0)
         left.axhline(0.0, color=GREY, lw=0.6)
         left.set(xlabel="time [ms]", ylabel="friction force [N]")
         left.set_title(f"{name}: across the line of action", fontsize=10, loc="left", parse_math=False)
         mean = float(np.mean(found[:, 1]))
-        right.plot(times[kept], found[kept, 1], color=RED, lw=1.0)
+        right.plot(times[shown], found[shown, 1], color=RED, lw=1.0)
         right.axhline(mean, color=GREY, lw=0.8, ls="--")
         right.set(xlabel="time [ms]", ylabel="friction takes [W]")
         right.set_title(f"{mean:.3g} W in the mean", fontsize=10, loc="left")

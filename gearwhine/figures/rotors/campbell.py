@@ -1,6 +1,6 @@
 """Campbell diagram of a rotor: whirl frequencies and damping over the speed of rotation.
 
-Forward and backward whirl in figures: colours, lines and words.
+Forward and backward whirl have their colours, lines and words here, for all figures of rotors.
 """
 
 from collections.abc import Iterator, Sequence
@@ -54,7 +54,7 @@ AXIAL = Sense("along the axis", SERIES[3], (0, (1.2, 1.8)))
 
 
 def sense_of(direction: float, axial_share: float = 0.0) -> Sense:
-    """The sense for a whirl direction from −1 (circular backward) to 1 (circular forward), unless mostly axial."""
+    """Return the sense of a whirl direction from −1 (circular backward) to 1 (circular forward), or axial motion."""
     if axial_share > MOSTLY_AXIAL:
         return AXIAL
     if abs(direction) < PLANAR:
@@ -73,7 +73,7 @@ def with_rotation(directions: npt.ArrayLike, speeds: npt.ArrayLike) -> FloatArra
 
 
 def legend_lines(senses: Sequence[Sense], *, solid: bool = False) -> list[Line2D]:
-    """A line for each sense that occurs, in the order forward, backward, mixed, axial; ``solid`` for colour alone."""
+    """Return a line for each sense that occurs: forward, backward, mixed, axial; ``solid`` for colour alone."""
     return [
         Line2D([], [], color=sense.color, ls="-" if solid else sense.line, lw=1.3, label=sense.name)
         for sense in (FORWARD, BACKWARD, MIXED, AXIAL)
@@ -203,7 +203,7 @@ def draw_campbell(
 
 
 def stability_onset(speeds: FloatArray, damping_ratios: FloatArray) -> tuple[float, int] | None:
-    """The lowest speed from which a branch is unstable, and that branch; None where all are stable.
+    """Return the lowest speed from which a branch is unstable, and that branch; None where all are stable.
 
     Between two speeds, (s,) ascending, the damping ratio, (s, w), is taken as linear.
     """
@@ -247,7 +247,7 @@ def _criticals(
 
 
 def _runs(senses: list[Sense]) -> Iterator[tuple[slice, Sense]]:
-    """Samples of a branch that share one sense: slices that overlap in one sample, and the sense."""
+    """Yield the samples of a branch that share one sense: slices that overlap in one sample, and the sense."""
     start = 0
     for index in range(1, len(senses) + 1):
         if index == len(senses) or senses[index] != senses[start]:
@@ -271,7 +271,7 @@ def _draw_branches(
 
 
 def _draw_order(axes: Axes, multiple: float, low: float, high: float, top: float) -> None:
-    """The line of a multiple of the speed, named where it leaves the panel."""
+    """Draw the line of a multiple of the speed, named where it leaves the panel."""
     ends = np.array([low, high])
     axes.plot(RPM * ends, multiple * ends / HERTZ, color=GREY, lw=0.8, zorder=2, label=f"{multiple:g}×")
     leaves_above = multiple * high > top
@@ -291,7 +291,7 @@ def _draw_order(axes: Axes, multiple: float, low: float, high: float, top: float
 def _draw_decrement(
     axes: Axes, speeds: FloatArray, ratios: FloatArray, directions: FloatArray, axial: FloatArray
 ) -> None:
-    """The logarithmic decrement 2πζ / √(1 − ζ²) of each branch."""
+    """Draw the logarithmic decrement 2πζ / √(1 − ζ²) of each branch."""
     decrement = 2.0 * np.pi * ratios / np.sqrt(np.maximum(1.0 - ratios**2, 1e-12))
     _draw_branches(axes, speeds, decrement, directions, axial)
     axes.axhline(0.0, color=INK, lw=0.7, zorder=1)

@@ -178,7 +178,7 @@ def _reached(stiffnesses: FloatArray, critical_speeds: FloatArray, speed: float)
 
 
 def _number(axes: Axes, stiffnesses: FloatArray, branch: FloatArray, number: int) -> None:
-    """Number of the critical speed of a branch, where it begins."""
+    """Write the number of a branch's critical speed where the branch begins."""
     known = np.flatnonzero(branch > 0.0)
     if known.size:
         place = (float(stiffnesses[known[0]]), RPM * float(branch[known[0]]))
@@ -211,7 +211,7 @@ def _write_beside(axes: Axes, marked: Sequence[Label]) -> None:
 
 
 def _limits(speeds: FloatArray, operating: float | None) -> tuple[float, float]:
-    """Ends of the axis of speeds, rad/s."""
+    """Return the ends of the axis of speeds, rad/s."""
     values = speeds[np.isfinite(speeds)].tolist() + ([abs(operating)] if operating else [])
     return (0.8 * min(values), 1.25 * max(values)) if values else (1.0, 10.0)
 

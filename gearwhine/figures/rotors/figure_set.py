@@ -61,7 +61,7 @@ def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = 
 
 
 def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
-    """A solved rotor as it is drawn: its gears by their size rather than as discs."""
+    """Return the assembly of a solved rotor as it is drawn: its gears by their size rather than as discs."""
     name = one.rotor.name
     given = case.rotor_named(name)
     gears = []

@@ -1,6 +1,6 @@
-"""Mode shapes over a shaft: planar bending and torsion, each mode on a line of its own.
+"""Mode shapes over a shaft, planar bending and torsion, each on a line of its own; static deflection.
 
-Static deflection of a rotor under its load, and its bearing reactions.
+The static deflection of a rotor under its load is drawn with its bearing reactions.
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,7 @@
-"""Unbalance response over speed: amplitude and phase at probes, with critical speeds and the operating range.
+"""Rotor responses: unbalance response over speed, torsional response over frequency.
 
-Torsional response over frequency: angle at probes and torque in the shaft, with the natural frequencies.
+The unbalance response shows amplitude and phase at probes, with critical speeds and the operating range; the torsional
+response the angle at probes and the torque in the shaft, with the natural frequencies.
 """
 
 from collections.abc import Sequence

@@ -1,10 +1,7 @@
 """Shaft drawing to scale, alone or above a panel that shares its axis.
 
-Drawing scale of a shaft, the same along it and across it where space allows.
-
-Shaft outline in section through its axis: segments, couplings, discs, gears.
-
-Symbols of supports under a shaft: spring or rolling bearing; ground, seat or pedestal.
+The scale is the same along the shaft and across it where space allows. The outline is a section through the axis with
+segments, couplings, discs and gears. Supports have symbols: a spring or a rolling bearing, on ground, seat or pedestal.
 """
 
 import math
@@ -73,11 +70,11 @@ class ShaftView:
         return (MM * z - self.low) / self.per_paper
 
     def length(self, paper: float) -> float:
-        """A length on paper (mm) in the picture's coordinates."""
+        """Return a length on paper (mm) in the picture's coordinates."""
         return paper * self.per_paper
 
     def across(self, radius: float) -> float:
-        """A radius (m) in the picture's coordinates."""
+        """Return a radius (m) in the picture's coordinates."""
         return MM * radius * self.stretch
 
     def apply(self, axes: Axes, below: float) -> None:
@@ -113,7 +110,7 @@ def _ticks(largest: float, paper: float) -> FloatArray:
 
 
 def fitted(assembly: RotorAssembly) -> ShaftView:
-    """The largest true scale at which an assembly fits a panel; a slender one has its diameters stretched."""
+    """Return the largest true scale at which an assembly fits a panel; a slender one has its diameters stretched."""
     left, right = (MM * end for end in assembly.reach)
     radius = MM * assembly.largest_radius
     per_paper = max((right - left) / (PANEL_WIDTH - 2.0 * _MARGIN), 2.0 * radius / _MOST)
@@ -133,7 +130,7 @@ _CHAIN = (0, (8, 2, 1.5, 2))
 
 
 def materials(assembly: RotorAssembly) -> list[ShaftMaterial]:
-    """The segments' materials, in the order in which they come."""
+    """Return the segments' materials, in the order in which they come."""
     return list(dict.fromkeys(part.material for part in assembly.parts if isinstance(part, Segment)))
 
 
@@ -271,7 +268,7 @@ def _draw_stand(axes: Axes, assembly: RotorAssembly, view: ShaftView, bearing: B
 
 
 def _draw_ground(axes: Axes, view: ShaftView, place: float, top: float, wide: float) -> None:
-    """A line with strokes below it."""
+    """Draw the ground: a line with strokes below it."""
     axes.plot((place - 0.5 * wide, place + 0.5 * wide), (top, top), color=INK, lw=1.2 * _LINE, zorder=3, label="ground")
     drop = view.length(0.8 * _GROUND)
     starts = place + np.linspace(-0.35, 0.5, 5) * wide
@@ -299,7 +296,7 @@ class OutlinePanel:
 
     @property
     def height(self) -> float:
-        """Of the whole panel."""
+        """Height of the whole panel."""
         return self.above.height + self.rise + self.drop + self.below.height + 2.0 * _CLEAR
 
     @property

@@ -78,7 +78,7 @@ def local_direction(x: ComplexArray, y: ComplexArray) -> FloatArray:
 
 
 def _scaled(x: ComplexArray, y: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """A mode whose largest semi-axis is one, and whose first instant is where that place is farthest out."""
+    """Scale a mode to a largest semi-axis of one, and turn it to begin where that orbit is farthest out."""
     # A place moves by |x + iy|/2 one way round and |x − iy|/2 the other; the semi-axes are their sum and difference.
     major = 0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y))
     top = int(major.argmax())

@@ -1,4 +1,4 @@
-"""Doubts of gear geometry: teeth with a thin tip, or undercut."""
+"""Warnings of gear geometry: teeth with a thin tip, or undercut."""
 
 from coupling.gears import GearPairGeometry
 from coupling.gears.errors import ThinTipError
