@@ -1,16 +1,13 @@
-"""Campbell diagram: whirl over a range of speeds, followed through its crossings.
+"""Campbell diagram: whirl eigenvalues over a range of speeds, and their crossings with orders of the speed.
 
-Starting values at every speed come from one projection on planar modes, reduced once; the roots are then refined
-on the exact equations, all speeds in one batch. Branches are followed from speed to speed by the eigenvalue that
-continues them and the likeness of shapes. Motions that the bearings do not couple, such as forward and backward whirl
-in isotropic ones, are followed separately, so that they cannot be confused where they cross.
+Starting values at every speed come from one modal projection, reduced once; the roots are then refined on the exact
+equations, all speeds in one batch. Branches are followed from speed to speed, through the places where they cross, by
+the eigenvalue that continues them and the modal assurance criterion of the shapes. Motions that the bearings do not
+couple, such as forward and backward whirl in isotropic ones, are followed separately, so that they cannot be confused
+where they cross.
 
 Without damping the number of roots is proved at every speed (`rotors.whirl.completeness`). With damping a proof costs a
 contour integral at each speed: it is made at a few speeds, or at all on request.
-
-Branches of a Campbell diagram: whirl modes followed from speed to speed, through the places where they cross.
-
-Whirl eigenvalues of a Campbell diagram: exact roots at many speeds at once, and their proof.
 """
 
 from collections.abc import Sequence
@@ -336,7 +333,7 @@ class Campbell:
         return tuple(sorted(found, key=lambda crossing: abs(crossing.speed)))
 
     def _crossing(self, branch: int, left: int, order: float) -> Crossing:
-        """The crossing between two neighbouring speeds, each λ on the way refined from between its neighbours."""
+        """Find the crossing between two neighbouring speeds, every λ on the way refined on the exact equations."""
         speeds, ends = self.speeds[left : left + 2].tolist(), self.eigenvalues[left : left + 2, branch]
         chain = self._chain(branch, float(np.abs(ends).max()), max(abs(speeds[0]), abs(speeds[1])))
 
@@ -393,7 +390,7 @@ def campbell(
     count
         Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
     basis
-        From `rotors.whirl_basis`, to avoid building it.
+        From `rotors.whirl.modal_projection.whirl_basis`, to avoid building it.
     prove_all
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
     solver
@@ -456,7 +453,7 @@ def campbell(
 
 
 def _inside(bearing: Bearing, speed: float) -> float:
-    """The speed, or the nearest one in a bearing's table."""
+    """Clip a speed (rad/s) to the range of a bearing's tables."""
     if bearing.speeds is None:
         return speed
     return float(np.clip(abs(speed), bearing.speeds[0], bearing.speeds[-1]))

@@ -202,7 +202,7 @@ def solve_harmonic(
 
 
 def bearing_forces(chain: WhirlEquations, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
-    """Forces on the bearings' carriers (b, ties, 5) over x, y, z and about x and y, in SI."""
+    """Return the bearing forces on the bearings' carriers, (b, bearings, 5), over x, y, z and about x and y, in SI."""
     length, angle = chain.bending.displacement_unit
     forces = np.zeros((solutions.shape[0], len(chain.ties), 5), dtype=np.complex128)
     for index, (tie, places) in enumerate(zip(chain.ties, chain.layout.ties, strict=True)):
@@ -228,6 +228,7 @@ def _sides(chain: WhirlEquations, places: Sequence[float], loads: Loads) -> Comp
 
 
 def finite_values(what: str, values: npt.ArrayLike) -> FloatArray:
+    """Return one or more finite values as a vector; ``what`` names them in the message of the error."""
     array = np.atleast_1d(np.asarray(values, dtype=np.float64))
     require(array.ndim == 1 and array.size > 0, f"{what} shape", array.shape, "one dimension and at least one value")
     for value in array.tolist():

@@ -1,6 +1,6 @@
 """Static deflection and bearing loads of a rotor under its weight and given forces.
 
-The weight along a piece enters exactly, whatever its taper and axial force. With y' = (A₀ + ω²B) y
+The weight along a shaft element enters exactly, whatever its taper and axial force. With y' = (A₀ + ω²B) y
 (`rotors.transfer_matrix.timoshenko`), y(0) = (1, 0, 0, 0) gives at ω = 0 the rigid translation y = (1, 0, 0, 0); its
 derivative with respect to ω² obeys (∂y)' = A₀ ∂y + B (1, 0, 0, 0): the field under the load ρA per unit acceleration.
 So
@@ -47,6 +47,7 @@ class StaticForce:
     about_y: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check that position, forces and moments are finite."""
         require_finite("force position", self.at, minimum=0.0)
         for what in ("x", "y", "z", "about_x", "about_y"):
             require_finite(f"force {what}", getattr(self, what))

@@ -1,7 +1,7 @@
 """Torsional response of a rotor to harmonic torques, by exact transfer matrices.
 
-Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a piece loses the part of its energy
-that a mode of damping ratio ζ loses. With c = 1 + 2iζ a piece's equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
+Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a shaft element loses the part of its
+energy that a mode of damping ratio ζ loses. With c = 1 + 2iζ its equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
 `rotors.transfer_matrix.timoshenko` for ω²/c with torques counted in units of c. Springs to ground carry k (1 + 2iζ),
 dashpots iωc, and couplings, which are massless, k_θ (1 + 2iζ) + iωc_θ.
 """
@@ -34,6 +34,7 @@ class Torque:
     amplitude: complex
 
     def __post_init__(self) -> None:
+        """Check that position and amplitude are finite."""
         require_finite("torque position", self.at, minimum=0.0)
         require(bool(np.isfinite(self.amplitude)), "torque amplitude", self.amplitude, "a finite complex number")
 
@@ -46,6 +47,7 @@ class TorsionalDashpot:
     coefficient: float
 
     def __post_init__(self) -> None:
+        """Check that position and coefficient are finite and not negative."""
         require_finite("dashpot position", self.at, minimum=0.0)
         require_finite("dashpot coefficient", self.coefficient, minimum=0.0)
 

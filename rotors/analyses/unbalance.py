@@ -85,7 +85,7 @@ class BowShape:
 
 
 def bow_shape(rotor: Rotor, bow: Bow) -> BowShape:
-    """The curve of least strain energy through a bow's points.
+    """Solve for the bow's shape: the curve of least strain energy through its points.
 
     Springs k to ground at the points, loaded by k w_k, give offsets A w there; w = A⁻¹ b makes them the measured
     ones, and the reactions are k(w − b). Any k serves; one of the shaft's own size keeps the digits.
@@ -130,7 +130,7 @@ def unbalance_response(
     *,
     bow: Bow | None = None,
 ) -> SynchronousResponse:
-    """Synchronous response to unbalance and bow at every speed.
+    """Solve for the unbalance response: the synchronous motion by unbalance and bow at every speed.
 
     Parameters
     ----------
