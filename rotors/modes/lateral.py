@@ -1,6 +1,7 @@
-"""Lateral modes: undamped bending of a shaft in one plane, the modal basis of the rotor (TM-101442 Eqs. 7–13).
+"""Lateral modes of a shaft: undamped bending in one plane, and buckling under its axial forces.
 
-Buckling of a shaft under its axial forces, by the Wittrick-Williams root count.
+The modes are the modal basis of the rotor (TM-101442 Eqs. 7–13). The buckling factor is found by the Wittrick-Williams
+root count at standstill.
 """
 
 from collections.abc import Sequence
@@ -27,7 +28,7 @@ LEAST_FACTOR = 1e-9
 
 
 def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> float:
-    """The least factor on all axial forces of a rotor at which it buckles in one plane.
+    """Solve for the buckling factor: the least factor on all axial forces at which a rotor buckles in one plane.
 
     Compression lowers the natural frequencies. Where one has reached zero the shaft buckles: beyond, the root count at
     standstill exceeds the number of rigid motions.
@@ -113,7 +114,8 @@ class LateralModes:
     supports
         The springs in K, which a coupled model removes again.
     certificate
-        Proof of completeness. It does not cover the attachment modes of `rotors.add_attachment_modes`.
+        Proof of completeness. It does not cover the attachment modes of
+        `rotors.modes.residual_modes.add_attachment_modes`.
     """
 
     frequencies: FloatArray

@@ -15,12 +15,10 @@ bearing or a gear puts on the shaft: a lateral force at each of them, a moment a
 resists these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated
 modes (Craig 2000), without which the shaft is too stiff at gears and bearings.
 
-Participation factors of a rotor's modes in rigid motions of the ground.
-
-For a ground that moves rigidly, u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation
-of the sections. R is a displacement along x (or y), a turn of the shaft's line about its left end in the plane of x
-(or y), or a motion along the axis. The same integral with the polar inertia is the gyroscopic moment of a base that
-turns.
+The participation factors of the modes belong to rigid motions of the ground. For a ground that moves rigidly,
+u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation of the sections. R is a
+displacement along x (or y), a rotation of the shaft's axis about its left end in the plane of x (or y), or a motion
+along the axis. The same integral with the polar inertia is the gyroscopic moment of a base that turns.
 """
 
 from collections.abc import Sequence

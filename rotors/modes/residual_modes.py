@@ -100,7 +100,7 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
 
 
 def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
-    """Combinations of fields that span the last ``count`` of them less the modes, (r, fields).
+    """Return combinations of fields that span the last ``count`` of them less the modes, (r, fields).
 
     The first ``zeros`` modes are rigid. They are removed first: the response of a nearly free shaft is almost all
     rigid, and the residual is a part of the small remainder.
@@ -122,7 +122,7 @@ def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -
 
 
 def _without(fields: ShaftFields, rows: FloatArray, modes: FloatArray) -> FloatArray:
-    """Combinations without their components along orthonormal modes; twice, to remove rounding."""
+    """Remove the components of combinations along orthonormal modes; twice, to remove rounding."""
     for _ in range(2 if modes.size else 0):
         rows = rows - fields.mass_products(rows, modes) @ modes
     return rows

@@ -1,8 +1,6 @@
-"""Torsional modes of a shaft, and of a chain of inertias and springs (Holzer).
+"""Torsional and axial modes of a shaft: rod modes, and the modes of inertias and torsion springs in a row (Holzer).
 
-Rod modes: the common form of torsional and axial modes.
-
-Axial modes of a shaft: longitudinal waves in its segments, its discs as masses.
+Both motions obey the equation of a rod. Axial modes are longitudinal waves in the segments, with the discs as masses.
 """
 
 from collections.abc import Sequence
