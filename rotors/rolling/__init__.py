@@ -1,1 +1,1 @@
-"""Rolling."""
+"""Rating life of rolling bearings under their loads."""
