@@ -1,21 +1,19 @@
-"""Discretised shaft: elements between nodes, the common form of bending, torsion and axial motion.
+"""Discretised shaft: shaft elements between nodes, cut from a continuous shaft for a highest frequency.
 
-Every node may carry inertia and a spring to ground; every piece of shaft between two nodes has an exact transfer matrix
-(`rotors.transfer_matrix.timoshenko`). Lengths and forces are scaled so that displacements and forces are of one size
-and a state vector can be normalised as a whole. `rotors.transfer_matrix.rotor_shafts` makes the discretised shafts of
-a rotor.
+This is the common form of bending, torsion and axial motion. Every node may carry inertia and a spring to ground; every
+shaft element between two nodes has an exact transfer matrix (`rotors.transfer_matrix.timoshenko`). Lengths and forces
+are scaled so that displacements and forces are of one size and a state vector can be normalised as a whole.
+`rotors.transfer_matrix.rotor_shafts` makes the continuous and the discretised shafts of a rotor.
 
-Continuous shaft: its spans between stations, and their discretisation into elements short enough for a frequency.
-
-Pieces are so short that none, clamped at both ends, has a natural frequency of its own below the highest asked.
-For a Timoshenko piece of length h, clamped ends give by Wirtinger's inequality ‖x‖ ≤ (h/π)‖x'‖,
-‖β‖ ≤ (h/π)‖β'‖ and ‖x'‖ ≤ ‖x' − β‖ + (h/π)‖β'‖, so that its strain energy, that of an axial force P included,
-exceeds its kinetic energy for every field when, with u = (h/π)² and C = max(−P, 0),
+A continuous shaft has spans between stations, which are cut into elements so short that none, clamped at both ends, has
+a natural frequency of its own below the highest asked. For a Timoshenko element of length h, clamped ends give by
+Wirtinger's inequality ‖x‖ ≤ (h/π)‖x'‖, ‖β‖ ≤ (h/π)‖β'‖ and ‖x'‖ ≤ ‖x' − β‖ + (h/π)‖β'‖, so that its strain energy,
+that of an axial force P included, exceeds its kinetic energy for every field when, with u = (h/π)² and C = max(−P, 0),
 
     2 (ρA ω² u + C) < κGA    and    2 (ρA ω² u + C) u + ρI ω² u < EI,
 
-with the least stiffness and the largest inertia of the piece; of a rod, when ρA ω² u < EA. This removes the
-term J₀ from the Wittrick–Williams count and bounds the growth of any transfer matrix.
+with the least stiffness and the largest inertia of the element; of a rod, when ρA ω² u < EA. This removes the term J₀
+from the Wittrick–Williams count and bounds the growth of any transfer matrix.
 """
 
 from collections.abc import Sequence
@@ -162,7 +160,7 @@ class DiscretisedShaft:
         return piece, np.minimum(np.maximum(fraction, 0.0), 1.0)
 
     def on_springs(self, stiffness: FloatArray) -> "DiscretisedShaft":
-        """The same pieces with other springs at the nodes, (p + 1, n), in scaled units."""
+        """Return the same elements with other springs at the nodes, (p + 1, n), in scaled units."""
         return replace(self, node_stiffness=stiffness)
 
     def node_at(self, position: float) -> int:
@@ -170,7 +168,7 @@ class DiscretisedShaft:
         return station_index(self.nodes, position)
 
     def with_nodes(self, positions: FloatArray) -> "DiscretisedShaft":
-        """The same chain with nodes, bare ones where there were none, at positions (k,) in m as well."""
+        """Add nodes at positions (k,) in m, bare ones where there were none."""
         nodes = merged_positions(self.nodes, positions.tolist())
         if nodes.size == self.nodes.size:
             return self
@@ -300,12 +298,12 @@ class ContinuousShaft:
         return float(shear), float(bending)
 
     def cut(self, highest: float) -> DiscretisedShaft:
-        """The discretised shaft, valid up to ``highest`` rad/s.
+        """Discretise the shaft for frequencies up to ``highest`` rad/s.
 
         Raises
         ------
         RotorError
-            It takes too many pieces.
+            It takes too many elements.
         """
         from rotors.transfer_matrix.timoshenko_kernels import piece_counts
 
@@ -318,7 +316,7 @@ class ContinuousShaft:
         return self.in_pieces(counts.astype(np.intp), highest)
 
     def in_pieces(self, counts: IntArray, highest: float) -> DiscretisedShaft:
-        """The discretised shaft with every span in ``counts`` (s,) equal pieces, valid up to ``highest`` rad/s."""
+        """Discretise every span into ``counts`` (s,) equal elements, valid up to ``highest`` rad/s."""
         from rotors.transfer_matrix.timoshenko_kernels import cut_spans
 
         nodes, index, element, kind, middle, half, lengths = cut_spans(
@@ -341,7 +339,7 @@ class ContinuousShaft:
         )
 
     def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[ContinuousShaft]":
-        """The same shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
+        """Put the shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
 
         Returns one shaft for each set of springs; the places are common to all sets.
         """
@@ -360,7 +358,7 @@ class ContinuousShaft:
         return lines
 
     def with_nodes(self, nodes: FloatArray) -> "ContinuousShaft":
-        """The same shaft with nodes (m) that include its own; new ones carry nothing, and are no stations."""
+        """Replace the nodes (m) by others that include them; new ones carry nothing, and are no stations."""
         span = np.clip(np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, self.kind.size - 1)
         left, width = self.nodes[span], np.diff(self.nodes)[span]
         # Places within the span, and from them within the kind's own span.

@@ -1,16 +1,9 @@
-"""Compiled multiple shooting on a discretised shaft: banded equations and their null vectors, the mode shapes.
+"""Compiled mode shapes of a discretised shaft: multiple shooting, energy quadrature and orthonormalisation.
 
-Importing this module imports numba. The equations are those of `rotors.transfer_matrix.mode_shapes`; the arrays of a
-chain come in the order of `rotors.transfer_matrix.wittrick_williams_kernels`.
-
-Compiled quadrature of kinetic and strain energy along a discretised shaft.
-
-Importing this module imports numba. The arrays of a chain come in the order of
-`rotors.transfer_matrix.wittrick_williams_kernels`.
-
-Compiled Gram-Schmidt orthonormalisation of shaft fields in mass, for `rotors.whirl.planar_basis`.
-
-Importing this module imports numba.
+The banded equations of multiple shooting and their null vectors, the mode shapes, are those of
+`rotors.transfer_matrix.mode_shapes`; kinetic and strain energy are integrated along the shaft; the Gram-Schmidt
+orthonormalisation in mass serves `rotors.whirl.planar_basis`. The arrays of a discretised shaft come in the order of
+`rotors.transfer_matrix.wittrick_williams_kernels`. Importing this module imports numba.
 """
 
 import math

@@ -1,18 +1,16 @@
-"""Mode shapes: null vectors of the transfer equations of the whole shaft at once.
+"""Mode shapes of a shaft: null vectors of its transfer equations, their exact fields, and certified modes.
 
 A shape integrated from one end loses a mode that is localised at the other end. All node states are therefore
 unknowns together (multiple shooting): the equations u_{i+1} = T₁₁ u_i + T₁₂ f_i, the same for forces with
 the node's springs and inertias added, and free ends. A held displacement takes the place of its force balance. Node by
-node, this matrix is a band; in the chain's units it is well conditioned for any number of pieces, and inverse
-iteration on it with as many vectors as the root's multiplicity gives every shape, localised or not.
+node, this matrix is a band; in the shaft's scaled units it is well conditioned for any number of shaft elements, and
+inverse iteration on it with as many vectors as the root's multiplicity gives every shape, localised or not.
 
-Exact fields along a discretised shaft: continued from node states to any place, with their energies.
+A field is the state (displacements, then forces) at the left end of every shaft element at one ω²; inside an element
+the transfer matrix continues it. Quadrature over an element is Gauss–Legendre, which integrates products of two such
+fields on elements this short to rounding.
 
-A field is the state (displacements, then forces) at the left end of every piece at one ω²; inside a
-piece the transfer matrix continues it. Quadrature over a piece is Gauss–Legendre, which integrates
-products of two such fields on pieces this short to rounding.
-
-Certified modes of a shaft in bending, torsion or axial motion, below a frequency limit or by their number.
+Modes in bending, torsion or axial motion are found below a frequency limit or by their number, and certified.
 """
 
 from dataclasses import dataclass
@@ -104,7 +102,7 @@ class ShaftFields:
         return np.asarray(pieces.reshape(mixture.shape[0], self.chain.element.size, -1).sum(axis=2))
 
     def joined(self, other: "ShaftFields") -> "ShaftFields":
-        """These fields followed by those of ``other``, on the same shaft."""
+        """Join these fields and those of ``other``, on the same shaft."""
         return ShaftFields(
             self.chain,
             np.concatenate([self.frequency_squared, other.frequency_squared]),
@@ -112,7 +110,7 @@ class ShaftFields:
         )
 
     def on(self, chain: DiscretisedShaft) -> "ShaftFields":
-        """The same fields on a discretised shaft with further nodes."""
+        """Return the same fields on a discretised shaft with further nodes."""
         if chain is self.chain:
             return self
         return ShaftFields(chain, self.frequency_squared, self.at(chain.nodes))
@@ -149,7 +147,7 @@ NEAR_ROOT = 1e-4
 
 
 def groups(frequencies: FloatArray, tolerance: float) -> list[slice]:
-    """Groups of ascending frequencies whose neighbours differ by less than ``tolerance`` of their value."""
+    """Group ascending frequencies whose neighbours differ by less than ``tolerance`` of their value."""
     breaks = np.flatnonzero(np.diff(frequencies) > tolerance * frequencies[1:]) + 1
     edges = [0, *breaks.tolist(), frequencies.size]
     return [slice(left, right) for left, right in pairwise(edges) if right > left]
@@ -313,7 +311,7 @@ def find_modes(line: ContinuousShaft, frequency_limit: float | None, count: int 
 
 
 def certified_modes(chain: DiscretisedShaft, wanted: int, limit: float | None = None) -> SolvedModes:
-    """The lowest ``wanted`` modes of a shaft: all below a limit (rad/s), or with every multiple of the last root.
+    """Solve for the lowest ``wanted`` modes of a shaft: all below a limit (rad/s), or with all twins of the last one.
 
     Raises
     ------
@@ -328,7 +326,7 @@ def certified_modes(chain: DiscretisedShaft, wanted: int, limit: float | None = 
 
 
 def limit_above(last: float, chain: DiscretisedShaft) -> float:
-    """A limit (rad/s) a little above the last mode, which takes in its twins, if it has any."""
+    """Return a limit (rad/s) a little above the last mode, which takes in its twins, if it has any."""
     return min(max(last * (1.0 + 2.0 * SAME_ROOT), STANDSTILL * chain.highest), chain.highest)
 
 
@@ -347,7 +345,7 @@ def proved_modes(chain: DiscretisedShaft, frequencies: FloatArray, expected: int
 
 
 def shaft_with_modes(line: ContinuousShaft, wanted: int) -> DiscretisedShaft:
-    """A discretised shaft with at least ``wanted`` modes below the highest frequency that it is good for."""
+    """Discretise a shaft so that it has at least ``wanted`` modes below the highest frequency that it is good for."""
     highest = line.likely_frequency(wanted)
     for _ in range(MOST_DOUBLINGS):
         chain = line.cut(highest)

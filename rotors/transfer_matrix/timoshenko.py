@@ -11,7 +11,7 @@ or y' = A(z) y with y = (x, β, f_x, f_β). A rod is the same with y = (u, f): u
 torsion with GJ and ρJ. ω² may differ between translation and rotation, and be complex: this is how a
 turning or damped shaft enters.
 
-**A uniform piece** has T = exp(A h). The characteristic polynomial of A h holds only even powers,
+**A uniform element** has T = exp(A h). The characteristic polynomial of A h holds only even powers,
 λ⁴ − e₁ λ² + e₂, so that
 
     T = C₀ I + C₁ (A h) + C₂ (A h)² + C₃ (A h)³
@@ -23,12 +23,12 @@ where, by reducing the exponential series modulo that polynomial,
 
 with h_k = e₁ h_{k−1} − e₂ h_{k−2}, h_0 = 1, h_{−1} = 0 (the complete homogeneous polynomials of the
 two roots λ²). These series are entire: they need no square root, so the cut-off frequency √(κGA/ρI),
-where the second wave number turns real, the massless field of the Myklestad–Prohl chain (ρ = 0),
+where the second wave number turns real, the massless field of Myklestad and Prohl's lumped shaft (ρ = 0),
 the static state (ω = 0) and negative ω² (a shifted, positive definite problem) are no special cases.
-They are used on pieces short enough (`rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5, where
+They are used on elements short enough (`rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5, where
 thirteen terms are exact to rounding and no hyperbolic function can overflow.
 
-**A tapering piece** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.shaft`
+**A tapering element** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.shaft`
 makes them, exact to rounding). Its solution is an entire function, whose power series about the middle is
 summed, y(s) = Φ(s) y(0); then T = Φ(1) Φ(−1)⁻¹. Both equations are Hamiltonian (reciprocity), hence Φ
 symplectic, and its inverse is a transposition: T is symplectic to rounding too.

@@ -1,12 +1,7 @@
-"""Compiled transfer matrices of Timoshenko beam and rod elements; the equations are those of
-`rotors.transfer_matrix.timoshenko`.
+"""Compiled transfer matrices of Timoshenko beam and rod elements, and the cutting of a shaft into them.
 
-Importing this module imports numba. All functions take real or complex ω².
-
-Compiled discretisation of a shaft: spans cut into elements by the rule of
-`rotors.transfer_matrix.discretised_shaft`.
-
-Importing this module imports numba.
+The equations are those of `rotors.transfer_matrix.timoshenko`; all functions of them take real or complex ω². Spans are
+cut into elements by the rule of `rotors.transfer_matrix.discretised_shaft`. Importing this module imports numba.
 """
 
 import math
@@ -272,7 +267,7 @@ def piece_counts(
     inertia: FloatArray,
     force: FloatArray,
 ) -> FloatArray:
-    """Number of pieces of each span, (s,); as floats, which cannot overflow."""
+    """Return the number of elements of each span, (s,); as floats, which cannot overflow."""
     longest = np.empty(force.size)
     for k in range(force.size):
         longest[k] = longest_piece(highest * highest, stiffness[k], inertia[k], force[k])
@@ -292,8 +287,12 @@ def cut_spans(
     lengths: FloatArray,
     uniform: BoolArray,
 ) -> PieceArrays:
-    """Nodes (p + 1,), the old nodes' indices in them, every piece's element (p,), and of every element its kind,
-    the middle and half width of the part of that kind it covers (from −1 to 1), and its length, (e,) each."""
+    """Cut spans into equal elements; elements that are alike are listed once.
+
+    Returns the nodes (p + 1,), the old nodes' indices in them, the place of each of the p elements in the list (p,),
+    and of every element of the list its kind, the middle and half width of the part of that kind it covers (from −1
+    to 1), and its length, (e,) each.
+    """
     total = counts.sum()
     new_nodes, element, index = np.empty(total + 1), np.empty(total, np.intp), np.empty(nodes.size, np.intp)
     which, piece_length = np.empty(total, np.intp), np.empty(total)

@@ -3,14 +3,14 @@
 The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) for a structure with dynamic
 stiffness K(ω) is J = J₀ + s(K), with J₀ the clamped members' own modes below ω, here none by
 construction (`rotors.transfer_matrix.discretised_shaft`), and s(K) the number of negative eigenvalues. Eliminating the
-nodes of a chain from the left turns s(K) into a sum over nodes: with S the dynamic stiffness of everything left of
-a node (the node included) and K₁₁ that of the next piece with its far end clamped,
+nodes of a shaft from the left turns s(K) into a sum over nodes: with S the dynamic stiffness of everything left of
+a node (the node included) and K₁₁ that of the next element with its far end clamped,
 
     s(K) = Σ_nodes s(S + K₁₁) + s(S_last).
 
-Dynamic stiffness and transfer matrix are two readings of one piece: with T in blocks,
+Dynamic stiffness and transfer matrix are two readings of one shaft element: with T in blocks,
 K₁₁ = T₁₂⁻¹ T₁₁ and K₁₂ = −T₁₂⁻¹. Written with stiffness, the recursion S ← K₂₂ − K₂₁ (S + K₁₁)⁻¹ K₁₂
-subtracts numbers of order EI/h³ and loses all digits on many short pieces. Written with the transfer
+subtracts numbers of order EI/h³ and loses all digits on many short elements. Written with the transfer
 matrix it does not: (U, F), n independent states that the left part admits with S = F U⁻¹, moves on as
 
     [U; F] ← T [U; F],        S + K₁₁ = T₁₂⁻¹ U_right U_left⁻¹ ,
@@ -45,13 +45,13 @@ LOWEST = 1e-16
 
 
 def shaft_arrays(chain: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
-    """A discretised shaft as the arrays that compiled functions take."""
+    """Return the arrays of a discretised shaft in the order of compiled functions."""
     table = chain.table
     return table.lengths, table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
 
 
 def wittrick_williams_count(chain: DiscretisedShaft, frequency: float) -> int:
-    """Number of natural frequencies strictly below one, with multiplicity.
+    """Return the Wittrick-Williams count: natural frequencies strictly below one, with multiplicity.
 
     Parameters
     ----------
@@ -64,14 +64,14 @@ def wittrick_williams_count(chain: DiscretisedShaft, frequency: float) -> int:
 
 
 def wittrick_williams_counts(chains: Sequence[DiscretisedShaft], frequency: float) -> list[int]:
-    """The same of several chains."""
+    """Return the Wittrick-Williams count of several shafts."""
     from rotors.transfer_matrix.wittrick_williams_kernels import wittrick_williams_count_of
 
     return [int(wittrick_williams_count_of(frequency, *shaft_arrays(chain))) for chain in chains]
 
 
 def lowest_natural_frequencies(chain: DiscretisedShaft, wanted: int, limit: float) -> FloatArray:
-    """The lowest ``wanted`` natural frequencies of a shaft, each to a relative 1e-13 or so.
+    """Solve for the lowest ``wanted`` natural frequencies of a shaft, each to a relative 1e-13 or so.
 
     Rigid motions are zeros; a root of multiplicity r stands r times.
 
