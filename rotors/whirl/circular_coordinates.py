@@ -82,7 +82,7 @@ class NodeBearing:
 
 
 def coupled_motions(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
-    """Sets of motions that the bearings couple: 1 (forward), −1 (backward) and 0 (axial).
+    """Return the sets of motions that the bearings couple: 1 (forward), −1 (backward) and 0 (axial).
 
     Axial motion appears only where a bearing couples it to lateral motion; alone it is no whirl.
     """
@@ -107,7 +107,7 @@ def coupled_motions(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
 
 
 def node_bearing(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatArray) -> NodeBearing:
-    """A bearing of constant coefficients at a node, for some blocks; ``units`` (n,) are those of their coordinates."""
+    """Return a bearing of constant coefficients at a node, for some blocks; ``units`` (n,) are of their coordinates."""
     members = [member for block in blocks for member in BLOCK_COORDINATES[block]]
     circular = len(blocks) == 1
     if circular:

@@ -1,8 +1,9 @@
-"""Inertia count of whirl frequencies below a frequency, for rotors without damping or driving forces.
+"""Completeness of whirl modes: the inertia count of whirl frequencies, and the search for roots that are missing.
 
-Let stiffness be Hermitian and positive semidefinite and damping absent. At λ = iω the dynamic stiffness of the
-turning rotor over both planes is the Hermitian D(ω) = K − ω²M + ωG, with G Hermitian in circular coordinates and
-proportional to the speed Ω, or to ω where the speed follows the frequency. At a root, with D v = 0,
+The count is that of the frequencies below a frequency, for rotors without damping or driving forces. Let stiffness be
+Hermitian and positive semidefinite and damping absent. At λ = iω the dynamic stiffness of the turning rotor over both
+planes is the Hermitian D(ω) = K − ω²M + ωG, with G Hermitian in circular coordinates and proportional to the speed Ω,
+or to ω where the speed follows the frequency. At a root, with D v = 0,
 
     vᴴ D' v = −2ω vᴴMv + vᴴGv = −ω vᴴMv − vᴴKv / ω < 0,
 
@@ -12,15 +13,16 @@ difference of s(D), the negative eigenvalues: Wittrick and Williams' count, carr
 no stiffness, the free rotor's at zero, lie below both.
 
 Eliminating nodes from the left, with (U, F) the n states that the left part admits, S = F U⁻¹, and K₁₁ = T₁₂⁻¹T₁₁
-of the next piece, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.transfer_matrix.wittrick_williams`. Congruence with U
-spares the inverse:
+of the next shaft element, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.transfer_matrix.wittrick_williams`. Congruence
+with U spares the inverse:
 
     s(S + K₁₁) = s(Uᴴ T₁₂⁻¹ U_right).
 
 Pedestals are eliminated first: the negative eigenvalues of each one's own matrix count, and the bearing becomes the
 Schur complement.
 
-Completeness of whirl modes: roots counted, and searched for again where one is missing.
+Damped or driven rotors are counted by the argument principle (`rotors.whirl.argument_principle`). Where the count
+exceeds the roots found, the missing ones are searched for again.
 """
 
 from collections.abc import Sequence
@@ -130,7 +132,7 @@ MOST_NUDGES = 6
 
 
 def oscillating(least: float, most: float) -> Sector:
-    """The sector of motions that oscillate, stable or not."""
+    """Return the sector of motions that oscillate, stable or not."""
     return Sector(least, most, NO_OSCILLATION, np.pi - NO_OSCILLATION)
 
 
@@ -168,7 +170,7 @@ def certified_roots(
 def count_roots(
     chain: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
 ) -> int:
-    """Number of roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
+    """Count the roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
     if conservative:
         edges = np.array([sector.least, sector.most])
         low, high = negative_count(chain, edges, speed).tolist()

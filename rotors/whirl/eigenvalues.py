@@ -1,10 +1,10 @@
-"""Whirl eigenvalues by Newton's method on the exact equations: clusters refined together, duplicates recognised.
+"""Whirl eigenvalues by Newton's method on the exact equations, and by contour integrals where they coalesce.
 
-With the equations N(λ) x = 0 of `rotors.whirl.equations`, let X and Y span the right and left singular vectors of the
-k smallest singular values of N(σ), k the number of roots near σ. Projected on them the equations are
-Y^H [N(σ) + (λ − σ) N'(σ)] X q = 0 up to second order in λ − σ, a small eigenproblem that gives all k roots at once,
-double ones and nearly double ones with all their digits: a determinant would keep only half. For k = 1 this is
-Newton's method on the two-sided Rayleigh functional,
+Roots of a cluster are refined together, and duplicates are recognised. With the equations N(λ) x = 0 of
+`rotors.whirl.equations`, let X and Y span the right and left singular vectors of the k smallest singular values of
+N(σ), k the number of roots near σ. Projected on them the equations are Y^H [N(σ) + (λ − σ) N'(σ)] X q = 0 up to second
+order in λ − σ, a small eigenproblem that gives all k roots at once, double ones and nearly double ones with all their
+digits: a determinant would keep only half. For k = 1 this is Newton's method on the two-sided Rayleigh functional,
 
     λ ← λ − (yᴴ N x) / (yᴴ N' x),
 
@@ -12,11 +12,10 @@ whose error is squared at every step (Schwetlick and Schreiber, Linear Algebra A
 that are found to be separated are then refined one by one. Those that are not, whose vectors would mix, stay together;
 the neglected terms, of the order of the square of their distance, are below rounding.
 
-Coalescing eigenvalues, where Newton's method slows down: all roots inside a circle by contour integrals (Beyn).
-
-Where cross-coupling is just as large as the bearings' anisotropy allows, forward and backward whirl meet in one root
-with one shape: a defective pair. Under a perturbation each root moves as its square root, but their mean as the
-perturbation itself. Beyn's integrals (Linear Algebra Appl. 436, 2012)
+Newton's method slows down at coalescing eigenvalues. Where cross-coupling is just as large as the bearings' anisotropy
+allows, forward and backward whirl meet in one root with one shape: a defective pair. Under a perturbation each root
+moves as its square root, but their mean as the perturbation itself. Beyn's integrals (Linear Algebra Appl. 436, 2012)
+give all roots inside a circle:
 
     A₀ = (1/2πi) ∮ N(λ)⁻¹ V dλ,    A₁ = (1/2πi) ∮ (λ − c) N(λ)⁻¹ V dλ
 
@@ -93,11 +92,11 @@ class ExactRoots:
     scales: FloatArray
 
     def take(self, index: npt.NDArray[np.intp] | npt.NDArray[np.bool_]) -> "ExactRoots":
-        """Selected roots."""
+        """Return selected roots."""
         return ExactRoots(self.eigenvalues[index], self.solutions[index], self.residuals[index], self.scales[index])
 
     def joined(self, other: "ExactRoots") -> "ExactRoots":
-        """These roots followed by others."""
+        """Join these roots and others."""
         return ExactRoots(
             np.concatenate([self.eigenvalues, other.eigenvalues]),
             np.concatenate([self.solutions, other.solutions]),
@@ -157,7 +156,7 @@ def converged_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -
 
 
 def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
-    """The converged roots, each once, and the values of the others."""
+    """Return the converged roots, each once, and the values of the others."""
     from rotors.whirl.eigenvalue_kernels import are_converged
 
     if are_converged(roots.eigenvalues, roots.residuals, ACCEPTED, SAME):
@@ -314,7 +313,7 @@ def refine_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -> E
 
 
 def with_circle(chain: WhirlEquations, roots: ExactRoots, centre: complex, speed: Speed) -> ExactRoots:
-    """The roots, with those about a place replaced by the roots of contour integrals."""
+    """Replace the roots about a place by the roots of contour integrals."""
     for part in CIRCLES:
         radius = part * abs(centre)
         found = roots_in_circle(chain, centre, radius, speed)

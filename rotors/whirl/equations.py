@@ -5,7 +5,7 @@ A motion e^{λt} of a disc turning at Ω obeys I_d λ²β_x + Ω I_p λ β_y = M
 
     (I_d λ² ∓ iΩ I_p λ) β± = M± ,
 
-and since a round section's polar inertia is twice its diametral one, every piece of shaft obeys the planar
+and since a round section's polar inertia is twice its diametral one, every shaft element obeys the planar
 equations of `rotors.transfer_matrix.timoshenko` with
 
     ω² → −λ² for translation,     ω² → −λ² ± 2iΩλ for rotation.
@@ -22,13 +22,13 @@ displacements p of pedestals; the equations are those of multiple shooting,
 
 with the forces g in a node's bearings along directions F u of their own, and no force f right of the last node. Every
 entry is an entire function of λ, the pedestals' resonances included, and so is the determinant; its zeros are the
-eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the pieces and of
+eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the elements and of
 the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
 the pedestals to the forces on the right end and the pedestals.) `rotors.whirl.shooting_matrix` puts them in order.
 
-A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of pieces has
-the product of their transfer matrices (`WhirlEquations.in_runs`), so that a shaft of sixty steps has no more unknowns
-than a plain one.
+A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of elements
+has the product of their transfer matrices (`WhirlEquations.in_runs`), so that a shaft of sixty steps has no more
+unknowns than a plain one.
 
 Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
 bearings loses no digits to its own stiffness.
@@ -125,11 +125,11 @@ class WhirlEquations:
         return self.entries.pattern
 
     def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
-        """Unit of forces for roots near every λ: the inertia forces, or the shaft's own where they are less."""
+        """Return the unit of forces for roots near every λ: the lesser of the inertia forces and the shaft's own."""
         return np.asarray(np.minimum(np.maximum(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30), 1.0))
 
     def response_scale(self, eigenvalues: ComplexArray) -> FloatArray:
-        """Unit of forces for a response at every λ, zero included, where bearings may carry more than inertia."""
+        """Return the unit of forces for responses at every λ, zero included: bearings may carry more than inertia."""
         held = max((float(np.abs(tie.stiffness).max(initial=0.0)) for tie in self.ties), default=1.0)
         least = np.full(eigenvalues.size, min(max(STATIC_FORCE * held, 1e-30), 1.0))
         return np.asarray(np.maximum(self.force_scale(eigenvalues), least))
@@ -198,7 +198,7 @@ class WhirlEquations:
         return places
 
     def in_runs(self) -> "WhirlEquations":
-        """The same equations with unknowns at loaded nodes only; no external load may act at the others."""
+        """Reduce the equations to unknowns at loaded nodes only; no external load may act at the others."""
         chain = self.bending
         needed = chain.node_inertia.any(axis=1) | (chain.node_polar != 0.0)
         needed[[0, -1, *(tie.node for tie in self.ties)]] = True
@@ -258,17 +258,17 @@ def whirl_equations(
 
 
 def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> WhirlEquations:
-    """The equations of `whirl_equations` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
+    """Assemble the equations of `whirl_equations` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
     return whirl_equations(rotor, bearings, blocks, reach_step(highest)).in_runs()
 
 
 def reach_step(highest: float) -> float:
-    """The next of the frequencies (rad/s) that equations are made for, so that those of near speeds are the same."""
+    """Round up to a frequency (rad/s) that equations are made for, so that those of near speeds are the same."""
     return math.exp2(math.ceil(REACH_STEPS * math.log2(highest)) / REACH_STEPS)
 
 
 def retied(chain: WhirlEquations, bearings: Sequence[Bearing], speed: float) -> WhirlEquations:
-    """The same equations with the bearings' coefficients at another speed (rad/s)."""
+    """Replace the bearings' coefficients in the equations by those at another speed (rad/s)."""
     units = block_units(chain.bending, chain.blocks)
     ties = tuple(
         node_bearing(bearing.at_speed(speed), tie.node, chain.blocks, units)

@@ -1,9 +1,8 @@
-"""Complex motion of a shaft in both planes, continued exactly from the states at its nodes to any place.
+"""Complex motion of a shaft in both planes, continued exactly from its node states, and its strain energy.
 
-Strain energy of whirl modes in lengths of shaft, bearings and pedestals.
-
-In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. Meant here is the mean over one turn of
-the phase, with the growth or decay e^{Re λ t} left out, ¼ Re(q̂ᴴ K q̂): of the shaft
+In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. The strain energy of a length of shaft,
+a bearing or a pedestal is here the mean over one turn of the phase, with the growth or decay e^{Re λ t} left out,
+¼ Re(q̂ᴴ K q̂): of the shaft
 
     ¼ ∫ |f_x|²/(κGA + P) + |f_y|²/(κGA + P) + (|m_x|² + |m_y|²)/EI + g P (|β_x|² + |β_y|²) + |n|²/EA dz
 
@@ -89,7 +88,7 @@ class ShaftMotion:
         return int(self.eigenvalues.size)
 
     def take(self, index: npt.ArrayLike) -> "ShaftMotion":
-        """Selected motions, in the order of the index."""
+        """Return selected motions, in the order of the index."""
         chosen = np.asarray(index)
         return replace(
             self,
@@ -101,7 +100,7 @@ class ShaftMotion:
         )
 
     def joined(self, other: "ShaftMotion") -> "ShaftMotion":
-        """These motions followed by others of the same shaft."""
+        """Join these motions and others of the same shaft."""
         return replace(
             self,
             eigenvalues=np.concatenate([self.eigenvalues, other.eigenvalues]),
@@ -219,7 +218,7 @@ class ShaftMotion:
 
 
 def planes(forward: ComplexArray, backward: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """x and y of circular coordinates r± = (x ± i y)/√2."""
+    """Return x and y of circular coordinates r± = (x ± i y)/√2."""
     root = np.sqrt(0.5)
     return np.asarray(root * (forward + backward)), np.asarray(-1j * root * (forward - backward))
 

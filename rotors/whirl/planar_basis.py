@@ -1,9 +1,9 @@
 """Planar basis of whirl: modes of one plane, and static responses to loads at bearings and discs.
 
-`rotors.whirl_basis` gives the same space as certified modes. Starting values need less: any mass-orthonormal basis of
-the space gives the same, and the roots have a proof of their own. Here the modes' fields and the responses are made
-orthonormal one after another, by Gram-Schmidt on their values at the quadrature points, so that the small part that a
-response adds to the modes keeps its digits.
+`rotors.whirl.modal_projection.whirl_basis` gives the same space as certified modes. Starting values need less: any
+mass-orthonormal basis of the space gives the same, and the roots have a proof of their own. Here the modes'
+fields and the responses are made orthonormal one after another, by Gram-Schmidt on their values at the quadrature
+points, so that the small part that a response adds to the modes keeps its digits.
 """
 
 from collections.abc import Sequence
@@ -60,7 +60,7 @@ class PlanarBasis:
 
     @classmethod
     def of_modes(cls, modes: LateralModes, bearings: Sequence[Bearing]) -> "PlanarBasis":
-        """The basis of certified modes and attachment modes, at the given bearings."""
+        """Return the basis of certified modes and attachment modes, at the given bearings."""
         displacement = slope = np.zeros((modes.count, 0))
         if bearings:
             displacement, slope = modes.evaluate([bearing.at for bearing in bearings])
@@ -92,19 +92,20 @@ def loaded_places(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[list[float
 
 
 def modes_needed(count: int | None, available: float) -> int:
-    """Number of planar modes in the basis for ``count`` whirl modes."""
+    """Return the number of planar modes in the basis for ``count`` whirl modes."""
     return int(min(max((count or DEFAULT_COUNT) // 2 + SPARE_MODES, LEAST_MODES), available))
 
 
 def planar_basis(
     rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
 ) -> PlanarBasis:
-    """The space of `rotors.whirl_basis`, without its proof.
+    """Assemble the planar basis: the space of `rotors.whirl.modal_projection.whirl_basis`, without its proof.
 
     Raises
     ------
     RotorError, IncompleteModesError
-        As `rotors.whirl_basis`, of wrong arguments, or where the root count does not reach the modes.
+        As `rotors.whirl.modal_projection.whirl_basis`, of wrong arguments, or where the root count does not
+        reach the modes.
     """
     from rotors.transfer_matrix.mode_shape_kernels import energy_rows, energy_weights, mass_orthonormal, null_states
 
@@ -153,7 +154,7 @@ def planar_basis(
 def _lowest_modes(
     line: ContinuousShaft, frequency_limit: float | None, count: int | None
 ) -> tuple[DiscretisedShaft, FloatArray]:
-    """A discretised shaft and its lowest natural frequencies, rad/s, those that the basis needs."""
+    """Return a discretised shaft and its lowest natural frequencies, rad/s, those that the basis needs."""
     available = line.available_modes
     if frequency_limit is not None:
         require_finite("frequency_limit", frequency_limit, positive=True)

@@ -1,18 +1,18 @@
-"""Shooting matrix of the whirl equations: a table from which compiled code makes its entries for any λ.
+"""Shooting matrix of the whirl equations: the order of its rows and columns, and the table of its entries.
 
-Beside the transfer matrices of runs of pieces every entry is, with Ω the speed of rotation and s the unit of force,
+From the table compiled code makes the entries for any λ. Beside the transfer matrices of runs of shaft elements every
+entry is, with Ω the speed of rotation and s the unit of force,
 
     (c₀ + c₁ λ + c₂ λ² + c₃ λΩ + c₄ s) / (d₁ s + d₀):
 
 inertias have c₂, c₃ and d₁; bearings and pedestals c₀, c₁, c₂ over s plus the largest stiffness of their row, so that
 stiff and soft directions are scaled alike; their forces c₄. Unit entries and directions are constant.
 
-Order of the unknowns (columns) and equations (rows) of the shooting matrix.
-
-Elimination goes from left to right, and its cost is its fill-in. At every node the unknowns of bearings come first,
-then those of one block after another, displacements before forces; the equations of a node stand in the order of the
-blocks too, followed by those of bearings. So a bearing's coupling is eliminated before the next run begins, and the two
-senses hardly fill in each other's rows. Right of the last node there is no force.
+Unknowns are columns, equations rows. Elimination goes from left to right, and its cost is its fill-in. At every node
+the unknowns of bearings come first, then those of one block after another, displacements before forces; the equations
+of a node stand in the order of the blocks too, followed by those of bearings. So a bearing's coupling is eliminated
+before the next run begins, and the two senses hardly fill in each other's rows. Right of the last node there is no
+force.
 """
 
 from collections.abc import Sequence
@@ -164,7 +164,7 @@ def shooting_matrix(
     kept: IntArray,
     layout: Layout,
 ) -> ShootingMatrix:
-    """The shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
+    """Assemble the shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
     first, terms, runs = 0, _Terms(), []
     states = np.stack([layout.displacements[:-1], layout.forces])
     reached = np.stack([layout.continuity, layout.balances[1:]])

@@ -1,10 +1,6 @@
-"""Compiled shooting matrix of whirl: its entries, determinant and node states, as laid out by
-`rotors.whirl.shooting_matrix`.
+"""Compiled shooting matrix of whirl: its entries, determinant and node states, and kinetic-energy shares.
 
-Importing this module imports numba.
-
-Compiled kinetic-energy shares of complex motions, for `rotors.whirl.motion`.
-
+The matrix is laid out by `rotors.whirl.shooting_matrix`; the shares of complex motions serve `rotors.whirl.motion`.
 Importing this module imports numba.
 """
 
@@ -79,7 +75,7 @@ def _put_runs(
 
 @inner(error_model="python")
 def force_unit(at: complex, mass: float) -> float:
-    """Unit of force for roots near λ, as `rotors.whirl.equations.WhirlEquations.force_scale`."""
+    """Return the unit of force for roots near λ, as `rotors.whirl.equations.WhirlEquations.force_scale`."""
     return min(max((at.real**2 + at.imag**2) * mass, 1e-30), 1.0)
 
 
@@ -100,7 +96,7 @@ def scratch(table: Table, size: int) -> tuple[ComplexArray, ComplexArray, Comple
 def put_entries(
     at: complex, speed: complex, scale: float, table: Table, beams: ComplexArray, rods: ComplexArray, out: ComplexArray
 ) -> None:
-    """The varying entries at one λ, speed Ω and unit of force; all arrays are those of `scratch`."""
+    """Put the varying entries at one λ, speed Ω and unit of force into ``out``; all arrays are those of `scratch`."""
     blocks, beam_runs, rod_runs, numerators, denominators, _ = table
     squared, turning = at * at, speed * at
     first = 0

@@ -170,7 +170,8 @@ class WhirlSolver:
     rotor, bearings
         The rotor and its bearings; tables over speed are read at each speed.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings; without it the solver makes its own.
+        From `rotors.whirl.modal_projection.whirl_basis`, of the same rotor and bearings; without it the
+        solver makes its own.
 
     Examples
     --------
@@ -184,6 +185,7 @@ class WhirlSolver:
     _held: dict[tuple[Hashable, ...], object] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Keep the bearings as a tuple."""
         object.__setattr__(self, "bearings", tuple(self.bearings))
 
     def modes(self, speed: float, *, frequency_limit: float | None = None, count: int | None = None) -> WhirlModes:
@@ -258,7 +260,7 @@ def solve_whirl(
     count
         Number of modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with fewer gives all.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings; without it one is made.
+        From `rotors.whirl.modal_projection.whirl_basis`, of the same rotor and bearings; without it one is made.
 
     Raises
     ------
@@ -371,7 +373,7 @@ def _reach_behind(ascending: Sequence[float], count: int) -> float:
 
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
-    """A frequency in a gap above the lowest ``count`` roots, or above all of them."""
+    """Return a frequency in a gap above the lowest ``count`` roots, or above all of them."""
     from rotors.whirl.eigenvalue_kernels import ascending
 
     sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, NO_OSCILLATION)).tolist()
