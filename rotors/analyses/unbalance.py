@@ -81,7 +81,7 @@ class BowShape:
             return np.full(positions.size, self.bow.vectors[0])
         forward, _ = self.held.motion.at(positions)
         # The held response answers the forward load √2 R; r+ of a turning offset b is √2 b.
-        return np.asarray(forward[0, :, 0] * self.held.motion.chain.displacement_unit[0] * np.sqrt(0.5))
+        return np.asarray(forward[0, :, 0] * self.held.motion.shaft.displacement_unit[0] * np.sqrt(0.5))
 
 
 def bow_shape(rotor: Rotor, bow: Bow) -> BowShape:

@@ -91,7 +91,7 @@ class Segment:
     right_outer_diameter, right_inner_diameter
         Diameters at the right end, m; the diameters change linearly. None for a cylinder.
     axial_force
-        Static force in N that the piece carries, tension positive.
+        Static force in N that the segment carries, tension positive.
 
     Raises
     ------
@@ -132,7 +132,7 @@ class Segment:
 
     @property
     def is_conical(self) -> bool:
-        """Whether a diameter changes along the piece."""
+        """Whether a diameter changes along the segment."""
         left, right = self.end_diameters
         return left != right
 
@@ -174,7 +174,7 @@ class Segment:
         return 0.5 * self.polar_inertia + about_left - self.mass * self.mass_centre**2
 
     def _integral(self, density: Callable[[Section, float], float]) -> float:
-        """Integral along the piece; Gauss's four points are exact for the polynomials of a cone (degree 5)."""
+        """Integral along the segment; Gauss's four points are exact for the polynomials of a cone (degree 5)."""
         return self.length * math.fsum(
             weight * density(self.section(fraction), fraction * self.length) for fraction, weight in _GAUSS
         )

@@ -159,7 +159,7 @@ def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
 
 
 def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
-    """Start and end (fractions of the cone), coefficients and extremes of pieces short enough to interpolate."""
+    """Start and end (fractions of the cone), coefficients and extremes of intervals short enough to interpolate."""
     fractions = [start + fraction * (end - start) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
     samples = [_segment_values(part, fraction) for fraction in fractions]
     values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])

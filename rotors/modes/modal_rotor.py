@@ -40,7 +40,7 @@ from rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
 
 FloatArray = npt.NDArray[np.float64]
 
-_FRACTIONS, _WEIGHTS = gauss_rule(10)  # on pieces no longer than the shaft is thick
+_FRACTIONS, _WEIGHTS = gauss_rule(10)  # on intervals no longer than the shaft is thick
 
 
 @dataclass(frozen=True)
@@ -290,8 +290,11 @@ def _require_few(
     if frequency_limit is None:
         return
     require_finite("frequency_limit", frequency_limit, positive=True)
-    for kind, line in (("bending", bending_shaft(rotor, supports)), ("torsional", rod_shaft(rotor, (), "torsion"))):
-        (number,) = wittrick_williams_counts([line.cut(frequency_limit)], frequency_limit)
+    for kind, continuous_shaft in (
+        ("bending", bending_shaft(rotor, supports)),
+        ("torsional", rod_shaft(rotor, (), "torsion")),
+    ):
+        (number,) = wittrick_williams_counts([continuous_shaft.cut(frequency_limit)], frequency_limit)
         below = f"below {frequency_limit / (2.0 * np.pi):.5g} Hz"
         require(number <= MOST_MODES, f"rotor {rotor.name!r}: number of {kind} modes {below}", number, most)
 

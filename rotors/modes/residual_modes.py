@@ -78,18 +78,18 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
 
     Each load is a place (m) and the component of displacement along which it acts.
     """
-    chain = modes.fields.chain.with_nodes(np.array([place for place, _ in loads_at]))
-    loads = [(chain.node_at(place), component) for place, component in loads_at]
-    loads = [load for load in dict.fromkeys(loads) if not chain.constrained[load]]
+    shaft = modes.fields.shaft.with_nodes(np.array([place for place, _ in loads_at]))
+    loads = [(shaft.node_at(place), component) for place, component in loads_at]
+    loads = [load for load in dict.fromkeys(loads) if not shaft.constrained[load]]
     if not loads:
         return None
     elastic = modes.frequencies[modes.frequencies > 0.0]
     zeros = modes.count - elastic.size
-    is_free = chain.rigid_shapes.shape[0] > 0
+    is_free = shaft.rigid_shapes.shape[0] > 0
     reference = elastic[0] if elastic.size else 1.0
     squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
-    static = ShaftFields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
-    fields = modes.fields.on(chain).joined(static)
+    static = ShaftFields(shaft, np.full(len(loads), squared_shift), responses(shaft, loads, squared_shift))
+    fields = modes.fields.on(shaft).joined(static)
     mixture = _residuals(fields, modes.mixture, zeros, len(loads))
     if mixture.shape[0] == 0:
         return None

@@ -131,10 +131,10 @@ def axial_shaft_on(rotor: Rotor, bending: DiscretisedShaft) -> DiscretisedShaft:
     free = free_rod_shaft(rotor, "axial").with_nodes(bending.nodes)
     # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance and inertia are scaled.
     ratio = float(free.displacement_unit[0] / bending.displacement_unit[0]) ** 2
-    line = replace(
+    continuous_shaft = replace(
         free,
         coefficients=free.coefficients * np.array([ratio, 1.0 / ratio])[:, None],
         node_inertia=free.node_inertia / ratio,
         displacement_unit=bending.displacement_unit[:1],
     )
-    return line.in_pieces(np.ones(bending.element.size, dtype=np.intp), bending.highest)
+    return continuous_shaft.in_elements(np.ones(bending.element.size, dtype=np.intp), bending.highest)

@@ -44,40 +44,40 @@ IntArray = npt.NDArray[np.intp]
 LOWEST = 1e-16
 
 
-def shaft_arrays(chain: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
+def shaft_arrays(shaft: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
     """Return the arrays of a discretised shaft in the order of compiled functions."""
-    table = chain.table
-    return table.lengths, table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
+    table = shaft.table
+    return table.lengths, table.coefficients, shaft.element, shaft.node_stiffness, shaft.node_inertia
 
 
-def wittrick_williams_count(chain: DiscretisedShaft, frequency: float) -> int:
+def wittrick_williams_count(shaft: DiscretisedShaft, frequency: float) -> int:
     """Return the Wittrick-Williams count: natural frequencies strictly below one, with multiplicity.
 
     Parameters
     ----------
-    chain
+    shaft
         The shaft; its `highest` must not be exceeded.
     frequency
         Positive, rad/s. Rigid motions at zero count as below.
     """
-    return wittrick_williams_counts([chain], frequency)[0]
+    return wittrick_williams_counts([shaft], frequency)[0]
 
 
-def wittrick_williams_counts(chains: Sequence[DiscretisedShaft], frequency: float) -> list[int]:
+def wittrick_williams_counts(shafts: Sequence[DiscretisedShaft], frequency: float) -> list[int]:
     """Return the Wittrick-Williams count of several shafts."""
     from rotors.transfer_matrix.wittrick_williams_kernels import wittrick_williams_count_of
 
-    return [int(wittrick_williams_count_of(frequency, *shaft_arrays(chain))) for chain in chains]
+    return [int(wittrick_williams_count_of(frequency, *shaft_arrays(shaft))) for shaft in shafts]
 
 
-def lowest_natural_frequencies(chain: DiscretisedShaft, wanted: int, limit: float) -> FloatArray:
+def lowest_natural_frequencies(shaft: DiscretisedShaft, wanted: int, limit: float) -> FloatArray:
     """Solve for the lowest ``wanted`` natural frequencies of a shaft, each to a relative 1e-13 or so.
 
     Rigid motions are zeros; a root of multiplicity r stands r times.
 
     Parameters
     ----------
-    chain
+    shaft
         The shaft.
     wanted
         Number of frequencies; the count at the limit must not be less.
@@ -91,11 +91,11 @@ def lowest_natural_frequencies(chain: DiscretisedShaft, wanted: int, limit: floa
     """
     from rotors.transfer_matrix.wittrick_williams_kernels import lowest_roots
 
-    zeros = chain.rigid_shapes.shape[0]
+    zeros = shaft.rigid_shapes.shape[0]
     if wanted <= zeros:
         return np.zeros(wanted)
     lowest = LOWEST * limit
-    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *shaft_arrays(chain))
+    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *shaft_arrays(shaft))
     if found.size < wanted - zeros:
         raise IncompleteModesError(
             f"the root count is {first} at {lowest:g} rad/s and {last} at {limit:g} rad/s, but "

@@ -17,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 State = tuple[float, float, float, float]
 
-# The whole of a piece, as a fraction of it.
+# The whole of an element, as a fraction of it.
 WHOLE = np.ones(1)
 
 

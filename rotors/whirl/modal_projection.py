@@ -117,8 +117,8 @@ class CoupledPlanes:
         from rotors.whirl.modal_projection_kernels import damped, squares
 
         squared, right = np.linalg.eigh(squares(self.frequencies, self.gyroscopic, speeds))
-        tie = self.frequencies, self.gyroscopic, speeds
-        values, mixed = damped(squared, right, *tie, self.damping_x, self.damping_y)
+        undamped = self.frequencies, self.gyroscopic, speeds
+        values, mixed = damped(squared, right, *undamped, self.damping_x, self.damping_y)
         return values, mixed > MOST_MIXED
 
 
@@ -283,7 +283,7 @@ class ModalProjection:
         if self.blocks != (1, -1):
             return None
         b = self.basis.count
-        # Behind the shaft's coordinates stand those of pedestals, each in the plane that its stiffness ties it to.
+        # Behind the shaft's coordinates stand those of pedestals, each in the plane that its stiffness couples it to.
         in_x = np.asarray(stiffness[:, :b].any(axis=1))
         in_x[: 2 * b] = np.arange(2 * b) < b
         return CoupledPlanes.of(mass, stiffness, damping, gyroscopic, in_x)
