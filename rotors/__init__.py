@@ -1,7 +1,7 @@
 """Rotors: lateral, torsional and axial modes, whirl and responses of shafts by exact transfer matrices.
 
-A :class:`Rotor` consists of a row of :class:`Segment` and :class:`Coupling` and of :class:`Disc` on it; each
-:class:`Bearing` carries it::
+A :class:`Rotor` is a row of shaft segments (:class:`Segment`, :class:`Coupling`) with discs (:class:`Disc`) on it. It
+turns in bearings (:class:`Bearing`)::
 
     import numpy as np
 
