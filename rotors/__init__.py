@@ -1,7 +1,9 @@
 """Rotors: lateral, torsional and axial modes, whirl and responses of shafts by exact transfer matrices.
 
-A :class:`Rotor` consists of :class:`Segment`, :class:`Disc` and :class:`Coupling` entries and turns in
-:class:`Bearing` entries::
+A :class:`Rotor` is a row of shaft segments (:class:`Segment`, :class:`Coupling`) with discs (:class:`Disc`) on it. It
+turns in bearings (:class:`Bearing`)::
+
+    import numpy as np
 
     steel = ShaftMaterial(youngs_modulus=211e9, shear_modulus=81.2e9, density=7810.0)
     shaft = Rotor("shaft", [Segment(0.5, 0.05, 0.0, steel)] * 3,
@@ -16,11 +18,12 @@ Each analysis returns a frozen result with the certificate that no mode is missi
     rest_frequencies(shaft, bearings, count=8)
     solve_whirl(shaft, bearings, speed=418.9, count=8)
     critical_speeds(shaft, bearings, speed_limit=1e3)
-    campbell(shaft, bearings, speeds=np.linspace(0.0, 600.0, 100)).crossings()
+    speeds = np.linspace(0.0, 600.0, 100)
+    campbell(shaft, bearings, speeds).crossings()
     unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
     static_deflection(shaft, bearings).bearing_loads
 
-Sub-packages: ``rotors.model`` (description), ``rotors.transfer_matrix`` (Timoshenko segments, Wittrick-Williams count),
+Sub-packages: ``rotors.model`` (description), ``rotors.transfer_matrix`` (Timoshenko elements, Wittrick-Williams count),
 ``rotors.modes`` (undamped modes, modal rotor), ``rotors.whirl`` (damped gyroscopic whirl), ``rotors.analyses``,
 ``rotors.rolling_bearings``, ``rotors.ross`` (file exchange), ``rotors.numerics``. The compiled kernels load with the
 first analysis. Lengths are in m, frequencies and speeds in rad/s. The frame is right-handed with z along the shaft.

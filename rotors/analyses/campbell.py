@@ -1,16 +1,13 @@
-"""Campbell diagram: whirl over a range of speeds, followed through its crossings.
+"""Campbell diagram: whirl eigenvalues over a range of speeds, and their crossings with orders of the speed.
 
-Starting values at every speed come from one projection on planar modes, reduced once; the roots are then refined
-on the exact equations, all speeds in one batch. Branches are followed from speed to speed by the eigenvalue that
-continues them and the likeness of shapes. Motions that the bearings do not couple, such as forward and backward whirl
-in isotropic ones, are followed separately, so that they cannot be confused where they cross.
+Starting values at every speed come from one modal projection, reduced once; the roots are then refined on the exact
+equations, all speeds in one batch. Branches are followed from speed to speed, through the places where they cross, by
+the eigenvalue that continues them and the modal assurance criterion of the shapes. Motions that the bearings do not
+couple, such as forward and backward whirl in isotropic ones, are followed separately, so that they cannot be confused
+where they cross.
 
 Without damping the number of roots is proved at every speed (`rotors.whirl.completeness`). With damping a proof costs a
 contour integral at each speed: it is made at a few speeds, or at all on request.
-
-Branches of a Campbell diagram: whirl modes followed from speed to speed, through the places where they cross.
-
-Whirl eigenvalues of a Campbell diagram: exact roots at many speeds at once, and their proof.
 """
 
 from collections.abc import Sequence
@@ -29,7 +26,7 @@ from rotors.numerics.branch_following import BranchPoint, extended_branches, pai
 from rotors.whirl.circular_coordinates import coupled_motions
 from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, negative_count, oscillating
 from rotors.whirl.eigenvalues import NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each, refine_roots
-from rotors.whirl.equations import WhirlEquations, retied, whirl_reach
+from rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_reach
 from rotors.whirl.modal_projection import ModalProjection
 from rotors.whirl.motion import ShaftMotion
 from rotors.whirl.planar_basis import DEFAULT_COUNT
@@ -66,13 +63,13 @@ class Branch:
         return float(np.abs(self.eigenvalues[np.isfinite(self.eigenvalues)][0]))
 
 
-def followed(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[Branch]:
-    """Branches through the roots (one set a speed) of one chain.
+def followed(equations: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[Branch]:
+    """Branches through the roots (one set a speed) of one set of equations.
 
     A root's jump is its distance from the linear continuation of the branch; shapes are compared by the modal assurance
     criterion of the nodes' displacements.
     """
-    inside = chain.layout.displacements.ravel()
+    inside = equations.layout.displacements.ravel()
     shapes = [one.solutions[:, inside] for one in roots]
     shapes = [one / np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-300) for one in shapes]
     table = np.zeros((0, 0), dtype=np.intp)
@@ -86,7 +83,7 @@ def followed(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatAr
                 jump, likeness, jump_scale=JUMP_SCALE, most_jumps=MOST_JUMPS, longest_jump=LONGEST_JUMP
             )
         table = extended_branches(table, partner, one.eigenvalues.size)
-    ways = _characters_of_all(chain, roots, speeds)
+    ways = _characters_of_all(equations, roots, speeds)
     branches = []
     for column in table.T:
         values, way = np.full(speeds.size, complex(np.nan, np.nan)), np.full((speeds.size, 2), np.nan)
@@ -96,15 +93,15 @@ def followed(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatAr
     return branches
 
 
-def characters(chain: WhirlEquations, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
+def characters(equations: WhirlEquations, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
     """Whirl direction and axial share of roots at speeds, as in `rotors.WhirlModes`, (w, 2)."""
-    if len(chain.blocks) == 1:
-        return np.tile([float(chain.blocks[0]), 0.0 if chain.blocks[0] else 1.0], (roots.eigenvalues.size, 1))
-    motion = ShaftMotion.of(chain, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
+    if len(equations.blocks) == 1:
+        return np.tile([float(equations.blocks[0]), 0.0 if equations.blocks[0] else 1.0], (roots.eigenvalues.size, 1))
+    motion = ShaftMotion.of(equations, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
     return np.stack([motion.direction, motion.axial_share], axis=-1)
 
 
-def _characters_of_all(chain: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:
+def _characters_of_all(equations: WhirlEquations, roots: Sequence[ExactRoots], speeds: FloatArray) -> list[FloatArray]:
     sizes = [one.eigenvalues.size for one in roots]
     together = ExactRoots(
         np.concatenate([one.eigenvalues for one in roots]),
@@ -112,7 +109,7 @@ def _characters_of_all(chain: WhirlEquations, roots: Sequence[ExactRoots], speed
         np.concatenate([one.residuals for one in roots]),
         np.concatenate([one.scales for one in roots]),
     )
-    every = characters(chain, together, np.repeat(speeds, sizes))
+    every = characters(equations, together, np.repeat(speeds, sizes))
     return np.split(every, np.cumsum(sizes)[:-1])
 
 
@@ -159,31 +156,31 @@ def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None,
 
 
 def roots_at_speeds(
-    chains: Sequence[WhirlEquations], values: ComplexArray, speeds: FloatArray, limits: FloatArray
+    equation_sets: Sequence[WhirlEquations], values: ComplexArray, speeds: FloatArray, limits: FloatArray
 ) -> list[ExactRoots]:
     """Exact roots at every speed: separated ones of all speeds in one batch, clusters at their own speed."""
     chosen = [row[np.abs(row) < WINDOW * limit] for row, limit in zip(values, limits, strict=True)]
-    same = all(chain is chains[0] for chain in chains)
+    same = all(equations is equation_sets[0] for equations in equation_sets)
     near = [not same or not apart(row, NEAR) for row in chosen]
     owner = np.concatenate([np.full(row.size, k) for k, row in enumerate(chosen)])
     alone = ~np.array(near)[owner]
-    batch = refine_each(chains[0], np.concatenate(chosen)[alone], speeds[owner[alone]])
+    batch = refine_each(equation_sets[0], np.concatenate(chosen)[alone], speeds[owner[alone]])
     batch_owner = owner[alone]
     roots = []
     for k, row in enumerate(chosen):
         if near[k]:
-            roots.append(refine_roots(chains[k], row, constant_speed(float(speeds[k]))))
+            roots.append(refine_roots(equation_sets[k], row, constant_speed(float(speeds[k]))))
         else:
             own = batch.take(batch_owner == k)
             good = own.residuals <= ACCEPTED
             if not good.all():
-                own = refine_roots(chains[k], own.eigenvalues, constant_speed(float(speeds[k])))
+                own = refine_roots(equation_sets[k], own.eigenvalues, constant_speed(float(speeds[k])))
             roots.append(distinct(own))
     return roots
 
 
 def proved_at(
-    chains: Sequence[WhirlEquations],
+    equation_sets: Sequence[WhirlEquations],
     roots: list[ExactRoots],
     speeds: FloatArray,
     least: float,
@@ -194,7 +191,7 @@ def proved_at(
     """Prove the number of roots at every speed, or at a few; where one is missing it is searched for."""
     if undriven:
         chosen = np.arange(speeds.size)
-        expected = _expected(chains, speeds, least, limits)
+        expected = _expected(equation_sets, speeds, least, limits)
         found = [
             int(oscillating(least, float(limit)).holds(one.eigenvalues).sum())
             for one, limit in zip(roots, limits, strict=True)
@@ -205,7 +202,7 @@ def proved_at(
         doubtful = np.unique(chosen)
     for k in doubtful.tolist():
         sector = oscillating(least, float(limits[k]))
-        inside, _ = certified_roots(chains[k], roots[k], constant_speed(float(speeds[k])), sector, undriven)
+        inside, _ = certified_roots(equation_sets[k], roots[k], constant_speed(float(speeds[k])), sector, undriven)
         beyond = roots[k].take(~sector.holds(roots[k].eigenvalues))
         roots[k] = inside.joined(beyond)
     proved = np.zeros(speeds.size, dtype=np.bool_)
@@ -214,16 +211,16 @@ def proved_at(
 
 
 def _expected(
-    chains: Sequence[WhirlEquations], speeds: FloatArray, least: float, limits: FloatArray
+    equation_sets: Sequence[WhirlEquations], speeds: FloatArray, least: float, limits: FloatArray
 ) -> npt.NDArray[np.intp]:
     """Roots below the limits by inertia, (s,)."""
-    if all(chain is chains[0] for chain in chains):
+    if all(equations is equation_sets[0] for equations in equation_sets):
         twice = np.tile(speeds, 2).astype(np.complex128)
-        counts = negative_count(chains[0], np.concatenate([limits, np.full(speeds.size, least)]), Speed(twice))
+        counts = negative_count(equation_sets[0], np.concatenate([limits, np.full(speeds.size, least)]), Speed(twice))
         return np.asarray(counts[: speeds.size] - counts[speeds.size :])
     rows = [
-        negative_count(chain, np.array([limit, least]), constant_speed(float(speed)))
-        for chain, limit, speed in zip(chains, limits, speeds, strict=True)
+        negative_count(equations, np.array([limit, least]), constant_speed(float(speed)))
+        for equations, limit, speed in zip(equation_sets, limits, speeds, strict=True)
     ]
     return np.array([row[0] - row[1] for row in rows])
 
@@ -336,19 +333,19 @@ class Campbell:
         return tuple(sorted(found, key=lambda crossing: abs(crossing.speed)))
 
     def _crossing(self, branch: int, left: int, order: float) -> Crossing:
-        """The crossing between two neighbouring speeds, each λ on the way refined from between its neighbours."""
+        """Find the crossing between two neighbouring speeds, every λ on the way refined on the exact equations."""
         speeds, ends = self.speeds[left : left + 2].tolist(), self.eigenvalues[left : left + 2, branch]
-        chain = self._chain(branch, float(np.abs(ends).max()), max(abs(speeds[0]), abs(speeds[1])))
+        equations = self._equations(branch, float(np.abs(ends).max()), max(abs(speeds[0]), abs(speeds[1])))
 
         def solve(part: float, low: Point, high: Point) -> Point | None:
             speed = low.speed + part * (high.speed - low.speed)
-            tied = retied(chain, self.solver.bearings, speed)
+            own_equations = equations_at_speed(equations, self.solver.bearings, speed)
             start = np.array([low.eigenvalue + part * (high.eigenvalue - low.eigenvalue)])
-            root = refine_each(tied, start, np.array([speed]))
+            root = refine_each(own_equations, start, np.array([speed]))
             value = complex(root.eigenvalues[0])
             if root.residuals[0] > ACCEPTED or abs(value - start[0]) > CROSSING_JUMP * abs(value):
                 return None
-            direction, along = characters(tied, root, np.array([speed]))[0].tolist()
+            direction, along = characters(own_equations, root, np.array([speed]))[0].tolist()
             return BranchPoint(speed, value, value.imag - order * abs(speed), (direction, along))
 
         points = [
@@ -363,7 +360,7 @@ class Campbell:
             )
         return Crossing(found.speed, found.eigenvalue, order, found.shape[0], branch, found.shape[1])
 
-    def _chain(self, branch: int, highest: float, speed: float) -> WhirlEquations:
+    def _equations(self, branch: int, highest: float, speed: float) -> WhirlEquations:
         sets = self.blocks[branch]
         constant = [bearing.at_speed(_inside(bearing, speed)) for bearing in self.solver.bearings]
         return self.solver.equations(constant, sets, whirl_reach(START_REACH * highest, speed))
@@ -393,7 +390,7 @@ def campbell(
     count
         Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
     basis
-        From `rotors.whirl_basis`, to avoid building it.
+        From `rotors.whirl.modal_projection.whirl_basis`, to avoid building it.
     prove_all
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
     solver
@@ -434,11 +431,13 @@ def campbell(
     owners: list[tuple[int, ...]] = []
     proved = np.ones(turning.size, dtype=np.bool_)
     for blocks, values in zip(sets, starts, strict=True):
-        chain = shared.equations(at_speeds[0], blocks, highest)
-        chains = [retied(chain, row, 0.0) for row in at_speeds] if tabled else [chain] * turning.size
-        roots = roots_at_speeds(chains, values, turning, limits)
-        proved &= proved_at(chains, roots, turning, least, limits, undriven, prove_all)
-        for branch in followed(chain, roots, turning):
+        equations = shared.equations(at_speeds[0], blocks, highest)
+        equation_sets = (
+            [equations_at_speed(equations, row, 0.0) for row in at_speeds] if tabled else [equations] * turning.size
+        )
+        roots = roots_at_speeds(equation_sets, values, turning, limits)
+        proved &= proved_at(equation_sets, roots, turning, least, limits, undriven, prove_all)
+        for branch in followed(equations, roots, turning):
             if bool((np.abs(branch.eigenvalues) < limits).any()):
                 branches.append(branch)
                 owners.append(blocks)
@@ -456,7 +455,7 @@ def campbell(
 
 
 def _inside(bearing: Bearing, speed: float) -> float:
-    """The speed, or the nearest one in a bearing's table."""
+    """Clip a speed (rad/s) to the range of a bearing's tables."""
     if bearing.speeds is None:
         return speed
     return float(np.clip(abs(speed), bearing.speeds[0], bearing.speeds[-1]))

@@ -1,10 +1,9 @@
-"""Critical speeds of a rotor: speeds of rotation equal to a whirl frequency.
+"""Critical speeds of a rotor, where a whirl frequency equals the speed, and the undamped critical-speed map.
 
-Undamped critical-speed map: forward critical speeds of a rotor over the stiffness of its bearings.
-
-In isotropic bearings forward synchronous whirl is a planar problem: with Ω = ω the rotary inertia enters as
-(I_d − I_p) ω², here a circular block of `rotors.whirl.equations` at λ = iω and Ω = ω. Every curve is exact, and at
-every stiffness the number of its points is proved by the count of `rotors.whirl.completeness`.
+The map shows the forward critical speeds over the stiffness of the bearings. In isotropic bearings forward synchronous
+whirl is a planar problem: with Ω = ω the rotary inertia enters as (I_d − I_p) ω², here a circular block of
+`rotors.whirl.equations` at λ = iω and Ω = ω. Every curve is exact, and at every stiffness the number of its points is
+proved by the count of `rotors.whirl.completeness`.
 """
 
 from collections.abc import Sequence
@@ -97,7 +96,7 @@ def critical_speeds(
     count
         Number of critical speeds, instead of a limit; with neither, 12.
     basis
-        From `rotors.whirl_basis`, to avoid building it.
+        From `rotors.whirl.modal_projection.whirl_basis`, to avoid building it.
 
     Raises
     ------
@@ -137,7 +136,10 @@ def _tabled_critical_speeds(
 def certified_criticals(
     rotor: Rotor, bearings: Sequence[Bearing], sets: Sequence[ModalProjection], limit: float | None, count: int | None
 ) -> tuple[WhirlRoots, ModeCertificate]:
-    """Synchronous whirl in undamped bearings below a limit, or the lowest roots, for some sets of coupled motions."""
+    """Certify critical speeds: synchronous whirl in undamped bearings, below a limit or the lowest by their number.
+
+    ``sets`` holds one projection for each set of coupled motions.
+    """
     return certified_whirl(
         WhirlSolver(rotor, bearings),
         bearings,

@@ -15,7 +15,7 @@ from rotors.model.bearing import Bearing
 from rotors.model.loads import HarmonicForce
 from rotors.model.shaft import Rotor
 from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
-from rotors.whirl.equations import WhirlEquations, retied, whirl_equations, whirl_reach
+from rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_equations, whirl_reach
 from rotors.whirl.motion import ShaftMotion
 
 FloatArray = npt.NDArray[np.float64]
@@ -182,33 +182,35 @@ def solve_harmonic(
     forces = np.zeros((frequencies.size, len(constant), 5), dtype=np.complex128)
     motion: ShaftMotion | None = None
     for blocks in sets:
-        chain = whirl_equations(rotor, constant, blocks, max(highest, 1e-6), places)
-        scale = chain.response_scale(eigenvalues)
-        sides = _sides(chain, places, loads) / scale[:, None]
-        solutions = np.empty((frequencies.size, chain.pattern.order), dtype=np.complex128)
+        equations = whirl_equations(rotor, constant, blocks, max(highest, 1e-6), places)
+        scale = equations.response_scale(eigenvalues)
+        sides = _sides(equations, places, loads) / scale[:, None]
+        solutions = np.empty((frequencies.size, equations.pattern.order), dtype=np.complex128)
         runs = (
-            [(slice(k, k + 1), retied(chain, bearings, float(s))) for k, s in enumerate(speeds)]
+            [(slice(k, k + 1), equations_at_speed(equations, bearings, float(s))) for k, s in enumerate(speeds)]
             if tabled
-            else [(slice(None), chain)]
+            else [(slice(None), equations)]
         )
-        for run, tied in runs:
-            values = tied.values(eigenvalues[run], speeds[run].astype(np.complex128), scale[run])
-            solutions[run] = tied.pattern.solve(values, sides[run, None])[:, 0]
-            forces[run] += bearing_forces(tied, solutions[run], scale[run])
-        part = ShaftMotion.of(chain, eigenvalues, speeds.astype(np.complex128), solutions, scale)
+        for run, own_equations in runs:
+            values = own_equations.values(eigenvalues[run], speeds[run].astype(np.complex128), scale[run])
+            solutions[run] = own_equations.pattern.solve(values, sides[run, None])[:, 0]
+            forces[run] += bearing_forces(own_equations, solutions[run], scale[run])
+        part = ShaftMotion.of(equations, eigenvalues, speeds.astype(np.complex128), solutions, scale)
         motion = part if motion is None else motion.plus(part)
     assert motion is not None
     return HarmonicResponse(frequencies, speeds, motion, tuple(bearing.name for bearing in bearings), forces)
 
 
-def bearing_forces(chain: WhirlEquations, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
-    """Forces on the bearings' carriers (b, ties, 5) over x, y, z and about x and y, in SI."""
-    length, angle = chain.bending.displacement_unit
-    forces = np.zeros((solutions.shape[0], len(chain.ties), 5), dtype=np.complex128)
-    for index, (tie, places) in enumerate(zip(chain.ties, chain.layout.ties, strict=True)):
+def bearing_forces(equations: WhirlEquations, solutions: ComplexArray, scale: FloatArray) -> ComplexArray:
+    """Return the bearing forces on the bearings' carriers, (b, bearings, 5), over x, y, z and about x and y, in SI."""
+    length, angle = equations.bending.displacement_unit
+    forces = np.zeros((solutions.shape[0], len(equations.node_bearings), 5), dtype=np.complex128)
+    for index, (node_bearing, places) in enumerate(
+        zip(equations.node_bearings, equations.layout.bearings, strict=True)
+    ):
         own = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
-        own[:, list(tie.directions)] = solutions[:, places.forces] * scale[:, None]
-        if tie.circular:
+        own[:, list(node_bearing.directions)] = solutions[:, places.forces] * scale[:, None]
+        if node_bearing.circular:
             # The change of coordinates is unitary: its inverse is its adjoint.
             own = (own / np.array([length, angle, length, angle, length])) @ CIRCULAR.conj()
         else:
@@ -217,17 +219,18 @@ def bearing_forces(chain: WhirlEquations, solutions: ComplexArray, scale: FloatA
     return forces
 
 
-def _sides(chain: WhirlEquations, places: Sequence[float], loads: Loads) -> ComplexArray:
+def _sides(equations: WhirlEquations, places: Sequence[float], loads: Loads) -> ComplexArray:
     """Right-hand sides (b, order) of loads, before the scale of forces."""
-    members = [member for block in chain.blocks for member in BLOCK_COORDINATES[block]]
-    sides = np.zeros((loads.shape[0], chain.pattern.order), dtype=np.complex128)
+    members = [member for block in equations.blocks for member in BLOCK_COORDINATES[block]]
+    sides = np.zeros((loads.shape[0], equations.pattern.order), dtype=np.complex128)
     for index, place in enumerate(places):
-        row = chain.layout.balances[chain.bending.node_at(place)]
-        sides[:, row] -= loads[:, index][:, members] * chain.units
+        row = equations.layout.balances[equations.bending.node_at(place)]
+        sides[:, row] -= loads[:, index][:, members] * equations.units
     return sides
 
 
 def finite_values(what: str, values: npt.ArrayLike) -> FloatArray:
+    """Return one or more finite values as a vector; ``what`` names them in the message of the error."""
     array = np.atleast_1d(np.asarray(values, dtype=np.float64))
     require(array.ndim == 1 and array.size > 0, f"{what} shape", array.shape, "one dimension and at least one value")
     for value in array.tolist():

@@ -83,33 +83,36 @@ def rest_frequencies(
     planes = [tuple(bearing.plane_support(direction) for bearing in held) for direction in (0, 1)]
     for supports in planes:
         require_unbuckled(rotor, supports)
-    lines = bending_shafts(rotor, planes)
+    continuous_shafts = bending_shafts(rotor, planes)
     alike = planes[0] == planes[1]
     if frequency_limit is not None:
         require(count is None, "frequency_limit and count", (frequency_limit, count), "one of the two")
         require_finite("frequency_limit", frequency_limit, positive=True)
-        limit, chains = frequency_limit, discretise_together(lines[:1] if alike else lines, frequency_limit)
-        expected = wittrick_williams_counts(chains, limit)
+        limit, shafts = (
+            frequency_limit,
+            discretise_together(continuous_shafts[:1] if alike else continuous_shafts, frequency_limit),
+        )
+        expected = wittrick_williams_counts(shafts, limit)
         found = [
-            lowest_natural_frequencies(chain, number, limit) for chain, number in zip(chains, expected, strict=True)
+            lowest_natural_frequencies(shaft, number, limit) for shaft, number in zip(shafts, expected, strict=True)
         ]
     else:
-        chains, shares = _shares(lines, wanted or DEFAULT_COUNT)
+        shafts, shares = _shares(continuous_shafts, wanted or DEFAULT_COUNT)
         if alike:
-            chains, shares = chains[:1], shares[:1]
+            shafts, shares = shafts[:1], shares[:1]
         found = [
-            lowest_natural_frequencies(chain, share, chain.highest) for chain, share in zip(chains, shares, strict=True)
+            lowest_natural_frequencies(shaft, share, shaft.highest) for shaft, share in zip(shafts, shares, strict=True)
         ]
         both = np.sort(np.concatenate(found * 2 if alike else found))
         if count is not None:
             most = f"at most {both.size}, all this lumped rotor has"
             require(count <= both.size, "count of frequencies", count, most)
-        limit = limit_above(float(both[min(wanted or DEFAULT_COUNT, both.size) - 1]), chains[0])
-        expected = wittrick_williams_counts(chains, limit)
+        limit = limit_above(float(both[min(wanted or DEFAULT_COUNT, both.size) - 1]), shafts[0])
+        expected = wittrick_williams_counts(shafts, limit)
         found = [one[:number] for one, number in zip(found, expected, strict=True)]
     solved = [
-        proved_modes(chain, frequencies, number, limit)
-        for chain, frequencies, number in zip(chains, found, expected, strict=True)
+        proved_modes(shaft, frequencies, number, limit)
+        for shaft, frequencies, number in zip(shafts, found, expected, strict=True)
         if number
     ]
     if alike:
@@ -125,20 +128,27 @@ def _is_planar(bearing: Bearing) -> bool:
     return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
 
 
-def _shares(lines: list[ContinuousShaft], count: int) -> tuple[list[DiscretisedShaft], list[int]]:
+def _shares(continuous_shafts: list[ContinuousShaft], count: int) -> tuple[list[DiscretisedShaft], list[int]]:
     """Discretised shafts of the planes, and the number of modes of each among the lowest ``count`` of both.
 
     A lumped rotor with fewer modes gives all of them.
     """
     # Distributed mass has no end of modes; of lumped ones, constraints take some in one plane or the other.
-    available = [line.available_modes for line in lines] if lines[0].available_modes < np.inf else [np.inf]
+    available = (
+        [continuous_shaft.available_modes for continuous_shaft in continuous_shafts]
+        if continuous_shafts[0].available_modes < np.inf
+        else [np.inf]
+    )
     if sum(available) <= count:
         most = [int(number) for number in available]
-        return [shaft_with_modes(line, number) for line, number in zip(lines, most, strict=True)], most
-    low, high = 0.0, lines[0].likely_frequency((count + 1) // 2)
+        return [
+            shaft_with_modes(continuous_shaft, number)
+            for continuous_shaft, number in zip(continuous_shafts, most, strict=True)
+        ], most
+    low, high = 0.0, continuous_shafts[0].likely_frequency((count + 1) // 2)
     while True:
-        chains = discretise_together(lines, high)
-        shares = wittrick_williams_counts(chains, high)
+        shafts = discretise_together(continuous_shafts, high)
+        shares = wittrick_williams_counts(shafts, high)
         if sum(shares) >= count:
             break
         low, high = high, 2.0 * high
@@ -147,9 +157,9 @@ def _shares(lines: list[ContinuousShaft], count: int) -> tuple[list[DiscretisedS
         if sum(shares) <= count + 1:
             break
         middle = 0.5 * (low + high)
-        fewer = wittrick_williams_counts(chains, middle)
+        fewer = wittrick_williams_counts(shafts, middle)
         if sum(fewer) >= count:
             high, shares = middle, fewer
         else:
             low = middle
-    return chains, shares
+    return shafts, shares

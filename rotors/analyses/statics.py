@@ -1,6 +1,6 @@
 """Static deflection and bearing loads of a rotor under its weight and given forces.
 
-The weight along a piece enters exactly, whatever its taper and axial force. With y' = (A₀ + ω²B) y
+The weight along a shaft element enters exactly, whatever its taper and axial force. With y' = (A₀ + ω²B) y
 (`rotors.transfer_matrix.timoshenko`), y(0) = (1, 0, 0, 0) gives at ω = 0 the rigid translation y = (1, 0, 0, 0); its
 derivative with respect to ω² obeys (∂y)' = A₀ ∂y + B (1, 0, 0, 0): the field under the load ρA per unit acceleration.
 So
@@ -47,6 +47,7 @@ class StaticForce:
     about_y: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check that position, forces and moments are finite."""
         require_finite("force position", self.at, minimum=0.0)
         for what in ("x", "y", "z", "about_x", "about_y"):
             require_finite(f"force {what}", getattr(self, what))
@@ -74,7 +75,7 @@ class StaticDeflection:
     gravity: FloatArray
     bearings: tuple[str, ...]
     bearing_loads: FloatArray
-    chains: tuple[WhirlEquations, ...] = field(repr=False)
+    equation_sets: tuple[WhirlEquations, ...] = field(repr=False)
     states: tuple[dict[int, ComplexArray], ...] = field(repr=False)
 
     def evaluate(self, z: npt.ArrayLike) -> FloatArray:
@@ -97,17 +98,17 @@ class StaticDeflection:
 
     def _read(self, z: npt.ArrayLike, wanted: tuple[int, ...], *, forces: bool) -> FloatArray:
         """Components (5, len(z)) over x, y, z and about x and y; those not wanted are zero."""
-        positions = require_positions(self.chains[0].bending.nodes, z)
+        positions = require_positions(self.equation_sets[0].bending.nodes, z)
         whole = np.zeros((5, positions.size), dtype=np.complex128)
-        for chain, states in zip(self.chains, self.states, strict=True):
-            members = [member for block in chain.blocks for member in BLOCK_COORDINATES[block]]
-            pieces, fractions = chain.bending.places(positions)
-            units, first = chain.units, 0
-            for block in chain.blocks:
+        for equations, states in zip(self.equation_sets, self.states, strict=True):
+            members = [member for block in equations.blocks for member in BLOCK_COORDINATES[block]]
+            numbers, fractions = equations.bending.places(positions)
+            units, first = equations.units, 0
+            for block in equations.blocks:
                 width = len(BLOCK_COORDINATES[block])
-                planar = chain.bending if block else chain.axial
-                at = planar.transfer_matrices_to(pieces, fractions, np.array([TINY * 1j]))[:, 0]
-                inside = np.einsum("zij,zj->zi", at.real, states[block][0, pieces])
+                planar = equations.bending if block else equations.axial
+                at = planar.transfer_matrices_to(numbers, fractions, np.array([TINY * 1j]))[:, 0]
+                inside = np.einsum("zij,zj->zi", at.real, states[block][0, numbers])
                 inside = inside + acceleration(self.gravity, block) / units[first] * at.imag[:, :, 0] / TINY
                 for k in range(width):
                     if members[first + k] in wanted:
@@ -152,17 +153,17 @@ def static_deflection(
     if (pull[2] != 0.0 or any(force.z for force in forces)) and not any(0 in blocks for blocks in sets):
         sets = (*sets, (0,))
     places = [force.at for force in forces]
-    chains, states = [], []
+    equation_sets, states = [], []
     loads = np.zeros((1, len(constant), 5), dtype=np.complex128)
     for blocks in sets:
-        chain = whirl_equations(rotor, constant, blocks, whirl_reach(1e-6, 0.0), places)
-        require_held(rotor, chain)
-        solution, scale = _solve(chain, forces, pull)
-        chains.append(chain)
+        equations = whirl_equations(rotor, constant, blocks, whirl_reach(1e-6, 0.0), places)
+        require_held(rotor, equations)
+        solution, scale = _solve(equations, forces, pull)
+        equation_sets.append(equations)
         at_rest = np.zeros(1, dtype=np.complex128)
-        states.append(chain.states(solution, at_rest, at_rest, scale))
-        loads += bearing_forces(chain, solution, scale)
-    return StaticDeflection(pull, tuple(b.name for b in bearings), loads[0].real, tuple(chains), tuple(states))
+        states.append(equations.states(solution, at_rest, at_rest, scale))
+        loads += bearing_forces(equations, solution, scale)
+    return StaticDeflection(pull, tuple(b.name for b in bearings), loads[0].real, tuple(equation_sets), tuple(states))
 
 
 def acceleration(gravity: FloatArray, block: int) -> complex:
@@ -171,21 +172,21 @@ def acceleration(gravity: FloatArray, block: int) -> complex:
     return complex(circular[BLOCK_COORDINATES[block][0]])
 
 
-def require_held(rotor: Rotor, chain: WhirlEquations) -> None:
-    """Raise `RotorError` unless the bearings resist every rigid motion of the chain."""
-    n = chain.size
-    place = (chain.bending.nodes - chain.bending.nodes.mean()) / chain.bending.length_unit
+def require_held(rotor: Rotor, equations: WhirlEquations) -> None:
+    """Raise `RotorError` unless the bearings resist every rigid motion of the rotor."""
+    n = equations.size
+    place = (equations.bending.nodes - equations.bending.nodes.mean()) / equations.bending.length_unit
     rigid, column = np.zeros((n, n, place.size)), 0
-    for block in chain.blocks:
+    for block in equations.blocks:
         rigid[column, column] = 1.0
         if block:
             rigid[column, column + 1] = place
             rigid[column + 1, column + 1] = 1.0
         column += len(BLOCK_COORDINATES[block])
     whole = np.zeros((n, n), dtype=np.complex128)
-    for tie in chain.ties:
-        shape = tie.frame @ rigid[:, :, tie.node]
-        whole += shape.conj().T @ tie.stiffness @ shape
+    for node_bearing in equations.node_bearings:
+        shape = node_bearing.frame @ rigid[:, :, node_bearing.node]
+        whole += shape.conj().T @ node_bearing.stiffness @ shape
     sizes = np.linalg.svd(whole, compute_uv=False)
     if sizes[-1] <= NOT_HELD * sizes[0] or sizes[0] == 0.0:
         raise RotorError(
@@ -194,18 +195,18 @@ def require_held(rotor: Rotor, chain: WhirlEquations) -> None:
 
 
 def _solve(
-    chain: WhirlEquations, forces: Sequence[StaticForce], gravity: FloatArray
+    equations: WhirlEquations, forces: Sequence[StaticForce], gravity: FloatArray
 ) -> tuple[ComplexArray, FloatArray]:
     zero = np.zeros(1, dtype=np.complex128)
-    scale = chain.response_scale(zero)
-    units, layout = chain.units, chain.layout
-    members = [member for block in chain.blocks for member in BLOCK_COORDINATES[block]]
-    sides = np.zeros((1, chain.pattern.order), dtype=np.complex128)
+    scale = equations.response_scale(zero)
+    units, layout = equations.units, equations.layout
+    members = [member for block in equations.blocks for member in BLOCK_COORDINATES[block]]
+    sides = np.zeros((1, equations.pattern.order), dtype=np.complex128)
     first = 0
-    for block in chain.blocks:
+    for block in equations.blocks:
         width = len(BLOCK_COORDINATES[block])
         own = slice(first, first + width)
-        planar = chain.bending if block else chain.axial
+        planar = equations.bending if block else equations.axial
         pull = acceleration(gravity, block) / units[first]
         particular = pull * planar.transfer_matrices(np.array([TINY * 1j]))[:, 0].imag[:, :, 0] / TINY
         particular[:, width:] /= scale[0]
@@ -214,6 +215,6 @@ def _solve(
         sides[0, layout.balances[:, first]] -= pull * planar.node_inertia[:, 0] / scale[0]
         first += width
     for force in forces:
-        row = layout.balances[chain.bending.node_at(force.at)]
+        row = layout.balances[equations.bending.node_at(force.at)]
         sides[0, row] -= force.circular[members] * units / scale[0]
-    return chain.pattern.solve(chain.values(zero, zero, scale), sides[:, None])[:, 0], scale
+    return equations.pattern.solve(equations.values(zero, zero, scale), sides[:, None])[:, 0], scale

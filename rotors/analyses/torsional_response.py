@@ -1,7 +1,7 @@
 """Torsional response of a rotor to harmonic torques, by exact transfer matrices.
 
-Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a piece loses the part of its energy
-that a mode of damping ratio ζ loses. With c = 1 + 2iζ a piece's equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
+Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a shaft element loses the part of its
+energy that a mode of damping ratio ζ loses. With c = 1 + 2iζ its equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
 `rotors.transfer_matrix.timoshenko` for ω²/c with torques counted in units of c. Springs to ground carry k (1 + 2iζ),
 dashpots iωc, and couplings, which are massless, k_θ (1 + 2iζ) + iωc_θ.
 """
@@ -34,6 +34,7 @@ class Torque:
     amplitude: complex
 
     def __post_init__(self) -> None:
+        """Check that position and amplitude are finite."""
         require_finite("torque position", self.at, minimum=0.0)
         require(bool(np.isfinite(self.amplitude)), "torque amplitude", self.amplitude, "a finite complex number")
 
@@ -46,6 +47,7 @@ class TorsionalDashpot:
     coefficient: float
 
     def __post_init__(self) -> None:
+        """Check that position and coefficient are finite and not negative."""
         require_finite("dashpot position", self.at, minimum=0.0)
         require_finite("dashpot coefficient", self.coefficient, minimum=0.0)
 
@@ -61,30 +63,30 @@ class TorsionalResponse:
     damping_ratio
         ζ of the shaft.
     softness
-        (p, b): factor on the twist of each piece under a torque, from the dashpot of a coupling.
+        (p, b): factor on the twist of each shaft element under a torque, from the dashpot of a coupling.
     """
 
     frequencies: FloatArray
     damping_ratio: float
-    chain: DiscretisedShaft = field(repr=False)
+    shaft: DiscretisedShaft = field(repr=False)
     states: ComplexArray = field(repr=False)
     softness: ComplexArray = field(repr=False)
 
     def angle(self, z: npt.ArrayLike) -> ComplexArray:
         """Complex angle at positions z (m), (b, len(z)), rad."""
-        return np.asarray(self._at(z)[:, :, 0] * self.chain.displacement_unit[0])
+        return np.asarray(self._at(z)[:, :, 0] * self.shaft.displacement_unit[0])
 
     def torque(self, z: npt.ArrayLike) -> ComplexArray:
         """Complex torque that the shaft carries, right of positions z (m), (b, len(z)), N·m."""
-        return np.asarray(self._at(z)[:, :, 1] / self.chain.displacement_unit[0])
+        return np.asarray(self._at(z)[:, :, 1] / self.shaft.displacement_unit[0])
 
     def _at(self, z: npt.ArrayLike) -> ComplexArray:
-        pieces, fractions = self.chain.places(require_positions(self.chain.nodes, z))
+        numbers, fractions = self.shaft.places(require_positions(self.shaft.nodes, z))
         modulus = 1.0 + 2j * self.damping_ratio
-        transfer_matrices = self.chain.transfer_matrices_to(pieces, fractions, self.frequencies**2 / modulus)
+        transfer_matrices = self.shaft.transfer_matrices_to(numbers, fractions, self.frequencies**2 / modulus)
         transfer_matrices = in_units_of(transfer_matrices, modulus)
-        transfer_matrices[..., 0, 1] *= self.softness[pieces]
-        return np.asarray(np.einsum("zbij,bzj->bzi", transfer_matrices, self.states[:, pieces]))
+        transfer_matrices[..., 0, 1] *= self.softness[numbers]
+        return np.asarray(np.einsum("zbij,bzj->bzi", transfer_matrices, self.states[:, numbers]))
 
 
 def torsional_response(
@@ -123,30 +125,30 @@ def torsional_response(
     for place in places:
         rotor.require_on_shaft("torque or dashpot", place)
     bare = [AxisSpring(place, 0.0) for place in places]
-    chain = rod_shaft(rotor, [*springs, *bare], "torsion").cut(float(omega.max()))
-    modulus, unit = 1.0 + 2j * damping_ratio, float(chain.displacement_unit[0])
-    dashed = np.zeros(chain.nodes.size)
+    shaft = rod_shaft(rotor, [*springs, *bare], "torsion").cut(float(omega.max()))
+    modulus, unit = 1.0 + 2j * damping_ratio, float(shaft.displacement_unit[0])
+    dashed = np.zeros(shaft.nodes.size)
     for dashpot in dashpots:
-        dashed[chain.node_at(dashpot.at)] += dashpot.coefficient * unit**2
-    terms = modulus * chain.finite_stiffness[:, 0] + 1j * omega[:, None] * dashed
-    terms = terms - omega[:, None] ** 2 * chain.node_inertia[:, 0]
-    transfer_matrices = in_units_of(chain.transfer_matrices(omega**2 / modulus), modulus)
-    softness = _softness(rotor, chain, omega, modulus)
+        dashed[shaft.node_at(dashpot.at)] += dashpot.coefficient * unit**2
+    terms = modulus * shaft.finite_stiffness[:, 0] + 1j * omega[:, None] * dashed
+    terms = terms - omega[:, None] ** 2 * shaft.node_inertia[:, 0]
+    transfer_matrices = in_units_of(shaft.transfer_matrices(omega**2 / modulus), modulus)
+    softness = _softness(rotor, shaft, omega, modulus)
     transfer_matrices[..., 0, 1] *= softness
-    order = 2 * chain.nodes.size
+    order = 2 * shaft.nodes.size
     sides = np.zeros((omega.size, 1, order), dtype=np.complex128)
     for torque in torques:
-        node = chain.node_at(torque.at)
-        if not chain.constrained[node, 0]:
+        node = shaft.node_at(torque.at)
+        if not shaft.constrained[node, 0]:
             sides[:, 0, 2 * node] -= torque.amplitude * unit
-    solved = _pattern(chain.nodes.size).solve(_values(chain, terms, transfer_matrices), sides)
-    return TorsionalResponse(omega, damping_ratio, chain, solved.reshape(omega.size, -1, 2), softness)
+    solved = _pattern(shaft.nodes.size).solve(_values(shaft, terms, transfer_matrices), sides)
+    return TorsionalResponse(omega, damping_ratio, shaft, solved.reshape(omega.size, -1, 2), softness)
 
 
-def _softness(rotor: Rotor, chain: DiscretisedShaft, omega: FloatArray, modulus: complex) -> ComplexArray:
-    """Twist of every piece under a torque, relative to that without the dashpots of couplings, (p, b)."""
-    found = np.ones((chain.lengths.size, omega.size), dtype=np.complex128)
-    middles = 0.5 * (chain.nodes[1:] + chain.nodes[:-1])
+def _softness(rotor: Rotor, shaft: DiscretisedShaft, omega: FloatArray, modulus: complex) -> ComplexArray:
+    """Twist of every shaft element under a torque, relative to that without the dashpots of couplings, (p, b)."""
+    found = np.ones((shaft.lengths.size, omega.size), dtype=np.complex128)
+    middles = 0.5 * (shaft.nodes[1:] + shaft.nodes[:-1])
     for left, part in zip(rotor.joints[:-1].tolist(), rotor.segments, strict=True):
         if isinstance(part, Coupling) and part.torsional_damping > 0.0:
             inside = (middles > left) & (middles < left + part.length)
@@ -165,16 +167,16 @@ def in_units_of(transfer_matrices: ComplexArray, unit: complex) -> ComplexArray:
 
 def _pattern(nodes: int) -> BandPattern:
     """Rows of multiple shooting: force balance 2i of node i, and displacement 2i − 1."""
-    node, piece = np.arange(nodes), np.arange(nodes - 1)
+    node, element = np.arange(nodes), np.arange(nodes - 1)
     last = np.array([2 * nodes - 1])
-    rows = [2 * node, 2 * node, 2 * piece + 1, *[2 * piece + 1] * 2, *[2 * piece + 2] * 2, last]
-    columns = [2 * node, 2 * node + 1, 2 * piece + 2, 2 * piece, 2 * piece + 1, 2 * piece, 2 * piece + 1]
+    rows = [2 * node, 2 * node, 2 * element + 1, *[2 * element + 1] * 2, *[2 * element + 2] * 2, last]
+    columns = [2 * node, 2 * node + 1, 2 * element + 2, 2 * element, 2 * element + 1, 2 * element, 2 * element + 1]
     return BandPattern.of(np.concatenate(rows), np.concatenate([*columns, last]), 2 * nodes)
 
 
-def _values(chain: DiscretisedShaft, terms: ComplexArray, transfer_matrices: ComplexArray) -> ComplexArray:
+def _values(shaft: DiscretisedShaft, terms: ComplexArray, transfer_matrices: ComplexArray) -> ComplexArray:
     """Entries for `_pattern`; the equation of a constrained node is that its displacement is zero."""
-    held, batch = chain.constrained[:, 0], terms.shape[0]
+    held, batch = shaft.constrained[:, 0], terms.shape[0]
     moved = np.moveaxis(transfer_matrices, 1, 0)
     free = np.where(held[1:], 0.0, 1.0)
     parts = [

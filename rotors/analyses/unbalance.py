@@ -81,11 +81,11 @@ class BowShape:
             return np.full(positions.size, self.bow.vectors[0])
         forward, _ = self.held.motion.at(positions)
         # The held response answers the forward load √2 R; r+ of a turning offset b is √2 b.
-        return np.asarray(forward[0, :, 0] * self.held.motion.chain.displacement_unit[0] * np.sqrt(0.5))
+        return np.asarray(forward[0, :, 0] * self.held.motion.shaft.displacement_unit[0] * np.sqrt(0.5))
 
 
 def bow_shape(rotor: Rotor, bow: Bow) -> BowShape:
-    """The curve of least strain energy through a bow's points.
+    """Solve for the bow's shape: the curve of least strain energy through its points.
 
     Springs k to ground at the points, loaded by k w_k, give offsets A w there; w = A⁻¹ b makes them the measured
     ones, and the reactions are k(w − b). Any k serves; one of the shaft's own size keeps the digits.
@@ -130,7 +130,7 @@ def unbalance_response(
     *,
     bow: Bow | None = None,
 ) -> SynchronousResponse:
-    """Synchronous response to unbalance and bow at every speed.
+    """Solve for the unbalance response: the synchronous motion by unbalance and bow at every speed.
 
     Parameters
     ----------

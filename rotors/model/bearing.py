@@ -1,6 +1,8 @@
-"""Bearings by their stiffness and damping matrices, pedestals, and supports of one plane.
+"""Bearings as linear springs and dashpots: 2×2 or 5×5 matrices, pedestals, supports in one plane, axis springs.
 
-Axial and torsional springs from the shaft to ground.
+A `Bearing` holds the shaft in both planes by its stiffness and damping matrices, over speed where they are tables, and
+may stand on a `Pedestal`. A `RadialSupport` is a spring to ground in one plane. An `AxisSpring` is an axial or a
+torsional spring from the shaft to ground.
 """
 
 from dataclasses import dataclass, replace
@@ -29,6 +31,7 @@ class AxisSpring:
     stiffness: float
 
     def __post_init__(self) -> None:
+        """Check the position, and that the stiffness is not negative; it may be infinite."""
         require_finite("axis spring position", self.at, minimum=0.0)
         require(self.stiffness >= 0.0, "axis spring stiffness", self.stiffness, "zero, a positive number or infinity")
 
@@ -55,6 +58,7 @@ class RadialSupport:
     tilt_stiffness: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check the position, and that no stiffness is negative; they may be infinite."""
         require_finite("support position", self.at, minimum=0.0)
         for what, value in (("stiffness", self.stiffness), ("tilt_stiffness", self.tilt_stiffness)):
             require(value >= 0.0, f"support {what}", value, "zero, a positive number or infinity")
@@ -77,6 +81,7 @@ class Pedestal:
     mass: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check the mass, and that 2×2 stiffness holds the pedestal in x and y; freeze the matrices."""
         require_finite("pedestal mass", self.mass, minimum=0.0)
         for what in ("stiffness", "damping"):
             matrix = _frozen(f"pedestal {what}", getattr(self, what))
@@ -121,6 +126,7 @@ class Bearing:
     pedestal: Pedestal | None = None
 
     def __post_init__(self) -> None:
+        """Check position, speeds, shapes of the tables and direct stiffness; freeze the arrays."""
         label = f"bearing {self.name!r}"
         require_finite(f"{label} position", self.at, minimum=0.0)
         if self.speeds is not None:
@@ -156,7 +162,7 @@ class Bearing:
         return cls(name, at, stiffness * np.eye(2), damping * np.eye(2))
 
     def at_speed(self, speed: float) -> "Bearing":
-        """The bearing with the constant coefficients of its tables at a speed of rotation (rad/s) of either sense.
+        """Interpolate the tables: the bearing with constant coefficients at a speed (rad/s) of either sense.
 
         Raises
         ------
@@ -212,7 +218,7 @@ class Bearing:
         return RadialSupport(self.at, self.mean_stiffness, self.mean_tilt_stiffness)
 
     def plane_support(self, direction: int) -> RadialSupport:
-        """The bearing's own direct spring in x (``direction`` 0) or y (1)."""
+        """Return the bearing's own direct spring in x (``direction`` 0) or y (1)."""
         # The section's slope in x is its rotation about y; the slope in y is minus that about x.
         direct = self._constant(self.stiffness).diagonal().tolist()
         return RadialSupport(self.at, direct[direction], direct[4 - direction] if len(direct) == 5 else 0.0)
@@ -235,7 +241,7 @@ class Bearing:
 
 
 def undamped(bearing: Bearing) -> Bearing:
-    """The bearing and its pedestal without damping."""
+    """Return the bearing and its pedestal without damping."""
     pedestal = bearing.pedestal
     if pedestal is None and not bearing.damping.any():
         return bearing
@@ -245,7 +251,7 @@ def undamped(bearing: Bearing) -> Bearing:
 
 
 def _frozen(what: str, value: npt.ArrayLike) -> FloatArray:
-    """A finite, read-only array."""
+    """Return a read-only copy of an array, after a check that it is finite."""
     array = np.array(value, dtype=np.float64)
     require(bool(np.isfinite(array).all()), what, array.tolist(), "finite numbers")
     array.setflags(write=False)

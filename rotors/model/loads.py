@@ -29,6 +29,7 @@ class Unbalance:
     phase: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check that position, moment and phase are finite."""
         require_finite("unbalance position", self.at, minimum=0.0)
         require_finite("unbalance moment", self.moment)
         require_finite("unbalance phase", self.phase)
@@ -61,6 +62,7 @@ class HarmonicForce:
     slope_y: complex = 0.0
 
     def __post_init__(self) -> None:
+        """Check that position, forces and moments are finite."""
         require_finite("force position", self.at, minimum=0.0)
         for what in ("x", "y", "slope_x", "slope_y"):
             value = complex(getattr(self, what))
@@ -99,6 +101,7 @@ class Bow:
     phase: FloatArray | None = None
 
     def __post_init__(self) -> None:
+        """Check that every point has a place of its own and finite values; freeze the arrays."""
         at, offset = np.array(self.at, dtype=np.float64), np.array(self.offset, dtype=np.float64)
         phase = np.zeros_like(offset) if self.phase is None else np.array(self.phase, dtype=np.float64)
         fits = at.ndim == 1 and at.size > 0 and at.shape == offset.shape == phase.shape

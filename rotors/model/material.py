@@ -1,6 +1,6 @@
-"""Shaft material, and Timoshenko's shear coefficient of round cross-sections.
+"""Shaft material, Timoshenko's shear coefficient and the properties of round cross-sections.
 
-Round cross-section: area, second moment, stiffness and mass per length.
+A `Section` gives area, second moment, stiffness and mass per length.
 """
 
 import math
@@ -34,6 +34,7 @@ class ShaftMaterial:
     density: float
 
     def __post_init__(self) -> None:
+        """Check that both moduli are positive and that the density is not negative."""
         require_finite("youngs_modulus", self.youngs_modulus, positive=True)
         require_finite("shear_modulus", self.shear_modulus, positive=True)
         require_finite("density", self.density, minimum=0.0)

@@ -1,7 +1,4 @@
-"""Shaft segment: a straight round length of shaft, cylindrical or conical.
-
-Flexible coupling between two shafts on one axis.
-"""
+"""Shaft segment, cylindrical or conical, and flexible coupling between two shafts on one axis."""
 
 import math
 from collections.abc import Callable
@@ -54,6 +51,7 @@ class Coupling:
     axial_damping: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check that length and stiffness are positive and that inertia and damping are not negative."""
         for what in ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"):
             require_finite(f"coupling {what}", getattr(self, what), positive=True)
         for what in ("mass", "polar_inertia", "diametral_inertia", *DAMPINGS):
@@ -93,7 +91,7 @@ class Segment:
     right_outer_diameter, right_inner_diameter
         Diameters at the right end, m; the diameters change linearly. None for a cylinder.
     axial_force
-        Static force in N that the piece carries, tension positive.
+        Static force in N that the segment carries, tension positive.
 
     Raises
     ------
@@ -112,6 +110,7 @@ class Segment:
     axial_force: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check the length, the axial force, the diameters at both ends and the shear coefficient."""
         require_finite("segment length", self.length, positive=True)
         require_finite("segment axial_force", self.axial_force)
         for side, (outer, inner) in zip(("", "right_"), self.end_diameters, strict=True):
@@ -133,12 +132,12 @@ class Segment:
 
     @property
     def is_conical(self) -> bool:
-        """Whether a diameter changes along the piece."""
+        """Whether a diameter changes along the segment."""
         left, right = self.end_diameters
         return left != right
 
     def section(self, fraction: float) -> Section:
-        """The section at a fraction of the length from the left end, 0 to 1."""
+        """Return the cross-section at a fraction of the length from the left end, 0 to 1."""
         (outer, inner), (right_outer, right_inner) = self.end_diameters
         return Section(
             outer + fraction * (right_outer - outer),
@@ -175,7 +174,7 @@ class Segment:
         return 0.5 * self.polar_inertia + about_left - self.mass * self.mass_centre**2
 
     def _integral(self, density: Callable[[Section, float], float]) -> float:
-        """Integral along the piece; Gauss's four points are exact for the polynomials of a cone (degree 5)."""
+        """Integral along the segment; Gauss's four points are exact for the polynomials of a cone (degree 5)."""
         return self.length * math.fsum(
             weight * density(self.section(fraction), fraction * self.length) for fraction, weight in _GAUSS
         )

@@ -1,12 +1,10 @@
-"""Rotor: round shaft segments end to end with rigid discs on them, and its lumped and distributed inertias.
+"""Rotor: round shaft segments end to end with rigid discs on them, its inertias and its stiffness along the axis.
 
-Stiffness and inertia along a shaft: piecewise polynomials that enter the transfer matrices.
-
-A cylinder or a coupling has constants. Along a cone 1/EI, 1/κGA and their like are rational functions; each is
-interpolated at Chebyshev points, and the cone halved until the last coefficients of every interpolant are
-rounding. The interpolants converge geometrically, at a rate set by how far beyond the piece the nearest
-pole lies (the apex of a cone, or the place where a bore would meet the surface), so this takes a
-piece for every change of a diameter by about a third.
+Stiffness and inertia along the shaft enter the transfer matrices as piecewise polynomials. A cylinder or a coupling has
+constants. Along a cone 1/EI, 1/κGA and their like are rational functions; each is interpolated at Chebyshev points, and
+the cone halved until the last coefficients of every interpolant are rounding. The interpolants converge geometrically,
+at a rate set by how far beyond its interval the nearest pole lies (the apex of a cone, or the place where a bore would
+meet the surface), so this takes an interval for every change of a diameter by about a third.
 """
 
 import math
@@ -140,7 +138,7 @@ def _identity(part: Segment | Coupling) -> tuple[object, ...]:
 
 
 def _segment_values(part: Segment, fraction: float) -> tuple[FloatArray, FloatArray]:
-    """The ten coefficients of a section, and its κGA, EI, ρA, ρI and axial force."""
+    """Return the ten coefficients of a cross-section, and its κGA, EI, ρA, ρI and axial force."""
     section, force = part.section(fraction), part.axial_force
     shear, bending = section.shear_stiffness, section.bending_stiffness
     mass, polar = section.mass_per_length, section.polar_inertia_per_length
@@ -153,7 +151,7 @@ def _segment_values(part: Segment, fraction: float) -> tuple[FloatArray, FloatAr
 
 
 def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
-    """The same of a coupling: massless, its compliances spread over its length."""
+    """Return the values of `_segment_values` for a coupling: massless, its compliances spread over its length."""
     shear, bending = part.lateral_stiffness * part.length, part.tilt_stiffness * part.length
     twist, stretch = part.torsional_stiffness * part.length, part.axial_stiffness * part.length
     values = [1.0 / shear, 1.0 / bending, 0.0, 0.0, 1.0, 0.0, 1.0 / twist, 0.0, 1.0 / stretch, 0.0]
@@ -161,7 +159,7 @@ def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
 
 
 def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
-    """Start and end (fractions of the cone), coefficients and extremes of pieces short enough to interpolate."""
+    """Start and end (fractions of the cone), coefficients and extremes of intervals short enough to interpolate."""
     fractions = [start + fraction * (end - start) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
     samples = [_segment_values(part, fraction) for fraction in fractions]
     values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
@@ -209,6 +207,7 @@ class Disc:
     diametral_inertia: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check that position, mass and inertias are finite and not negative."""
         require_finite("disc position", self.at, minimum=0.0)
         require_finite("disc mass", self.mass, minimum=0.0)
         require_finite("disc polar_inertia", self.polar_inertia, minimum=0.0)
@@ -251,6 +250,7 @@ class Rotor:
     mass_model: MassModel = "distributed"
 
     def __post_init__(self) -> None:
+        """Check for segments, the mass model, discs on the shaft and a positive mass; keep tuples."""
         object.__setattr__(self, "segments", tuple(self.segments))
         object.__setattr__(self, "discs", tuple(self.discs))
         where = f"rotor {self.name!r}"

@@ -1,6 +1,7 @@
-"""Lateral modes: undamped bending of a shaft in one plane, the modal basis of the rotor (TM-101442 Eqs. 7–13).
+"""Lateral modes of a shaft: undamped bending in one plane, and buckling under its axial forces.
 
-Buckling of a shaft under its axial forces, by the Wittrick-Williams root count.
+The modes are the modal basis of the rotor (TM-101442 Eqs. 7–13). The buckling factor is found by the Wittrick-Williams
+root count at standstill.
 """
 
 from collections.abc import Sequence
@@ -27,7 +28,7 @@ LEAST_FACTOR = 1e-9
 
 
 def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> float:
-    """The least factor on all axial forces of a rotor at which it buckles in one plane.
+    """Solve for the buckling factor: the least factor on all axial forces at which a rotor buckles in one plane.
 
     Compression lowers the natural frequencies. Where one has reached zero the shaft buckles: beyond, the root count at
     standstill exceeds the number of rigid motions.
@@ -84,10 +85,10 @@ def _has_buckled(rotor: Rotor, supports: Sequence[RadialSupport], factor: float)
         replace(part, axial_force=factor * part.axial_force) if isinstance(part, Segment) else part
         for part in rotor.segments
     ]
-    line = bending_shaft(replace(rotor, segments=parts), supports)
-    # Every chain of this line has the same scale; the pieces of a standstill are the longest.
-    chain = line.cut(STANDSTILL * line.likely_frequency(1))
-    return wittrick_williams_count(chain, chain.highest) > int(chain.rigid_shapes.shape[0])
+    continuous_shaft = bending_shaft(replace(rotor, segments=parts), supports)
+    # The shaft has one scale at every frequency; the elements of a standstill are the longest.
+    shaft = continuous_shaft.cut(STANDSTILL * continuous_shaft.likely_frequency(1))
+    return wittrick_williams_count(shaft, shaft.highest) > int(shaft.rigid_shapes.shape[0])
 
 
 FloatArray = npt.NDArray[np.float64]
@@ -113,7 +114,8 @@ class LateralModes:
     supports
         The springs in K, which a coupled model removes again.
     certificate
-        Proof of completeness. It does not cover the attachment modes of `rotors.add_attachment_modes`.
+        Proof of completeness. It does not cover the attachment modes of
+        `rotors.modes.residual_modes.add_attachment_modes`.
     """
 
     frequencies: FloatArray
@@ -141,7 +143,7 @@ class LateralModes:
         """
         positions = require_positions(self.stations, z)
         states = np.tensordot(self.mixture, self.fields.at(positions)[:, :, :2], axes=1)
-        unit = self.fields.chain.displacement_unit
+        unit = self.fields.shaft.displacement_unit
         return states[:, :, 0] * unit[0], states[:, :, 1] * unit[1]
 
     def section_loads(self, z: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -157,7 +159,7 @@ class LateralModes:
         """
         positions = require_positions(self.stations, z)
         states = np.tensordot(self.mixture, self.fields.at(positions)[:, :, 2:], axes=1)
-        unit = self.fields.chain.displacement_unit
+        unit = self.fields.shaft.displacement_unit
         return states[:, :, 0] / unit[0], states[:, :, 1] / unit[1]
 
     def strain_energy_shares(self, edges: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -181,11 +183,11 @@ class LateralModes:
             A position is not on the shaft.
         """
         places = require_positions(self.stations, edges)
-        fields = self.fields.on(self.fields.chain.with_nodes(places))
-        nodes = fields.chain.nodes
+        fields = self.fields.on(self.fields.shaft.with_nodes(places))
+        nodes = fields.shaft.nodes
         owner = np.searchsorted(places, 0.5 * (nodes[1:] + nodes[:-1])) - 1
-        pieces = fields.strain_of_pieces(self.mixture)
-        lengths = np.stack([pieces[:, owner == k].sum(axis=1) for k in range(places.size - 1)], axis=1)
+        elements = fields.strain_of_elements(self.mixture)
+        lengths = np.stack([elements[:, owner == k].sum(axis=1) for k in range(places.size - 1)], axis=1)
         supports = np.zeros((self.count, len(self.supports)))
         for k, support in enumerate(self.supports):
             for stiffness, motion in zip(
@@ -256,9 +258,9 @@ def lateral_modes(
     supports: tuple[RadialSupport, ...],
     certificate: ModeCertificate,
 ) -> LateralModes:
-    """Assemble the result from fields in the chain's units and the mixture that makes modes of them."""
-    chain = fields.chain
-    at_stations = fields.at(chain.stations)[:, :, :2]
+    """Assemble the result from fields in the shaft's scaled units and the mixture that makes modes of them."""
+    shaft = fields.shaft
+    at_stations = fields.at(shaft.stations)[:, :, :2]
     # By sums over fields, of which there are none below a limit under the first mode.
     nodal = np.tensordot(mixture, at_stations, axes=1)
     # The largest displacement is positive, so that a shape does not depend on the solver's start.
@@ -266,12 +268,12 @@ def lateral_modes(
     largest = np.abs(shapes).argmax(axis=1)
     sign = np.where(shapes[np.arange(largest.size), largest] < 0.0, -1.0, 1.0)
     mixture = sign[:, None] * mixture
-    nodal = sign[:, None, None] * nodal * chain.displacement_unit
+    nodal = sign[:, None, None] * nodal * shaft.displacement_unit
     # Polar inertia and rotary mass share one unit, so that the unit modal mass carries it over unchanged.
     polar = fields.polar_matrix(mixture)
     return LateralModes(
         frequencies=frequencies,
-        stations=chain.stations,
+        stations=shaft.stations,
         displacement=nodal[:, :, 0],
         slope=nodal[:, :, 1],
         polar_inertia_matrix=0.5 * (polar + polar.T),

@@ -15,12 +15,10 @@ bearing or a gear puts on the shaft: a lateral force at each of them, a moment a
 resists these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated
 modes (Craig 2000), without which the shaft is too stiff at gears and bearings.
 
-Participation factors of a rotor's modes in rigid motions of the ground.
-
-For a ground that moves rigidly, u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation
-of the sections. R is a displacement along x (or y), a turn of the shaft's line about its left end in the plane of x
-(or y), or a motion along the axis. The same integral with the polar inertia is the gyroscopic moment of a base that
-turns.
+The participation factors of the modes belong to rigid motions of the ground. For a ground that moves rigidly,
+u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation of the sections. R is a
+displacement along x (or y), a rotation of the shaft's axis about its left end in the plane of x (or y), or a motion
+along the axis. The same integral with the polar inertia is the gyroscopic moment of a base that turns.
 """
 
 from collections.abc import Sequence
@@ -42,7 +40,7 @@ from rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
 
 FloatArray = npt.NDArray[np.float64]
 
-_FRACTIONS, _WEIGHTS = gauss_rule(10)  # on pieces no longer than the shaft is thick
+_FRACTIONS, _WEIGHTS = gauss_rule(10)  # on intervals no longer than the shaft is thick
 
 
 @dataclass(frozen=True)
@@ -292,8 +290,11 @@ def _require_few(
     if frequency_limit is None:
         return
     require_finite("frequency_limit", frequency_limit, positive=True)
-    for kind, line in (("bending", bending_shaft(rotor, supports)), ("torsional", rod_shaft(rotor, (), "torsion"))):
-        (number,) = wittrick_williams_counts([line.cut(frequency_limit)], frequency_limit)
+    for kind, continuous_shaft in (
+        ("bending", bending_shaft(rotor, supports)),
+        ("torsional", rod_shaft(rotor, (), "torsion")),
+    ):
+        (number,) = wittrick_williams_counts([continuous_shaft.cut(frequency_limit)], frequency_limit)
         below = f"below {frequency_limit / (2.0 * np.pi):.5g} Hz"
         require(number <= MOST_MODES, f"rotor {rotor.name!r}: number of {kind} modes {below}", number, most)
 

@@ -78,18 +78,18 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
 
     Each load is a place (m) and the component of displacement along which it acts.
     """
-    chain = modes.fields.chain.with_nodes(np.array([place for place, _ in loads_at]))
-    loads = [(chain.node_at(place), component) for place, component in loads_at]
-    loads = [load for load in dict.fromkeys(loads) if not chain.constrained[load]]
+    shaft = modes.fields.shaft.with_nodes(np.array([place for place, _ in loads_at]))
+    loads = [(shaft.node_at(place), component) for place, component in loads_at]
+    loads = [load for load in dict.fromkeys(loads) if not shaft.constrained[load]]
     if not loads:
         return None
     elastic = modes.frequencies[modes.frequencies > 0.0]
     zeros = modes.count - elastic.size
-    is_free = chain.rigid_shapes.shape[0] > 0
+    is_free = shaft.rigid_shapes.shape[0] > 0
     reference = elastic[0] if elastic.size else 1.0
     squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
-    static = ShaftFields(chain, np.full(len(loads), squared_shift), responses(chain, loads, squared_shift))
-    fields = modes.fields.on(chain).joined(static)
+    static = ShaftFields(shaft, np.full(len(loads), squared_shift), responses(shaft, loads, squared_shift))
+    fields = modes.fields.on(shaft).joined(static)
     mixture = _residuals(fields, modes.mixture, zeros, len(loads))
     if mixture.shape[0] == 0:
         return None
@@ -100,7 +100,7 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
 
 
 def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -> FloatArray:
-    """Combinations of fields that span the last ``count`` of them less the modes, (r, fields).
+    """Return combinations of fields that span the last ``count`` of them less the modes, (r, fields).
 
     The first ``zeros`` modes are rigid. They are removed first: the response of a nearly free shaft is almost all
     rigid, and the residual is a part of the small remainder.
@@ -122,7 +122,7 @@ def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -
 
 
 def _without(fields: ShaftFields, rows: FloatArray, modes: FloatArray) -> FloatArray:
-    """Combinations without their components along orthonormal modes; twice, to remove rounding."""
+    """Remove the components of combinations along orthonormal modes; twice, to remove rounding."""
     for _ in range(2 if modes.size else 0):
         rows = rows - fields.mass_products(rows, modes) @ modes
     return rows

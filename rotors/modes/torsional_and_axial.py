@@ -1,8 +1,6 @@
-"""Torsional modes of a shaft, and of a chain of inertias and springs (Holzer).
+"""Torsional and axial modes of a shaft: rod modes, and the modes of inertias and torsion springs in a row (Holzer).
 
-Rod modes: the common form of torsional and axial modes.
-
-Axial modes of a shaft: longitudinal waves in its segments, its discs as masses.
+Both motions obey the equation of a rod. Axial modes are longitudinal waves in the segments, with the discs as masses.
 """
 
 from collections.abc import Sequence
@@ -32,7 +30,7 @@ class RodModes:
     frequencies
         (m,): ascending, rad/s; the rigid motion of a free shaft is a zero.
     stations
-        (s,): segment ends, discs and springs, m from the left end; of a plain chain, 0, 1, 2, ...
+        (s,): segment ends, discs and springs, m from the left end; of inertias and springs, 0, 1, 2, ...
     amplitude
         (m, s): angle or displacement at the stations, rad or m per unit modal coordinate.
     certificate
@@ -60,7 +58,7 @@ class RodModes:
             A position is not on the shaft.
         """
         states = self.fields.at(require_positions(self.stations, z))[:, :, 0]
-        return np.asarray(self.mixture @ states * self.fields.chain.displacement_unit[0])
+        return np.asarray(self.mixture @ states * self.fields.shaft.displacement_unit[0])
 
 
 Modes = TypeVar("Modes", bound=RodModes)
@@ -68,14 +66,14 @@ Modes = TypeVar("Modes", bound=RodModes)
 
 def rod_modes(kind: type[Modes], found: SolvedModes) -> Modes:
     """Modes of a kind from what the search found; the largest amplitude of each is positive."""
-    chain = found.fields.chain
-    nodal = found.mixture @ found.fields.at(chain.stations)[:, :, 0]
+    shaft = found.fields.shaft
+    nodal = found.mixture @ found.fields.at(shaft.stations)[:, :, 0]
     largest = np.take_along_axis(nodal, np.abs(nodal).argmax(axis=1)[:, None], axis=1)
     sign = np.where(largest < 0.0, -1.0, 1.0)
     return kind(
         frequencies=found.frequencies,
-        stations=chain.stations,
-        amplitude=sign * nodal * chain.displacement_unit[0],
+        stations=shaft.stations,
+        amplitude=sign * nodal * shaft.displacement_unit[0],
         certificate=found.certificate,
         fields=found.fields,
         mixture=sign * found.mixture,
@@ -157,7 +155,7 @@ def solve_torsional_chain(
     require(fitting, "torsional chain ground", held.tolist(), "one stiffness for each inertia, none negative")
 
     moment = float(np.exp(np.log(springs).mean()))
-    line = ContinuousShaft(
+    continuous_shaft = ContinuousShaft(
         label="torsional chain",
         nodes=np.arange(masses.size, dtype=np.float64),
         stations=np.arange(masses.size, dtype=np.float64),
@@ -176,7 +174,7 @@ def solve_torsional_chain(
         length_unit=1.0,
         displacement_unit=np.array([1.0 / np.sqrt(moment)]),
     )
-    return rod_modes(TorsionalModes, find_modes(line, None, int(line.available_modes)))
+    return rod_modes(TorsionalModes, find_modes(continuous_shaft, None, int(continuous_shaft.available_modes)))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ class BandPattern:
 
     @classmethod
     def of(cls, rows: IntArray, columns: IntArray, order: int) -> "BandPattern":
-        """The pattern of the given entries, (nnz,) each."""
+        """Return the pattern of the given entries, (nnz,) each."""
         offset = rows - columns
         return cls(
             np.ascontiguousarray(rows, dtype=np.intp),

@@ -106,7 +106,7 @@ def refined_crossing(
     tolerance: float,
     steps: int,
 ) -> BranchPoint[Shape] | None:
-    """The point between two of a branch at which the gap vanishes, by regula falsi with Illinois' halving.
+    """Solve for the point between two of a branch at which the gap vanishes, by the Illinois form of regula falsi.
 
     Parameters
     ----------

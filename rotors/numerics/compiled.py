@@ -52,5 +52,5 @@ def uncounted(**options: Any) -> Callable[[Kernel], Kernel]:
 
 
 def inner(**options: Any) -> Callable[[Kernel], Kernel]:
-    """The same for a function that kernels alone call."""
+    """Compile as `uncounted` does, for a function that kernels alone call."""
     return uncounted(no_cpython_wrapper=True, **options)

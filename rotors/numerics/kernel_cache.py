@@ -31,7 +31,7 @@ _IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTIL
 
 
 def kernel_sources(root: Path) -> list[Path]:
-    """Sources of the machine code: files with kernels, and the files that these import from.
+    """List the sources of the machine code: files with kernels, and the files that these import from.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
     row = BallRow(count=7, ball_diameter=11.5e-3, pitch_diameter=43.5e-3)
     state = rolling_equilibrium(RollingBearing([row]), [1000.0, 0.0, 0.0, 0.0, 0.0])
-    bearing = bearing_from(state, "drive end", at=0.02)
+    bearing = linearised_bearing(state, "drive end", at=0.02)
 
 A state carries the displacement, the 5×5 tangent stiffness, each element's load, contact angles and pressures, and the
 residual of its equilibrium. `catalogue_row` estimates a row from bore, outer diameter and width; `paired` sets two

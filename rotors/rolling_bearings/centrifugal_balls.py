@@ -64,7 +64,7 @@ class CentrifugalBalls:
         return row_energy(motion, value, force, hessian)
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """Loads of every ball at both rings."""
+        """Return the loads of every ball at both rings."""
         v, _ = self._vectors(q)
         inner = np.array([self._inner_force(one) for one in v])
         outer = inner + self._outwards
@@ -143,7 +143,10 @@ class CentrifugalBalls:
 
 
 def _reach(contact: PointContact, arm: float, forces: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """A |g| + ⅗ c |g|^{5/3} of every force, (n, 2), and its first and second derivatives, (n, 2) and (n, 2, 2)."""
+    """Return the complementary energy A |g| + ⅗ c |g|^{5/3} of every force g, its gradient and its Hessian.
+
+    The shapes are (n,), (n, 2) and (n, 2, 2) for forces (n, 2).
+    """
     size = np.linalg.norm(forces, axis=1)
     safe = np.where(size > 0.0, size, 1.0)
     normal = forces / safe[:, None]

@@ -1,8 +1,9 @@
-"""Contact energy of a row of balls, its gradient and its Hessian.
+"""Contact energy of rows of balls and of cylindrical rollers, its gradient and its Hessian, and the element loads.
 
-At the azimuth ψ the centre of the inner groove's curvature stands from that of the outer one by the vector v in the
-ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a ball
-just touches both grooves, s the clearance, e the axial offset and (R, z) the radius and place of the inner centres:
+**Balls.** At the azimuth ψ the centre of the inner groove's curvature stands from that of the outer one by the vector v
+in the ball's own plane (radial, axial), v = v₀ + B q, with σ the row's direction, A the distance of the centres when a
+ball just touches both grooves, s the clearance, e the axial offset and (R, z) the radius and place of the inner
+centres:
 
     v₀ = (A cos α − s/2,  σ (A sin α + e))
     B  = [[cos ψ, sin ψ, 0, −z sin ψ,  z cos ψ],
@@ -16,11 +17,7 @@ in series, and the approach is δ = |v| − A:
 for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an increasing convex function of it: the
 energy is convex in q. Friction is left out.
 
-Contact energy and element loads: the common form of ball and roller rows.
-
-Contact energy of a row of cylindrical rollers, its gradient and its Hessian.
-
-Slice k of the roller at ψ, at the place z_k along the axis, is pressed between the raceways by
+**Cylindrical rollers.** Slice k of the roller at ψ, at the place z_k along the axis, is pressed between the raceways by
 
     δ_jk = x cos ψ + y sin ψ + z_k (θ_y cos ψ − θ_x sin ψ) − s/2 − 2 P(x_k)
 
@@ -138,7 +135,7 @@ class StaticBalls:
         return row_energy(motion, *_spring(self.row.stiffness, v, approach, distance))
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """Loads of every ball."""
+        """Return the loads of every ball."""
         v, _, approach = self._state(q)
         load = self.row.stiffness * np.maximum(approach, 0.0) ** 1.5
         return ball_loads(self.row, self.azimuths, (load, load), (v, v), approach)
@@ -231,7 +228,7 @@ class RollerSlices:
         )
 
     def loads(self, q: FloatArray) -> ElementLoads:
-        """Loads of every roller and slice; pressures of the worst slice by Hertz's line contact.
+        """Return the loads of every roller and slice; pressures of the worst slice by Hertz's line contact.
 
         p = (w E* Σρ / π)^{1/2} and half the width b = 2 w / (π p), w the load per length.
         """

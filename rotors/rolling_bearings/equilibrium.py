@@ -1,16 +1,13 @@
-"""Static equilibrium of a rolling bearing: displacement of the inner ring under a load.
+"""Static equilibrium of a rolling bearing: displacement, tangent stiffness and element loads under a load.
 
 With the energy φ(q) of all elements and the load f, the potential
 
     Π(q) = φ(q) − fᵀ q
 
-is convex (see `rotors.rolling_bearings.element_contacts` and `rotors.rolling_bearings.element_contacts`) and grows
-faster than linearly in every direction that the bearing holds. So it has a minimum for every load along those, which
-is the equilibrium, and a trust region finds it from any start. The tangent stiffness is the Hessian of φ there.
-
-State of a rolling bearing under a load: displacement, tangent stiffness, element loads.
-
-Linear bearing from a loaded rolling bearing, and Krämer's stiffness formulas for a first estimate.
+is convex (`rotors.rolling_bearings.element_contacts`, `rotors.rolling_bearings.centrifugal_balls`) and grows faster
+than linearly in every direction that the bearing holds. So it has a minimum for every load along those, which is the
+equilibrium, and a trust region finds it from any start. The tangent stiffness is the Hessian of φ there; with it
+`linearised_bearing` makes the linear bearing of a rotor. Krämer's formulas give a first estimate of the stiffness.
 """
 
 import math
@@ -292,7 +289,7 @@ def _require_grooves(name: str, number: int, row: BallRow, loads: ElementLoads) 
 
 
 def linearised_bearing(state: RollingState, name: str, at: float, *, damping: npt.ArrayLike | None = None) -> Bearing:
-    """The linear bearing of a rolling bearing about its equilibrium.
+    """Linearise a rolling bearing about its equilibrium.
 
     Parameters
     ----------
@@ -331,7 +328,7 @@ def kramer_ball_stiffness(count: int, ball_diameter: float, load: float, contact
 
 
 def kramer_roller_stiffness(count: int, length: float, load: float, contact_angle: float = 0.0) -> float:
-    """The same of rollers: k = 1.0e9 Z^{0.9} l^{0.8} F^{0.1} cos^{1.9} α, in N and m."""
+    """Return Krämer's stiffness of a roller bearing, k = 1.0e9 Z^{0.9} l^{0.8} F^{0.1} cos^{1.9} α, in N and m."""
     _require_formula("rollers", count, length, load)
     return float(1.0e9 * count**0.9 * length**0.8 * load**0.1 * math.cos(contact_angle) ** 1.9)
 

@@ -1,4 +1,4 @@
-"""Hertz's elliptic contact of two smooth bodies, by the exact elliptic integrals.
+"""Hertz's elliptic contact of two smooth elastic bodies, by the exact elliptic integrals.
 
 Two bodies touch at a point with the principal relative curvatures Σρ_y ≥ Σρ_x (1/m). Under a load Q the contact is an
 ellipse of semi-axes a ≥ b, κ = a/b, with m = 1 − 1/κ² the parameter of the complete elliptic integrals K and E
@@ -8,10 +8,9 @@ ellipse of semi-axes a ≥ b, κ = a/b, with m = 1 − 1/κ² the parameter of t
     a = (2 κ² E / π)^{1/3} [3 Q / (2 Σρ E*)]^{1/3},   b = a / κ,   p_max = 3 Q / (2 π a b)
     δ = (2 K / π) (π / 2 κ² E)^{1/3} [3 Q / (2 Σρ E*)]^{2/3} Σρ / 2
 
-with Σρ = Σρ_x + Σρ_y. Carlson's R_D (DLMF 19.25.1) writes both differences of the first line without cancellation, so κ
-is found to rounding from a circle to the longest ellipse.
-
-Elasticity of rings and rolling elements in contact.
+with Σρ = Σρ_x + Σρ_y and the contact modulus E* of rings and rolling elements (`ContactElasticity`). Carlson's R_D
+(DLMF 19.25.1) writes both differences of the first line without cancellation, so κ is found to rounding from a circle
+to the longest ellipse.
 """
 
 import math
@@ -40,6 +39,7 @@ class ContactElasticity:
     element_density: float = 7800.0
 
     def __post_init__(self) -> None:
+        """Check that moduli and density are positive and that Poisson's ratios are admissible."""
         for what in ("ring_modulus", "element_modulus", "element_density"):
             require_finite(f"contact {what}", getattr(self, what), positive=True)
         for what in ("ring_poisson_ratio", "element_poisson_ratio"):

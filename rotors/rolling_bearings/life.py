@@ -46,7 +46,7 @@ def equivalent_load(state: RollingState) -> float | None:
 
 
 def rated_revolutions(state: RollingState, dynamic_rating: float) -> float | None:
-    """Basic rating life L₁₀ of a bearing under its load, in revolutions.
+    """Return the basic rating life L₁₀ of a bearing under its load, in revolutions.
 
     Parameters
     ----------

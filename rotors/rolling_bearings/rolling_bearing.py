@@ -1,20 +1,17 @@
-"""Rolling bearing: rows of balls or rollers that share their rings.
+"""Rolling bearing: rows of balls or rollers that share their rings, arrangements, and estimates from a catalogue.
 
 The inner ring moves by q = (x, y, z, rotation about x, rotation about y) against the outer, taken at the bearing's
 centre. A row's own direction is +1 where pushing the inner ring towards +z loads its contacts, −1 where −z does.
+Double-row and paired ball bearings stand back to back, face to face or in tandem.
 
-Bearing arrangements: double-row and paired ball bearings, back to back, face to face or in tandem.
-
-Internal geometry of a rolling bearing estimated from its catalogue dimensions.
-
-Catalogues print bore d, outer diameter D and width B, but not the internal geometry. The pitch circle lies near the
-middle, (d + D)/2. Design practice (Changsen 1991; the bounds of Gupta, Tiwari and Nair, Mechanism and Machine Theory
-42, 2007) makes a ball 0.24 to 0.35 of D − d, and lets as many into a deep-groove bearing as an arc of 186° or so takes
-when the rings are pushed apart (Conrad), Z = 1 + φ / (2 asin(D_w / D_pw)). Here: 0.3 and 186°, which meets sizes 6205,
-6208 and 6305 to a ball and their printed static ratings to 9 %. Bearings assembled with a counterbore fill their pitch
-circle but for the cage: Z balls or rollers with 15 % or 20 % of air between them. A cylindrical roller has 0.275 (D −
-d) and a contact as long as 0.55 B, which meets the static ratings of NU 205, 208 and 210 to 5 %. Grooves are .52 and
-.53 of the ball, ISO 281's limits.
+Catalogues print bore d, outer diameter D and width B, but not the internal geometry, which is estimated. The pitch
+circle lies near the middle, (d + D)/2. Design practice (Changsen 1991; the bounds of Gupta, Tiwari and Nair, Mechanism
+and Machine Theory 42, 2007) makes a ball 0.24 to 0.35 of D − d, and lets as many into a deep-groove bearing as an arc
+of 186° or so takes when the rings are pushed apart (Conrad), Z = 1 + φ / (2 asin(D_w / D_pw)). Here: 0.3 and 186°,
+which meets sizes 6205, 6208 and 6305 to a ball and their printed static ratings to 9 %. Bearings assembled with a
+counterbore fill their pitch circle but for the cage: Z balls or rollers with 15 % or 20 % of air between them. A
+cylindrical roller has 0.275 (D − d) and a contact as long as 0.55 B, which meets the static ratings of NU 205, 208 and
+210 to 5 %. Grooves are .52 and .53 of the ball, ISO 281's limits.
 
 All of this is an estimate. Stiffness goes as Z^{2/3} D_w^{1/3} (Krämer), so a ball too many of nine moves it by 7 %.
 """
@@ -56,6 +53,7 @@ class RollingBearing:
     name: str = "rolling bearing"
 
     def __post_init__(self) -> None:
+        """Check for at least one row, and that a preloaded bearing has axial stiffness; keep a tuple."""
         object.__setattr__(self, "rows", tuple(self.rows))
         if not self.rows:
             raise RotorError(f"{self.name} has no rows; expected at least one")
@@ -159,7 +157,7 @@ def catalogue_row(
     contact_angle: float | None = None,
     clearance: float = 0.0,
 ) -> Row:
-    """Internal geometry of a bearing estimated from its main dimensions; the module gives the sources.
+    """Estimate the internal geometry of a bearing from its main dimensions; the module gives the sources.
 
     Parameters
     ----------

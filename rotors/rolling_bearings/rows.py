@@ -1,8 +1,6 @@
-"""Ball row of a rolling bearing, by its geometry.
+"""Ball and roller rows of a rolling bearing, by their geometry: elements, grooves, raceways and contact constants.
 
-Check that the elements of a row fit on the pitch circle.
-
-Roller row of a cylindrical-roller bearing, by its geometry.
+The elements of a row must fit side by side on the pitch circle.
 """
 
 import math
@@ -77,6 +75,7 @@ class BallRow:
     elasticity: ContactElasticity = STEEL
 
     def __post_init__(self) -> None:
+        """Check that the balls fit on the pitch circle, and angles, grooves, clearance and direction."""
         require_space("ball", self.count, self.ball_diameter, self.pitch_diameter)
         within = 0.0 <= self.contact_angle < RIGHT_ANGLE
         require(within, "contact angle", self.contact_angle, "an angle from 0 to below a right angle, rad")
@@ -135,7 +134,7 @@ class BallRow:
         return 0.5 * (1.0 - self._gamma) * speed
 
     def facing(self, direction: int) -> "BallRow":
-        """The same row with another direction."""
+        """Return the same row with another direction."""
         return replace(self, direction=direction)
 
     @property
@@ -230,6 +229,7 @@ class RollerRow:
     elasticity: ContactElasticity = STEEL
 
     def __post_init__(self) -> None:
+        """Check that the rollers fit on the pitch circle, and length, slices, profile and clearance."""
         require_space("roller", self.count, self.roller_diameter, self.pitch_diameter)
         require_finite("roller length", self.length, positive=True)
         require_count("count of slices", self.slices)
@@ -249,7 +249,7 @@ class RollerRow:
 
     @property
     def stiffness(self) -> float:
-        """c of one straight roller between both raceways, Q = c δ^{10/9}, N/m^{10/9}.
+        """Contact constant c of one straight roller between both raceways, Q = c δ^{10/9}, N/m^{10/9}.
 
         35 948 L^{8/9} in N and mm (Palmgren; ISO 16281), for the steel that `ContactElasticity` holds by default, and
         in proportion to E* for others: Palmgren's δ goes as (1/E*)^{0.9}.

@@ -1,7 +1,4 @@
-"""Reading of a rotor that ROSS saved.
-
-Bearings, seals and their supports in a ROSS file.
-"""
+"""Reading of a ROSS file: the rotor, its bearings and seals, and their supports as pedestals."""
 
 import os
 import re

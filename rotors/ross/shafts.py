@@ -1,9 +1,8 @@
-"""Shaft elements in a ROSS file: cylinders, cones and couplings in a row, and their nodes.
+"""Shaft elements of a ROSS file: cylinders, cones and couplings in a row, their nodes and shear coefficients.
 
-Shear coefficients of ROSS, and their counterparts here.
-
-ROSS has two formulas for the shear coefficient κ. Its ``cowper`` is Cowper's, as in `rotors.shear_coefficient`. Its
-``hutchinson`` has the denominator of Hutchinson (J. Appl. Mech. 68, 2001) but a factor 1 + ν less in the numerator,
+ROSS has two formulas for the shear coefficient κ. Its ``cowper`` is Cowper's, as in
+`rotors.model.material.shear_coefficient`. Its ``hutchinson`` has the denominator of Hutchinson (J. Appl. Mech. 68,
+2001) but a factor 1 + ν less in the numerator,
 
     κ = 6 (1 + ν)(1 + m²)² / [(1 + m²)²(7 + 12ν + 4ν²) + 4 m²(5 + 6ν + 2ν²)],
 
@@ -40,7 +39,7 @@ def ross_hutchinson(bore_ratio: float, poisson_ratio: float) -> float:
 
 
 def ross_formula(segment: Segment) -> tuple[str, bool, float]:
-    """The formula of ROSS that is closest to a segment's shear coefficient.
+    """Return the formula of ROSS that is closest to a segment's shear coefficient.
 
     Returns
     -------
@@ -147,7 +146,7 @@ def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
 
 
 def _in_a_row(entries: Sequence[Entry]) -> list[Entry]:
-    """The elements in the order of their left nodes; in that of the file if none is given."""
+    """Sort the elements by their left nodes; keep the order of the file if none is given."""
     nodes = [entry.node() for entry in entries]
     if all(node is None for node in nodes):
         return list(entries)
@@ -221,7 +220,7 @@ def _shear(
 
 
 def _coupling(entry: Entry, remarks: Remarks) -> tuple[Coupling, tuple[tuple[float, float, float], ...]]:
-    """A coupling, and mass, polar and diametral inertia of its two halves where these differ."""
+    """Read a coupling, and mass, polar and diametral inertia of its two halves where these differ."""
     _note_unknown(entry, _COUPLING_KEYS, remarks)
     for name in _DAMPINGS:
         if entry.number(name, 0.0) < 0.0:

@@ -4,7 +4,7 @@
 by its class and its tag, such as ``["ShaftElement_Shaft Element 0"]``, that holds the arguments of its constructor in
 SI, except those that are None. With the suffix ``.json`` it writes the same as JSON.
 
-Remarks on properties that a file format cannot hold, each made once for all elements concerned.
+`Remarks` collects the properties that a file format cannot hold, each once for all elements concerned.
 """
 
 import json
@@ -86,21 +86,21 @@ class Entry:
         return RotorError(f"{self.file}: {self.key}.{name} is {value!r}; expected {expected}")
 
     def inner(self, name: str) -> "Entry":
-        """A table within this one."""
+        """Return a table within this one."""
         value = self.values.get(name)
         if not isinstance(value, Mapping):
             raise self.error(name, "a table")
         return Entry(self.file, f"{self.key}.{name}", value)
 
     def number(self, name: str, default: float | None = None) -> float:
-        """A finite number; without a default the key must be there."""
+        """Return a finite number; without a default the key must be there."""
         value = self.values.get(name, default)
         if not _is_number(value):
             raise self.error(name, "a finite number")
         return float(value)
 
     def node(self, name: str = "n") -> int | None:
-        """Number of a node, or None where the key is missing."""
+        """Return the number of a node, or None where the key is missing."""
         value = self.values.get(name)
         if value is None:
             return None
@@ -109,21 +109,21 @@ class Entry:
         return int(value)
 
     def required_node(self) -> int:
-        """The node that the element stands on, which must be given."""
+        """Return the node that the element stands on, which must be given."""
         node = self.node()
         if node is None:
             raise self.error("n", "a node: a whole number from 0")
         return node
 
     def flag(self, name: str) -> bool:
-        """A flag that is true where the key is missing."""
+        """Return a flag, which is true where the key is missing."""
         value = self.values.get(name, True)
         if not isinstance(value, bool):
             raise self.error(name, "true or false")
         return value
 
     def series(self, name: str, default: float | None = 0.0) -> list[float]:
-        """A number, or a list of them, as a list; without a default the key must be there."""
+        """Return a number, or a list of them, as a list; without a default the key must be there."""
         value = self.values.get(name, default)
         values = value if isinstance(value, list) else [value]
         if not values or not all(_is_number(entry) for entry in values):

@@ -1,21 +1,19 @@
-"""Discretised shaft: elements between nodes, the common form of bending, torsion and axial motion.
+"""Discretised shaft: shaft elements between nodes, cut from a continuous shaft for a highest frequency.
 
-Every node may carry inertia and a spring to ground; every piece of shaft between two nodes has an exact transfer matrix
-(`rotors.transfer_matrix.timoshenko`). Lengths and forces are scaled so that displacements and forces are of one size
-and a state vector can be normalised as a whole. `rotors.transfer_matrix.rotor_shafts` makes the discretised shafts of
-a rotor.
+This is the common form of bending, torsion and axial motion. Every node may carry inertia and a spring to ground; every
+shaft element between two nodes has an exact transfer matrix (`rotors.transfer_matrix.timoshenko`). Lengths and forces
+are scaled so that displacements and forces are of one size and a state vector can be normalised as a whole.
+`rotors.transfer_matrix.rotor_shafts` makes the continuous and the discretised shafts of a rotor.
 
-Continuous shaft: its spans between stations, and their discretisation into elements short enough for a frequency.
-
-Pieces are so short that none, clamped at both ends, has a natural frequency of its own below the highest asked.
-For a Timoshenko piece of length h, clamped ends give by Wirtinger's inequality ‖x‖ ≤ (h/π)‖x'‖,
-‖β‖ ≤ (h/π)‖β'‖ and ‖x'‖ ≤ ‖x' − β‖ + (h/π)‖β'‖, so that its strain energy, that of an axial force P included,
-exceeds its kinetic energy for every field when, with u = (h/π)² and C = max(−P, 0),
+A continuous shaft has spans between stations, which are cut into elements so short that none, clamped at both ends, has
+a natural frequency of its own below the highest asked. For a Timoshenko element of length h, clamped ends give by
+Wirtinger's inequality ‖x‖ ≤ (h/π)‖x'‖, ‖β‖ ≤ (h/π)‖β'‖ and ‖x'‖ ≤ ‖x' − β‖ + (h/π)‖β'‖, so that its strain energy,
+that of an axial force P included, exceeds its kinetic energy for every field when, with u = (h/π)² and C = max(−P, 0),
 
     2 (ρA ω² u + C) < κGA    and    2 (ρA ω² u + C) u + ρI ω² u < EI,
 
-with the least stiffness and the largest inertia of the piece; of a rod, when ρA ω² u < EA. This removes the
-term J₀ from the Wittrick–Williams count and bounds the growth of any transfer matrix.
+with the least stiffness and the largest inertia of the element; of a rod, when ρA ω² u < EA. This removes the term J₀
+from the Wittrick–Williams count and bounds the growth of any transfer matrix.
 """
 
 from collections.abc import Sequence
@@ -36,7 +34,7 @@ IntArray = npt.NDArray[np.intp]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 
-# Products of two fields, on pieces this short, are integrated to rounding.
+# Products of two fields, on elements this short, are integrated to rounding.
 GAUSS_FRACTIONS, GAUSS_WEIGHTS = gauss_rule(10)
 # For the squares of forward and backward whirl.
 SQUARE_FRACTIONS, SQUARE_WEIGHTS = gauss_rule(6)
@@ -44,7 +42,7 @@ SQUARE_FRACTIONS, SQUARE_WEIGHTS = gauss_rule(6)
 
 @dataclass(frozen=True)
 class EnergyWeights:
-    """Weights of squared motions and strains at the Gauss points of all pieces, and then at the nodes.
+    """Weights of squared motions and strains at the Gauss points of all elements, and then at the nodes.
 
     ``mass`` and ``polar`` weigh n displacements at each; ``strain`` weighs the rotation (of a beam) and the n
     forces at each Gauss point and the n displacements of each node.
@@ -57,16 +55,16 @@ class EnergyWeights:
 
 @dataclass(frozen=True)
 class DiscretisedShaft:
-    """A shaft as pieces between nodes, in scaled units; n is 2 for bending and 1 for a rod.
+    """A shaft as elements between nodes, in scaled units; n is 2 for bending and 1 for a rod.
 
     Attributes
     ----------
     nodes
         (p + 1,): ascending positions, m (they and the stations are not in scaled units).
     table
-        The distinct pieces, in scaled units.
+        The distinct elements, in scaled units.
     element
-        (p,): index of each piece in the table.
+        (p,): place of each element in the table.
     node_inertia, node_stiffness
         (p + 1, n): at the nodes; an infinite stiffness is a constraint.
     node_polar
@@ -76,7 +74,7 @@ class DiscretisedShaft:
     displacement_unit
         (n,): SI value of a displacement and rotation of one, at unit modal mass in kg·m² or kg.
     highest
-        rad/s up to which the pieces are short enough.
+        rad/s up to which the elements are short enough.
     stations
         (s,): ascending positions of segment ends, discs and supports, m; nodes need not be among them.
     """
@@ -99,7 +97,7 @@ class DiscretisedShaft:
 
     @cached_property
     def lengths(self) -> FloatArray:
-        """Lengths of the pieces in scaled units, (p,)."""
+        """Lengths of the elements in scaled units, (p,)."""
         return self.table.lengths[self.element]
 
     @cached_property
@@ -124,16 +122,16 @@ class DiscretisedShaft:
 
     @cached_property
     def inertia_weights(self) -> FloatArray:
-        """Weights of squared displacement and rotation at the `SQUARE_FRACTIONS` (g,) of distinct pieces, (e, g, 2)."""
+        """Weights of squared displacement and rotation at `SQUARE_FRACTIONS` (g,) of distinct elements, (e, g, 2)."""
         along = self.table.coefficients_along(SQUARE_FRACTIONS)[:, :, 2:4]
         return np.asarray(along * (self.table.lengths[:, None] * SQUARE_WEIGHTS)[:, :, None])
 
-    def coefficients_at(self, piece: IntArray, fraction: FloatArray) -> FloatArray:
-        """Coefficients of the table at fractions (z,) of pieces (z,), (z, 6) or (z, 2)."""
-        return self.table.coefficients_at(self.element[piece], fraction)
+    def coefficients_at(self, number: IntArray, fraction: FloatArray) -> FloatArray:
+        """Coefficients of the table at fractions (z,) of elements (z,) by number, (z, 6) or (z, 2)."""
+        return self.table.coefficients_at(self.element[number], fraction)
 
     def transfer_matrices(self, translation: npt.ArrayLike, rotation: npt.ArrayLike | None = None) -> NumberArray:
-        """Transfer matrices of all pieces at every ω² of a (b,) array, (p, b, 2n, 2n).
+        """Transfer matrices of all elements at every ω² of a (b,) array, (p, b, 2n, 2n).
 
         Parameters
         ----------
@@ -145,24 +143,24 @@ class DiscretisedShaft:
 
     def transfer_matrices_to(
         self,
-        piece: IntArray,
+        number: IntArray,
         fraction: FloatArray,
         translation: npt.ArrayLike,
         rotation: npt.ArrayLike | None = None,
     ) -> NumberArray:
-        """Transfer matrices from the left ends of pieces (z,) to fractions (z,) of them, (z, b, 2n, 2n)."""
-        return self.table.transfer_matrices_to(self.element[piece], fraction, translation, rotation)
+        """Transfer matrices from the left ends of elements (z,) by number to fractions (z,) of them, (z, b, 2n, 2n)."""
+        return self.table.transfer_matrices_to(self.element[number], fraction, translation, rotation)
 
     def places(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Index of the piece at each position (z,) in m, and the fraction of it to the left, both (z,)."""
-        piece = self.nodes.searchsorted(positions, side="right") - 1
-        piece = np.minimum(np.maximum(piece, 0), self.element.size - 1)
-        left = self.nodes[piece]
-        fraction = (positions - left) / (self.nodes[piece + 1] - left)
-        return piece, np.minimum(np.maximum(fraction, 0.0), 1.0)
+        """Find the number of the element at each position (z,) in m, and the fraction of it to the left, both (z,)."""
+        number = self.nodes.searchsorted(positions, side="right") - 1
+        number = np.minimum(np.maximum(number, 0), self.element.size - 1)
+        left = self.nodes[number]
+        fraction = (positions - left) / (self.nodes[number + 1] - left)
+        return number, np.minimum(np.maximum(fraction, 0.0), 1.0)
 
     def on_springs(self, stiffness: FloatArray) -> "DiscretisedShaft":
-        """The same pieces with other springs at the nodes, (p + 1, n), in scaled units."""
+        """Return the same elements with other springs at the nodes, (p + 1, n), in scaled units."""
         return replace(self, node_stiffness=stiffness)
 
     def node_at(self, position: float) -> int:
@@ -170,20 +168,20 @@ class DiscretisedShaft:
         return station_index(self.nodes, position)
 
     def with_nodes(self, positions: FloatArray) -> "DiscretisedShaft":
-        """The same chain with nodes, bare ones where there were none, at positions (k,) in m as well."""
+        """Add nodes at positions (k,) in m, bare ones where there were none."""
         nodes = merged_positions(self.nodes, positions.tolist())
         if nodes.size == self.nodes.size:
             return self
-        piece, start = self.places(nodes[:-1])
-        end = np.where(piece[1:] == piece[:-1], start[1:], 1.0) if piece.size > 1 else np.ones(0)
+        number, start = self.places(nodes[:-1])
+        end = np.where(number[1:] == number[:-1], start[1:], 1.0) if number.size > 1 else np.ones(0)
         part = np.append(end, 1.0) - start
-        element, index = self.element[piece], np.searchsorted(nodes, self.nodes)
+        element, index = self.element[number], np.searchsorted(nodes, self.nodes)
         coefficients = restricted(self.table.coefficients[element], 2.0 * start + part - 1.0, part)
         return replace(
             self,
             nodes=nodes,
             table=ShaftElements(self.table.lengths[element] * part, coefficients),
-            element=np.arange(piece.size),
+            element=np.arange(number.size),
             node_inertia=spread(nodes.size, index, self.node_inertia),
             node_stiffness=spread(nodes.size, index, self.node_stiffness),
             node_polar=spread(nodes.size, index, self.node_polar),
@@ -223,9 +221,9 @@ def spread(size: int, index: IntArray, values: npt.NDArray[Scalar]) -> npt.NDArr
     return whole
 
 
-# Pieces are this many times shorter than the inequalities demand: the series then stay below |λ²| = 5.
-PIECE_MARGIN = 2.0
-MOST_PIECES = 50_000
+# Elements are this many times shorter than the inequalities demand: the series then stay below |λ²| = 5.
+ELEMENT_MARGIN = 2.0
+MOST_ELEMENTS = 50_000
 
 
 @dataclass(frozen=True)
@@ -284,7 +282,7 @@ class ContinuousShaft:
         """
         shear, bending = self._wave_sums
         if shear == 0.0:
-            # In the chain's units stiffness is about one.
+            # In scaled units stiffness is about one.
             return float(np.pi / np.sqrt(max(self.node_inertia[:, 0].sum(), 1e-300)))
         phase = (count - 0.5) * np.pi
         # Waves are no longer than those of bending without shear, nor than those of shear without bending.
@@ -300,25 +298,27 @@ class ContinuousShaft:
         return float(shear), float(bending)
 
     def cut(self, highest: float) -> DiscretisedShaft:
-        """The discretised shaft, valid up to ``highest`` rad/s.
+        """Discretise the shaft for frequencies up to ``highest`` rad/s.
 
         Raises
         ------
         RotorError
-            It takes too many pieces.
+            It takes too many elements.
         """
-        from rotors.transfer_matrix.timoshenko_kernels import piece_counts
+        from rotors.transfer_matrix.timoshenko_kernels import element_counts
 
-        counts = piece_counts(highest, PIECE_MARGIN, self.kind, self.lengths, self.stiffness, self.inertia, self.force)
-        if counts.sum() > MOST_PIECES:
+        counts = element_counts(
+            highest, ELEMENT_MARGIN, self.kind, self.lengths, self.stiffness, self.inertia, self.force
+        )
+        if counts.sum() > MOST_ELEMENTS:
             raise RotorError(
-                f"{self.label}: a limit of {highest:g} rad/s needs {counts.sum():.0f} pieces of shaft, "
-                f"more than {MOST_PIECES}; expected a lower frequency limit or fewer modes"
+                f"{self.label}: a limit of {highest:g} rad/s needs {counts.sum():.0f} shaft elements, "
+                f"more than {MOST_ELEMENTS}; expected a lower frequency limit or fewer modes"
             )
-        return self.in_pieces(counts.astype(np.intp), highest)
+        return self.in_elements(counts.astype(np.intp), highest)
 
-    def in_pieces(self, counts: IntArray, highest: float) -> DiscretisedShaft:
-        """The discretised shaft with every span in ``counts`` (s,) equal pieces, valid up to ``highest`` rad/s."""
+    def in_elements(self, counts: IntArray, highest: float) -> DiscretisedShaft:
+        """Discretise every span into ``counts`` (s,) equal elements, valid up to ``highest`` rad/s."""
         from rotors.transfer_matrix.timoshenko_kernels import cut_spans
 
         nodes, index, element, kind, middle, half, lengths = cut_spans(
@@ -341,26 +341,26 @@ class ContinuousShaft:
         )
 
     def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[ContinuousShaft]":
-        """The same shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
+        """Put the shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
 
         Returns one shaft for each set of springs; the places are common to all sets.
         """
         if not places:
             return [self] * len(springs)
         nodes = merged_positions(self.nodes, places)
-        line = self if nodes.size == self.nodes.size else self.with_nodes(nodes)
+        continuous_shaft = self if nodes.size == self.nodes.size else self.with_nodes(nodes)
         stations = merged_positions(self.stations, places)
         index = [station_index(nodes, place) for place in places]
-        lines = []
+        continuous_shafts = []
         for stiffness in springs:
-            node_stiffness = line.node_stiffness.copy()
+            node_stiffness = continuous_shaft.node_stiffness.copy()
             for node, spring in zip(index, stiffness, strict=True):
                 node_stiffness[node] += spring
-            lines.append(replace(line, node_stiffness=node_stiffness, stations=stations))
-        return lines
+            continuous_shafts.append(replace(continuous_shaft, node_stiffness=node_stiffness, stations=stations))
+        return continuous_shafts
 
     def with_nodes(self, nodes: FloatArray) -> "ContinuousShaft":
-        """The same shaft with nodes (m) that include its own; new ones carry nothing, and are no stations."""
+        """Replace the nodes (m) by others that include them; new ones carry nothing, and are no stations."""
         span = np.clip(np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, self.kind.size - 1)
         left, width = self.nodes[span], np.diff(self.nodes)[span]
         # Places within the span, and from them within the kind's own span.
@@ -381,9 +381,11 @@ class ContinuousShaft:
         )
 
 
-def discretise_together(lines: Sequence[ContinuousShaft], highest: float) -> list[DiscretisedShaft]:
+def discretise_together(continuous_shafts: Sequence[ContinuousShaft], highest: float) -> list[DiscretisedShaft]:
     """Discretised shafts, valid up to ``highest`` rad/s, of shafts that differ in their springs only."""
-    first = lines[0].cut(highest)
-    index = first.nodes.searchsorted(lines[0].nodes)
-    springs = [spread(first.nodes.size, index, line.node_stiffness) for line in lines[1:]]
+    first = continuous_shafts[0].cut(highest)
+    index = first.nodes.searchsorted(continuous_shafts[0].nodes)
+    springs = [
+        spread(first.nodes.size, index, continuous_shaft.node_stiffness) for continuous_shaft in continuous_shafts[1:]
+    ]
     return [first, *(first.on_springs(stiffness) for stiffness in springs)]

@@ -1,16 +1,9 @@
-"""Compiled multiple shooting on a discretised shaft: banded equations and their null vectors, the mode shapes.
+"""Compiled mode shapes of a discretised shaft: multiple shooting, energy quadrature and orthonormalisation.
 
-Importing this module imports numba. The equations are those of `rotors.transfer_matrix.mode_shapes`; the arrays of a
-chain come in the order of `rotors.transfer_matrix.wittrick_williams_kernels`.
-
-Compiled quadrature of kinetic and strain energy along a discretised shaft.
-
-Importing this module imports numba. The arrays of a chain come in the order of
-`rotors.transfer_matrix.wittrick_williams_kernels`.
-
-Compiled Gram-Schmidt orthonormalisation of shaft fields in mass, for `rotors.whirl.planar_basis`.
-
-Importing this module imports numba.
+The banded equations of multiple shooting and their null vectors, the mode shapes, are those of
+`rotors.transfer_matrix.mode_shapes`; kinetic and strain energy are integrated along the shaft; the Gram-Schmidt
+orthonormalisation in mass serves `rotors.whirl.planar_basis`. The arrays of a discretised shaft come in the order of
+`rotors.transfer_matrix.wittrick_williams_kernels`. Importing this module imports numba.
 """
 
 import math
@@ -38,11 +31,11 @@ def energy_weights(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Weights of the squares of `energy_rows`: mass and polar inertia for motion, compliance or stiffness for strain.
 
-    ``weights`` (g,) are those of the quadrature over a piece; infinite ``stiffness`` (p + 1, n) stores nothing.
+    ``weights`` (g,) are those of the quadrature over an element; infinite ``stiffness`` (p + 1, n) stores nothing.
     """
-    n, pieces, points = stiffness.shape[1], element.size, fractions.size
-    motion_size, strain_size = pieces * points * n, pieces * points * (2 * n - 1)
-    nodal = (pieces + 1) * n
+    n, elements, points = stiffness.shape[1], element.size, fractions.size
+    motion_size, strain_size = elements * points * n, elements * points * (2 * n - 1)
+    nodal = (elements + 1) * n
     mass, turning = np.zeros(motion_size + nodal), np.zeros(motion_size + nodal)
     strain = np.zeros(strain_size + nodal)
     values = np.empty((lengths.size, points, given.shape[1]))
@@ -54,9 +47,9 @@ def energy_weights(
                     total = total * (2.0 * fractions[g] - 1.0) + given[e, row, j]
                 values[e, g, row] = total * lengths[e] * weights[g]
     at_motion, at_strain = 0, 0
-    for piece in range(pieces):
+    for number in range(elements):
         for g in range(points):
-            value = values[element[piece], g]
+            value = values[element[number], g]
             if n == 2:
                 mass[at_motion], mass[at_motion + 1] = value[2], value[3]
                 # A round section's polar moment of area is twice its diametral one.
@@ -66,7 +59,7 @@ def energy_weights(
                 mass[at_motion], strain[at_strain] = value[1], value[0]
             at_motion += n
             at_strain += 2 * n - 1
-    for node in range(pieces + 1):
+    for node in range(elements + 1):
         for k in range(n):
             mass[at_motion] = inertia[node, k]
             strain[at_strain] = 0.0 if math.isinf(stiffness[node, k]) else stiffness[node, k]
@@ -90,11 +83,11 @@ def energy_rows(
 ) -> None:
     """Fill in the terms whose weighted squares are the energies of fields with node states (k, p + 1, 2n).
 
-    Piece by piece and at every fraction (g,) of it, ``motion`` (k, p g n + ...) takes the displacements and
+    Element by element and at every fraction (g,) of it, ``motion`` (k, p g n + ...) takes the displacements and
     ``strain`` (k, p g (2n − 1) + ...) the rotation (of a beam) and the forces; both end with the displacements of
     the nodes, n each.
     """
-    size, pieces = states.shape[2], element.size
+    size, elements = states.shape[2], element.size
     n = size // 2
     transfer_matrices = np.empty((lengths.size, fractions.size, size, size))
     state = np.empty(size)
@@ -103,20 +96,20 @@ def energy_rows(
             for e in range(lengths.size):
                 element_transfer_matrices(lengths[e], given[e], squared[k], squared[k], fractions, transfer_matrices[e])
         at_motion, at_strain = 0, 0
-        for piece in range(pieces):
+        for number in range(elements):
             for g in range(fractions.size):
-                transfer = transfer_matrices[element[piece], g]
+                transfer = transfer_matrices[element[number], g]
                 for row in range(size):
                     state[row] = 0.0
                     for column in range(size):
-                        state[row] += transfer[row, column] * states[k, piece, column]
+                        state[row] += transfer[row, column] * states[k, number, column]
                 for row in range(n):
                     motion[k, at_motion + row] = state[row]
                 for row in range(1, size):
                     strain[k, at_strain + row - 1] = state[row]
                 at_motion += n
                 at_strain += size - 1
-        for node in range(pieces + 1):
+        for node in range(elements + 1):
             for row in range(n):
                 motion[k, at_motion + row] = strain[k, at_strain + row] = states[k, node, row]
             at_motion += n
@@ -150,7 +143,7 @@ def shooting_band(
             band[row, column] = 0.0
     for node in range(nodes):
         for i in range(2 * n):
-            # The first node has no piece to its left, hence no equations for its displacements.
+            # The first node has no element to its left, hence no equations for its displacements.
             row = 2 * n * node - n + i
             if row < 0:
                 continue

@@ -1,18 +1,16 @@
-"""Mode shapes: null vectors of the transfer equations of the whole shaft at once.
+"""Mode shapes of a shaft: null vectors of its transfer equations, their exact fields, and certified modes.
 
 A shape integrated from one end loses a mode that is localised at the other end. All node states are therefore
 unknowns together (multiple shooting): the equations u_{i+1} = T₁₁ u_i + T₁₂ f_i, the same for forces with
 the node's springs and inertias added, and free ends. A held displacement takes the place of its force balance. Node by
-node, this matrix is a band; in the chain's units it is well conditioned for any number of pieces, and inverse
-iteration on it with as many vectors as the root's multiplicity gives every shape, localised or not.
+node, this matrix is a band; in the shaft's scaled units it is well conditioned for any number of shaft elements, and
+inverse iteration on it with as many vectors as the root's multiplicity gives every shape, localised or not.
 
-Exact fields along a discretised shaft: continued from node states to any place, with their energies.
+A field is the state (displacements, then forces) at the left end of every shaft element at one ω²; inside an element
+the transfer matrix continues it. Quadrature over an element is Gauss–Legendre, which integrates products of two such
+fields on elements this short to rounding.
 
-A field is the state (displacements, then forces) at the left end of every piece at one ω²; inside a
-piece the transfer matrix continues it. Quadrature over a piece is Gauss–Legendre, which integrates
-products of two such fields on pieces this short to rounding.
-
-Certified modes of a shaft in bending, torsion or axial motion, below a frequency limit or by their number.
+Modes in bending, torsion or axial motion are found below a frequency limit or by their number, and certified.
 """
 
 from dataclasses import dataclass
@@ -38,7 +36,7 @@ class ShaftFields:
 
     Attributes
     ----------
-    chain
+    shaft
         The shaft.
     frequency_squared
         (k,): ω² of each field.
@@ -46,18 +44,18 @@ class ShaftFields:
         (k, p + 1, 2n): state just right of each node.
     """
 
-    chain: DiscretisedShaft
+    shaft: DiscretisedShaft
     frequency_squared: FloatArray
     states: FloatArray
 
     def at(self, positions: FloatArray) -> FloatArray:
         """States at positions (z,) in m on the shaft, (k, z, 2n)."""
-        piece, fraction = self.chain.places(positions)
-        transfer_matrices = self.chain.transfer_matrices_to(piece, fraction, self.frequency_squared)
-        return np.asarray(np.einsum("zkij,kzj->kzi", transfer_matrices, self.states[:, piece]))
+        number, fraction = self.shaft.places(positions)
+        transfer_matrices = self.shaft.transfer_matrices_to(number, fraction, self.frequency_squared)
+        return np.asarray(np.einsum("zkij,kzj->kzi", transfer_matrices, self.states[:, number]))
 
     def energies(self, mixture: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
-        """Mass and stiffness matrices of combinations of the fields, in the chain's units.
+        """Mass and stiffness matrices of combinations of the fields, in the shaft's scaled units.
 
         Kinetic energy is ½ q̇ᵀ M q̇ and strain energy, springs to ground and the work of an axial force
         included, ½ qᵀ K q. In bending the energies per length are ½ (ρA x² + ρI β²) ω² and
@@ -77,52 +75,52 @@ class ShaftFields:
         motion, strain = self._rows
         if mixture is not None:
             motion, strain = mixture @ motion, mixture @ strain
-        weights = self.chain.energy_weights
+        weights = self.shaft.energy_weights
         return (motion * weights.mass) @ motion.T, (strain * weights.strain) @ strain.T
 
     def mass_products(self, rows: FloatArray, others: FloatArray) -> FloatArray:
         """Entries of the mass matrix between two sets of combinations (a, k) and (b, k), (a, b)."""
         motion = self._rows[0]
-        weighted = (rows @ motion) * self.chain.energy_weights.mass
+        weighted = (rows @ motion) * self.shaft.energy_weights.mass
         return np.asarray(weighted @ (others @ motion).T)
 
     def mass_norms(self, rows: FloatArray) -> FloatArray:
         """Norms in mass of combinations (a, k), (a,)."""
         motion = rows @ self._rows[0]
-        return np.sqrt((motion**2) @ self.chain.energy_weights.mass)
+        return np.sqrt((motion**2) @ self.shaft.energy_weights.mass)
 
     def polar_matrix(self, mixture: FloatArray) -> FloatArray:
         """∫ ρI_p βᵢ βⱼ dz plus the nodes' polar inertias, of combinations of bending fields, (m, m)."""
         motion = mixture @ self._rows[0]
-        return np.asarray((motion * self.chain.energy_weights.polar) @ motion.T)
+        return np.asarray((motion * self.shaft.energy_weights.polar) @ motion.T)
 
-    def strain_of_pieces(self, mixture: FloatArray) -> FloatArray:
-        """Twice the strain energy in each piece of combinations of the fields, springs left out, (m, p)."""
-        strain, weights = mixture @ self._rows[1], self.chain.energy_weights.strain
-        inside = weights.size - self.chain.finite_stiffness.size
-        pieces = (strain**2 * weights)[:, :inside]
-        return np.asarray(pieces.reshape(mixture.shape[0], self.chain.element.size, -1).sum(axis=2))
+    def strain_of_elements(self, mixture: FloatArray) -> FloatArray:
+        """Twice the strain energy in each shaft element of combinations of the fields, springs left out, (m, p)."""
+        strain, weights = mixture @ self._rows[1], self.shaft.energy_weights.strain
+        inside = weights.size - self.shaft.finite_stiffness.size
+        elements = (strain**2 * weights)[:, :inside]
+        return np.asarray(elements.reshape(mixture.shape[0], self.shaft.element.size, -1).sum(axis=2))
 
     def joined(self, other: "ShaftFields") -> "ShaftFields":
-        """These fields followed by those of ``other``, on the same shaft."""
+        """Join these fields and those of ``other``, on the same shaft."""
         return ShaftFields(
-            self.chain,
+            self.shaft,
             np.concatenate([self.frequency_squared, other.frequency_squared]),
             np.concatenate([self.states, other.states]),
         )
 
-    def on(self, chain: DiscretisedShaft) -> "ShaftFields":
-        """The same fields on a discretised shaft with further nodes."""
-        if chain is self.chain:
+    def on(self, shaft: DiscretisedShaft) -> "ShaftFields":
+        """Return the same fields on a discretised shaft with further nodes."""
+        if shaft is self.shaft:
             return self
-        return ShaftFields(chain, self.frequency_squared, self.at(chain.nodes))
+        return ShaftFields(shaft, self.frequency_squared, self.at(shaft.nodes))
 
     @cached_property
     def _rows(self) -> tuple[FloatArray, FloatArray]:
         """Motion and strain of every field at the Gauss points and the nodes, as of `energy_rows`."""
         from rotors.transfer_matrix.mode_shape_kernels import energy_rows
 
-        table, weights, count = self.chain.table, self.chain.energy_weights, self.frequency_squared.size
+        table, weights, count = self.shaft.table, self.shaft.energy_weights, self.frequency_squared.size
         motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))
         energy_rows(
             self.frequency_squared,
@@ -130,7 +128,7 @@ class ShaftFields:
             GAUSS_FRACTIONS,
             table.lengths,
             table.coefficients,
-            self.chain.element,
+            self.shaft.element,
             motion,
             strain,
         )
@@ -149,25 +147,25 @@ NEAR_ROOT = 1e-4
 
 
 def groups(frequencies: FloatArray, tolerance: float) -> list[slice]:
-    """Groups of ascending frequencies whose neighbours differ by less than ``tolerance`` of their value."""
+    """Group ascending frequencies whose neighbours differ by less than ``tolerance`` of their value."""
     breaks = np.flatnonzero(np.diff(frequencies) > tolerance * frequencies[1:]) + 1
     edges = [0, *breaks.tolist(), frequencies.size]
     return [slice(left, right) for left, right in pairwise(edges) if right > left]
 
 
-def responses(chain: DiscretisedShaft, loads: list[tuple[int, int]], frequency_squared: float) -> FloatArray:
+def responses(shaft: DiscretisedShaft, loads: list[tuple[int, int]], frequency_squared: float) -> FloatArray:
     """Node states under unit forces at one ω² off the roots, each on a node and a component, (loads, p + 1, 2n)."""
     from rotors.transfer_matrix.mode_shape_kernels import shooting_responses
 
-    n = chain.size
-    sides = np.zeros((len(loads), 2 * n * chain.nodes.size))
+    n = shaft.size
+    sides = np.zeros((len(loads), 2 * n * shaft.nodes.size))
     for load, (node, component) in enumerate(loads):
         # The force balance of a displacement at a node; an external force stands in it with a negative sign.
         sides[load, 2 * n * node + component] = -1.0
-    return np.asarray(shooting_responses(frequency_squared, sides, *shaft_arrays(chain)))
+    return np.asarray(shooting_responses(frequency_squared, sides, *shaft_arrays(shaft)))
 
 
-def rigid_states(chain: DiscretisedShaft) -> FloatArray:
+def rigid_states(shaft: DiscretisedShaft) -> FloatArray:
     """Node states of the rigid motions, orthonormal in mass, (zero modes, p + 1, 2n).
 
     Raises
@@ -175,11 +173,11 @@ def rigid_states(chain: DiscretisedShaft) -> FloatArray:
     RotorError
         A rigid motion moves no inertia, so that it has no frequency.
     """
-    shapes = chain.rigid_shapes
+    shapes = shaft.rigid_shapes
     states = np.concatenate([shapes, np.zeros_like(shapes)], axis=-1)
     if states.shape[0] == 0:
         return states
-    mass, _ = ShaftFields(chain, np.zeros(states.shape[0]), states).energies()
+    mass, _ = ShaftFields(shaft, np.zeros(states.shape[0]), states).energies()
     size = np.sqrt(np.diag(mass))
     if size.min() == 0.0 or linalg.eigvalsh(mass / np.outer(size, size))[0] < 1e-13:
         raise RotorError(
@@ -206,13 +204,13 @@ def has_neighbours(elastic: FloatArray) -> bool:
 
 
 def solve_mode_shapes(
-    chain: DiscretisedShaft, frequencies: FloatArray
+    shaft: DiscretisedShaft, frequencies: FloatArray
 ) -> tuple[ShaftFields, FloatArray, FloatArray, FloatArray]:
     """Fields of the modes at the given natural frequencies, the mixture that makes them orthonormal, and its energies.
 
     Parameters
     ----------
-    chain
+    shaft
         The shaft.
     frequencies
         (m,): ascending, rad/s, the rigid motions' zeros first.
@@ -229,15 +227,15 @@ def solve_mode_shapes(
     """
     from rotors.transfer_matrix.mode_shape_kernels import null_states
 
-    zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
+    zeros = min(shaft.rigid_shapes.shape[0], frequencies.size)
     shared, elastic, near = frequencies, frequencies[zeros:], []
     if has_neighbours(elastic):
         shared, near = np.concatenate([frequencies[:zeros], shared_roots(elastic)]), groups(elastic, NEAR_ROOT)
     squared = shared**2
-    states = null_states(squared[zeros:], *shaft_arrays(chain))
+    states = null_states(squared[zeros:], *shaft_arrays(shaft))
     if zeros:
-        states = np.concatenate([rigid_states(chain)[:zeros], states])
-    fields = ShaftFields(chain, squared, states)
+        states = np.concatenate([rigid_states(shaft)[:zeros], states])
+    fields = ShaftFields(shaft, squared, states)
     mass, stiffness = fields.energies()
     scale = 1.0 / np.sqrt(mass.diagonal())
     scale[:zeros] = 1.0
@@ -290,7 +288,7 @@ class SolvedModes:
     certificate: ModeCertificate
 
 
-def find_modes(line: ContinuousShaft, frequency_limit: float | None, count: int | None) -> SolvedModes:
+def find_modes(continuous_shaft: ContinuousShaft, frequency_limit: float | None, count: int | None) -> SolvedModes:
     """Every mode of a shaft below the limit (rad/s), or the lowest ``count``."""
     require(
         frequency_limit is None or count is None,
@@ -300,40 +298,40 @@ def find_modes(line: ContinuousShaft, frequency_limit: float | None, count: int 
     )
     if frequency_limit is not None:
         require_finite("frequency_limit", frequency_limit, positive=True)
-        chain = line.cut(frequency_limit)
-        return certified_modes(chain, wittrick_williams_count(chain, frequency_limit), frequency_limit)
-    available = line.available_modes
+        shaft = continuous_shaft.cut(frequency_limit)
+        return certified_modes(shaft, wittrick_williams_count(shaft, frequency_limit), frequency_limit)
+    available = continuous_shaft.available_modes
     if count is None:
         wanted = int(min(DEFAULT_COUNT, available))
     else:
         require_count("count of modes", count)
         require(count <= available, "count of modes", count, f"at most {available:g}, all this lumped rotor has")
         wanted = count
-    return certified_modes(shaft_with_modes(line, wanted), wanted)
+    return certified_modes(shaft_with_modes(continuous_shaft, wanted), wanted)
 
 
-def certified_modes(chain: DiscretisedShaft, wanted: int, limit: float | None = None) -> SolvedModes:
-    """The lowest ``wanted`` modes of a shaft: all below a limit (rad/s), or with every multiple of the last root.
+def certified_modes(shaft: DiscretisedShaft, wanted: int, limit: float | None = None) -> SolvedModes:
+    """Solve for the lowest ``wanted`` modes of a shaft: all below a limit (rad/s), or with all twins of the last one.
 
     Raises
     ------
     IncompleteModesError
         The modes fail their own proof.
     """
-    frequencies = lowest_natural_frequencies(chain, wanted, limit or chain.highest)
+    frequencies = lowest_natural_frequencies(shaft, wanted, limit or shaft.highest)
     if limit is None:
-        limit = limit_above(float(frequencies[-1]), chain)
-        wanted = wittrick_williams_count(chain, limit)
-    return proved_modes(chain, frequencies, wanted, limit)
+        limit = limit_above(float(frequencies[-1]), shaft)
+        wanted = wittrick_williams_count(shaft, limit)
+    return proved_modes(shaft, frequencies, wanted, limit)
 
 
-def limit_above(last: float, chain: DiscretisedShaft) -> float:
-    """A limit (rad/s) a little above the last mode, which takes in its twins, if it has any."""
-    return min(max(last * (1.0 + 2.0 * SAME_ROOT), STANDSTILL * chain.highest), chain.highest)
+def limit_above(last: float, shaft: DiscretisedShaft) -> float:
+    """Return a limit (rad/s) a little above the last mode, which takes in its twins, if it has any."""
+    return min(max(last * (1.0 + 2.0 * SAME_ROOT), STANDSTILL * shaft.highest), shaft.highest)
 
 
-def proved_modes(chain: DiscretisedShaft, frequencies: FloatArray, expected: int, limit: float) -> SolvedModes:
-    """Modes of a chain at its lowest frequencies (m,), or at the ``expected`` lowest where those lack twins.
+def proved_modes(shaft: DiscretisedShaft, frequencies: FloatArray, expected: int, limit: float) -> SolvedModes:
+    """Modes of a shaft at its lowest frequencies (m,), or at the ``expected`` lowest where those lack twins.
 
     Raises
     ------
@@ -341,18 +339,18 @@ def proved_modes(chain: DiscretisedShaft, frequencies: FloatArray, expected: int
         The modes fail their own proof.
     """
     if expected > frequencies.size:
-        frequencies = lowest_natural_frequencies(chain, expected, chain.highest)
-    fields, mixture, mass, stiffness = solve_mode_shapes(chain, frequencies)
+        frequencies = lowest_natural_frequencies(shaft, expected, shaft.highest)
+    fields, mixture, mass, stiffness = solve_mode_shapes(shaft, frequencies)
     return SolvedModes(frequencies, fields, mixture, certify(limit, expected, frequencies, mass, stiffness))
 
 
-def shaft_with_modes(line: ContinuousShaft, wanted: int) -> DiscretisedShaft:
-    """A discretised shaft with at least ``wanted`` modes below the highest frequency that it is good for."""
-    highest = line.likely_frequency(wanted)
+def shaft_with_modes(continuous_shaft: ContinuousShaft, wanted: int) -> DiscretisedShaft:
+    """Discretise a shaft so that it has at least ``wanted`` modes below the highest frequency that it is good for."""
+    highest = continuous_shaft.likely_frequency(wanted)
     for _ in range(MOST_DOUBLINGS):
-        chain = line.cut(highest)
-        if wittrick_williams_count(chain, highest) >= wanted:
-            return chain
+        shaft = continuous_shaft.cut(highest)
+        if wittrick_williams_count(shaft, highest) >= wanted:
+            return shaft
         highest *= 2.0
     raise RotorError(f"{wanted} modes are not found below {highest:g} rad/s; expected a rotor with fewer")
 

@@ -16,7 +16,7 @@ RodMotion = Literal["torsion", "axial"]
 
 
 def free_bending_shaft(rotor: Rotor) -> ContinuousShaft:
-    """A rotor's bending in one plane without supports."""
+    """Assemble the continuous shaft of a rotor's bending in one plane without supports."""
     profile, length = rotor.profile, rotor.length
     stiffness = profile.extremes[:, :2]
     force = profile.mean_bending_stiffness / length**2
@@ -37,7 +37,7 @@ def free_bending_shaft(rotor: Rotor) -> ContinuousShaft:
 
 
 def free_rod_shaft(rotor: Rotor, motion: RodMotion) -> ContinuousShaft:
-    """A rotor's torsion, or its axial motion, without supports."""
+    """Assemble the continuous shaft of a rotor's torsion, or its axial motion, without supports."""
     rows, inertia_column = (TORSION, 2) if motion == "torsion" else (AXIAL, 0)
     profile = rotor.profile
     given = profile.coefficients[:, rows]
@@ -93,12 +93,12 @@ def _continuous_shaft(
 
 
 def bending_shaft(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> ContinuousShaft:
-    """A rotor's bending in one plane on springs."""
+    """Assemble the continuous shaft of a rotor's bending in one plane on springs."""
     return bending_shafts(rotor, [supports])[0]
 
 
 def bending_shafts(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> list[ContinuousShaft]:
-    """A rotor's bending in several planes, whose springs stand at the same places."""
+    """Assemble the continuous shafts of a rotor's bending in several planes, whose springs stand at the same places."""
     places = [support.at for support in planes[0]]
     for place in places:
         rotor.require_on_shaft(f"rotor {rotor.name!r} support", place)
@@ -110,12 +110,12 @@ def bending_shafts(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> l
 
 
 def discretised_bending_shaft(rotor: Rotor, supports: Sequence[RadialSupport], highest: float) -> DiscretisedShaft:
-    """A rotor's bending in one plane on springs, discretised for frequencies up to ``highest`` rad/s."""
+    """Discretise a rotor's bending in one plane on springs for frequencies up to ``highest`` rad/s."""
     return bending_shaft(rotor, supports).cut(highest)
 
 
 def rod_shaft(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) -> ContinuousShaft:
-    """A rotor's torsion, or its axial motion, on springs."""
+    """Assemble the continuous shaft of a rotor's torsion, or its axial motion, on springs."""
     for spring in springs:
         rotor.require_on_shaft(f"rotor {rotor.name!r} spring", spring.at)
     free = free_rod_shaft(rotor, motion)
@@ -124,17 +124,17 @@ def rod_shaft(rotor: Rotor, springs: Sequence[AxisSpring], motion: RodMotion) ->
 
 
 def axial_shaft_on(rotor: Rotor, bending: DiscretisedShaft) -> DiscretisedShaft:
-    """A rotor's axial motion, discretised with the nodes and the units of length and force of its bending.
+    """Discretise a rotor's axial motion with the nodes and the units of length and force of its bending.
 
     It has no springs, and the same nodal masses as the bending shaft.
     """
     free = free_rod_shaft(rotor, "axial").with_nodes(bending.nodes)
     # A displacement unit squared is the reciprocal of a unit of stiffness, by which compliance and inertia are scaled.
     ratio = float(free.displacement_unit[0] / bending.displacement_unit[0]) ** 2
-    line = replace(
+    continuous_shaft = replace(
         free,
         coefficients=free.coefficients * np.array([ratio, 1.0 / ratio])[:, None],
         node_inertia=free.node_inertia / ratio,
         displacement_unit=bending.displacement_unit[:1],
     )
-    return line.in_pieces(np.ones(bending.element.size, dtype=np.intp), bending.highest)
+    return continuous_shaft.in_elements(np.ones(bending.element.size, dtype=np.intp), bending.highest)

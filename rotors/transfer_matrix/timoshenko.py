@@ -11,7 +11,7 @@ or y' = A(z) y with y = (x, β, f_x, f_β). A rod is the same with y = (u, f): u
 torsion with GJ and ρJ. ω² may differ between translation and rotation, and be complex: this is how a
 turning or damped shaft enters.
 
-**A uniform piece** has T = exp(A h). The characteristic polynomial of A h holds only even powers,
+**A uniform element** has T = exp(A h). The characteristic polynomial of A h holds only even powers,
 λ⁴ − e₁ λ² + e₂, so that
 
     T = C₀ I + C₁ (A h) + C₂ (A h)² + C₃ (A h)³
@@ -23,12 +23,12 @@ where, by reducing the exponential series modulo that polynomial,
 
 with h_k = e₁ h_{k−1} − e₂ h_{k−2}, h_0 = 1, h_{−1} = 0 (the complete homogeneous polynomials of the
 two roots λ²). These series are entire: they need no square root, so the cut-off frequency √(κGA/ρI),
-where the second wave number turns real, the massless field of the Myklestad–Prohl chain (ρ = 0),
+where the second wave number turns real, the massless field of Myklestad and Prohl's lumped shaft (ρ = 0),
 the static state (ω = 0) and negative ω² (a shifted, positive definite problem) are no special cases.
-They are used on pieces short enough (`rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5, where
+They are used on elements short enough (`rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5, where
 thirteen terms are exact to rounding and no hyperbolic function can overflow.
 
-**A tapering piece** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.shaft`
+**A tapering element** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.shaft`
 makes them, exact to rounding). Its solution is an entire function, whose power series about the middle is
 summed, y(s) = Φ(s) y(0); then T = Φ(1) Φ(−1)⁻¹. Both equations are Hamiltonian (reciprocity), hence Φ
 symplectic, and its inverse is a transposition: T is symplectic to rounding too.
@@ -49,7 +49,7 @@ WHOLE = np.ones(1)
 
 @dataclass(frozen=True)
 class ShaftElements:
-    """Pieces of shaft that differ from each other, in any consistent units.
+    """Shaft elements that differ from each other, in any consistent units.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class ShaftElements:
         (e,).
     coefficients
         (e, 6, j) in bending: 1/(κGA + P), 1/EI, ρA, ρI, g and g P; (e, 2, j) of a rod: 1/EA and ρA, or 1/GJ
-        and ρJ. Over the last axis, the coefficients of 1, s, s², ...; of uniform pieces alone, j is 1.
+        and ρJ. Over the last axis, the coefficients of 1, s, s², ...; of uniform elements alone, j is 1.
     """
 
     lengths: FloatArray
@@ -76,10 +76,10 @@ class ShaftElements:
         Parameters
         ----------
         translation, rotation
-            (b,): ω² at the mass and at the rotary inertia, real or complex, of a size for which the pieces are
+            (b,): ω² at the mass and at the rotary inertia, real or complex, of a size for which the elements are
             short enough; of a rod the first alone counts. Without the second, both are the first.
         fractions
-            (k,): of every piece's length; the whole of it if not given.
+            (k,): of every element's length; the whole of it if not given.
 
         Returns
         -------
@@ -101,7 +101,7 @@ class ShaftElements:
         translation: npt.ArrayLike,
         rotation: npt.ArrayLike | None = None,
     ) -> NumberArray:
-        """Transfer matrices to one fraction (z,) each of some pieces (z,), at every ω² (b,), (z, b, 2n, 2n)."""
+        """Transfer matrices to one fraction (z,) each of some elements (z,), at every ω² (b,), (z, b, 2n, 2n)."""
         from rotors.transfer_matrix.timoshenko_kernels import place_transfer_matrices
 
         moving, turning = _pair(translation, rotation)
@@ -110,7 +110,7 @@ class ShaftElements:
         return out
 
     def growth(self, frequency: float) -> FloatArray:
-        """About by what power of e motion at most grows along the pieces at ω, (e,): the root of a bound on |λ²|."""
+        """About by what power of e motion at most grows along the elements at ω, (e,): the root of a bound on |λ²|."""
         largest = np.abs(self.coefficients).sum(axis=2) * self.lengths[:, None]
         if self.size == 1:
             return np.asarray(frequency * np.sqrt(largest[:, 0] * largest[:, 1]))
@@ -119,7 +119,7 @@ class ShaftElements:
         return np.asarray(np.sqrt(a * m + b * j + np.sqrt(b * m * (a * j + k * k))))
 
     def coefficients_along(self, fractions: FloatArray) -> FloatArray:
-        """Coefficients at the same fractions (k,) of every piece, (e, k, 6) or (e, k, 2)."""
+        """Coefficients at the same fractions (k,) of every element, (e, k, 6) or (e, k, 2)."""
         kinds, fields, order = self.coefficients.shape
         if order == 1:
             return np.broadcast_to(self.coefficients.reshape(kinds, 1, fields), (kinds, fractions.size, fields))
@@ -127,7 +127,7 @@ class ShaftElements:
         return np.asarray(np.einsum("efj,kj->ekf", self.coefficients, powers))
 
     def coefficients_at(self, element: IntArray, fractions: FloatArray) -> FloatArray:
-        """Coefficients at fractions (z,) of some pieces (z,), (z, 6) or (z, 2)."""
+        """Coefficients at fractions (z,) of some elements (z,), (z, 6) or (z, 2)."""
         given = self.coefficients[element]
         if given.shape[2] == 1:
             return given[:, :, 0]

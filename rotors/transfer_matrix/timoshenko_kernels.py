@@ -1,12 +1,7 @@
-"""Compiled transfer matrices of Timoshenko beam and rod elements; the equations are those of
-`rotors.transfer_matrix.timoshenko`.
+"""Compiled transfer matrices of Timoshenko beam and rod elements, and the cutting of a shaft into them.
 
-Importing this module imports numba. All functions take real or complex ω².
-
-Compiled discretisation of a shaft: spans cut into elements by the rule of
-`rotors.transfer_matrix.discretised_shaft`.
-
-Importing this module imports numba.
+The equations are those of `rotors.transfer_matrix.timoshenko`; all functions of them take real or complex ω². Spans are
+cut into elements by the rule of `rotors.transfer_matrix.discretised_shaft`. Importing this module imports numba.
 """
 
 import math
@@ -22,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 NumberArray = npt.NDArray[Any]
 
-# |λ²| of a piece stays below 5 (`rotors.transfer_matrix.discretised_shaft`): 5¹³ / 26! is below rounding.
+# |λ²| of an element stays below 5 (`rotors.transfer_matrix.discretised_shaft`): 5¹³ / 26! is below rounding.
 CLOSED_TERMS = 13
 EVEN = np.array([1.0 / factorial(2 * k) for k in range(CLOSED_TERMS)])
 ODD = np.array([1.0 / factorial(2 * k + 1) for k in range(CLOSED_TERMS)])
@@ -57,7 +52,7 @@ def timoshenko_transfer_matrix(h: float, given: FloatArray, translation: Any, ro
     older, newer = 0.0 * e1, 0.0 * e1 + 1.0
     even_low, odd_low = older, older
     c2, c3 = newer * EVEN[1], newer * ODD[1]
-    # Short pieces need few terms: neither λ² exceeds |e₁| + |e₂|^½.
+    # Short elements need few terms: neither λ² exceeds |e₁| + |e₂|^½.
     size = abs(e1.real) + abs(e1.imag) + math.sqrt(abs(e2.real) + abs(e2.imag))
     terms = LEAST_TERMS
     while terms < CLOSED_TERMS and size > REACH[terms]:
@@ -103,7 +98,7 @@ def rod_transfer_matrix(h: float, given: FloatArray, translation: Any, out: Numb
 
 @inner(error_model="python")
 def taper_power_series(h: float, given: FloatArray, translation: Any, rotation: Any, series: NumberArray) -> int:
-    """Power series of the fundamental matrix about the middle of a tapering piece; returns its number of terms.
+    """Power series of the fundamental matrix about the middle of a tapering element; returns its number of terms.
 
     With s from −1 to 1, y(s) = Σ Y_k s^k · y(0) and Y_{k+1} = h/2 Σ_j A_j Y_{k−j} / (k + 1).
     """
@@ -170,7 +165,7 @@ def symplectic_inverse(matrix: NumberArray, out: NumberArray) -> None:
 def element_transfer_matrices(
     h: float, given: FloatArray, translation: Any, rotation: Any, fractions: FloatArray, out: NumberArray
 ) -> None:
-    """T from a piece's left end to fractions (k,) of its length h, into ``out`` (k, 2n, 2n)."""
+    """T from an element's left end to fractions (k,) of its length h, into ``out`` (k, 2n, 2n)."""
     if given.shape[1] == 1:
         for k in range(fractions.size):
             if given.shape[0] == 6:
@@ -198,7 +193,7 @@ def element_transfer_matrices(
 def transfer_matrix(
     h: float, given: FloatArray, translation: Any, rotation: Any, whole: FloatArray, out: NumberArray
 ) -> None:
-    """Transfer matrix T of a whole piece into ``out`` (1, 2n, 2n), faster for uniform beams; ``whole`` is one."""
+    """Transfer matrix T of a whole element into ``out`` (1, 2n, 2n), faster for uniform beams; ``whole`` is one."""
     if given.shape[0] == 6 and given.shape[1] == 1:
         timoshenko_transfer_matrix(h, given[:, 0], translation, rotation, out[0])
     else:
@@ -214,7 +209,7 @@ def table_transfer_matrices(
     fractions: FloatArray,
     out: NumberArray,
 ) -> None:
-    """T of every piece of a table at every pair of ω² (b,), into ``out`` (b, e, k, 2n, 2n)."""
+    """T of every element of a table at every pair of ω² (b,), into ``out`` (b, e, k, 2n, 2n)."""
     for b in range(translation.size):
         for e in range(lengths.size):
             element_transfer_matrices(lengths[e], given[e], translation[b], rotation[b], fractions, out[b, e])
@@ -230,7 +225,7 @@ def place_transfer_matrices(
     rotation: NumberArray,
     out: NumberArray,
 ) -> None:
-    """T to one fraction each of some pieces (z,), at every pair of ω² (b,), into ``out`` (z, b, 2n, 2n)."""
+    """T to one fraction each of some elements (z,), at every pair of ω² (b,), into ``out`` (z, b, 2n, 2n)."""
     for z in range(element.size):
         e = element[z]
         for b in range(translation.size):
@@ -241,12 +236,12 @@ def place_transfer_matrices(
 
 BoolArray = npt.NDArray[np.bool_]
 
-PieceArrays = tuple[FloatArray, IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray]
+ElementArrays = tuple[FloatArray, IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray]
 
 
 @inner(error_model="python")
-def longest_piece(squared: float, stiffness: FloatArray, inertia: FloatArray, force: float) -> float:
-    """Length (m) of the longest piece of one kind that has no root below ω² with clamped ends."""
+def longest_element(squared: float, stiffness: FloatArray, inertia: FloatArray, force: float) -> float:
+    """Length (m) of the longest element of one kind that has no root below ω² with clamped ends."""
     mass = squared * inertia[0]
     if stiffness.size == 1:
         return math.pi * math.sqrt(stiffness[0] / mass) if mass > 0.0 else math.inf
@@ -263,7 +258,7 @@ def longest_piece(squared: float, stiffness: FloatArray, inertia: FloatArray, fo
 
 
 @counted(error_model="python")
-def piece_counts(
+def element_counts(
     highest: float,
     margin: float,
     kind: IntArray,
@@ -272,10 +267,10 @@ def piece_counts(
     inertia: FloatArray,
     force: FloatArray,
 ) -> FloatArray:
-    """Number of pieces of each span, (s,); as floats, which cannot overflow."""
+    """Return the number of elements of each span, (s,); as floats, which cannot overflow."""
     longest = np.empty(force.size)
     for k in range(force.size):
-        longest[k] = longest_piece(highest * highest, stiffness[k], inertia[k], force[k])
+        longest[k] = longest_element(highest * highest, stiffness[k], inertia[k], force[k])
     counts = np.empty(kind.size)
     for span in range(kind.size):
         counts[span] = max(1.0, math.ceil(margin * lengths[span] / longest[kind[span]]))
@@ -291,34 +286,38 @@ def cut_spans(
     end: FloatArray,
     lengths: FloatArray,
     uniform: BoolArray,
-) -> PieceArrays:
-    """Nodes (p + 1,), the old nodes' indices in them, every piece's element (p,), and of every element its kind,
-    the middle and half width of the part of that kind it covers (from −1 to 1), and its length, (e,) each."""
+) -> ElementArrays:
+    """Cut spans into equal elements; elements that are alike are listed once.
+
+    Returns the nodes (p + 1,), the old nodes' indices in them, the place of each of the p elements in the list (p,),
+    and of every element of the list its kind, the middle and half width of the part of that kind it covers (from −1
+    to 1), and its length, (e,) each.
+    """
     total = counts.sum()
     new_nodes, element, index = np.empty(total + 1), np.empty(total, np.intp), np.empty(nodes.size, np.intp)
-    which, piece_length = np.empty(total, np.intp), np.empty(total)
+    which, element_length = np.empty(total, np.intp), np.empty(total)
     middle, half = np.empty(total), np.empty(total)
-    piece, elements = 0, 0
+    number, elements = 0, 0
     for span in range(counts.size):
-        index[span] = piece
+        index[span] = number
         count = counts[span]
         length, part = lengths[span] / count, (end[span] - start[span]) / count
         known = -1
         if uniform[kind[span]]:
             for e in range(elements):
-                if which[e] == kind[span] and piece_length[e] == length:
+                if which[e] == kind[span] and element_length[e] == length:
                     known = e
                     break
         for k in range(count):
-            new_nodes[piece] = nodes[span] + k * ((nodes[span + 1] - nodes[span]) / count)
+            new_nodes[number] = nodes[span] + k * ((nodes[span + 1] - nodes[span]) / count)
             if known < 0 or not uniform[kind[span]]:
                 known = elements
-                which[elements], piece_length[elements] = kind[span], length
+                which[elements], element_length[elements] = kind[span], length
                 middle[elements], half[elements] = 2.0 * (start[span] + k * part) + part - 1.0, part
                 elements += 1
-            element[piece] = known
-            piece += 1
-    new_nodes[piece], index[-1] = nodes[-1], piece
+            element[number] = known
+            number += 1
+    new_nodes[number], index[-1] = nodes[-1], number
     return (
         new_nodes,
         index,
@@ -326,5 +325,5 @@ def cut_spans(
         which[:elements].copy(),
         middle[:elements].copy(),
         half[:elements].copy(),
-        piece_length[:elements].copy(),
+        element_length[:elements].copy(),
     )

@@ -3,14 +3,14 @@
 The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) for a structure with dynamic
 stiffness K(ω) is J = J₀ + s(K), with J₀ the clamped members' own modes below ω, here none by
 construction (`rotors.transfer_matrix.discretised_shaft`), and s(K) the number of negative eigenvalues. Eliminating the
-nodes of a chain from the left turns s(K) into a sum over nodes: with S the dynamic stiffness of everything left of
-a node (the node included) and K₁₁ that of the next piece with its far end clamped,
+nodes of a shaft from the left turns s(K) into a sum over nodes: with S the dynamic stiffness of everything left of
+a node (the node included) and K₁₁ that of the next element with its far end clamped,
 
     s(K) = Σ_nodes s(S + K₁₁) + s(S_last).
 
-Dynamic stiffness and transfer matrix are two readings of one piece: with T in blocks,
+Dynamic stiffness and transfer matrix are two readings of one shaft element: with T in blocks,
 K₁₁ = T₁₂⁻¹ T₁₁ and K₁₂ = −T₁₂⁻¹. Written with stiffness, the recursion S ← K₂₂ − K₂₁ (S + K₁₁)⁻¹ K₁₂
-subtracts numbers of order EI/h³ and loses all digits on many short pieces. Written with the transfer
+subtracts numbers of order EI/h³ and loses all digits on many short elements. Written with the transfer
 matrix it does not: (U, F), n independent states that the left part admits with S = F U⁻¹, moves on as
 
     [U; F] ← T [U; F],        S + K₁₁ = T₁₂⁻¹ U_right U_left⁻¹ ,
@@ -44,40 +44,40 @@ IntArray = npt.NDArray[np.intp]
 LOWEST = 1e-16
 
 
-def shaft_arrays(chain: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
-    """A discretised shaft as the arrays that compiled functions take."""
-    table = chain.table
-    return table.lengths, table.coefficients, chain.element, chain.node_stiffness, chain.node_inertia
+def shaft_arrays(shaft: DiscretisedShaft) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, FloatArray]:
+    """Return the arrays of a discretised shaft in the order of compiled functions."""
+    table = shaft.table
+    return table.lengths, table.coefficients, shaft.element, shaft.node_stiffness, shaft.node_inertia
 
 
-def wittrick_williams_count(chain: DiscretisedShaft, frequency: float) -> int:
-    """Number of natural frequencies strictly below one, with multiplicity.
+def wittrick_williams_count(shaft: DiscretisedShaft, frequency: float) -> int:
+    """Return the Wittrick-Williams count: natural frequencies strictly below one, with multiplicity.
 
     Parameters
     ----------
-    chain
+    shaft
         The shaft; its `highest` must not be exceeded.
     frequency
         Positive, rad/s. Rigid motions at zero count as below.
     """
-    return wittrick_williams_counts([chain], frequency)[0]
+    return wittrick_williams_counts([shaft], frequency)[0]
 
 
-def wittrick_williams_counts(chains: Sequence[DiscretisedShaft], frequency: float) -> list[int]:
-    """The same of several chains."""
+def wittrick_williams_counts(shafts: Sequence[DiscretisedShaft], frequency: float) -> list[int]:
+    """Return the Wittrick-Williams count of several shafts."""
     from rotors.transfer_matrix.wittrick_williams_kernels import wittrick_williams_count_of
 
-    return [int(wittrick_williams_count_of(frequency, *shaft_arrays(chain))) for chain in chains]
+    return [int(wittrick_williams_count_of(frequency, *shaft_arrays(shaft))) for shaft in shafts]
 
 
-def lowest_natural_frequencies(chain: DiscretisedShaft, wanted: int, limit: float) -> FloatArray:
-    """The lowest ``wanted`` natural frequencies of a shaft, each to a relative 1e-13 or so.
+def lowest_natural_frequencies(shaft: DiscretisedShaft, wanted: int, limit: float) -> FloatArray:
+    """Solve for the lowest ``wanted`` natural frequencies of a shaft, each to a relative 1e-13 or so.
 
     Rigid motions are zeros; a root of multiplicity r stands r times.
 
     Parameters
     ----------
-    chain
+    shaft
         The shaft.
     wanted
         Number of frequencies; the count at the limit must not be less.
@@ -91,11 +91,11 @@ def lowest_natural_frequencies(chain: DiscretisedShaft, wanted: int, limit: floa
     """
     from rotors.transfer_matrix.wittrick_williams_kernels import lowest_roots
 
-    zeros = chain.rigid_shapes.shape[0]
+    zeros = shaft.rigid_shapes.shape[0]
     if wanted <= zeros:
         return np.zeros(wanted)
     lowest = LOWEST * limit
-    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *shaft_arrays(chain))
+    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *shaft_arrays(shaft))
     if found.size < wanted - zeros:
         raise IncompleteModesError(
             f"the root count is {first} at {lowest:g} rad/s and {last} at {limit:g} rad/s, but "

@@ -1,13 +1,8 @@
-"""Compiled Wittrick-Williams root count of a discretised shaft; the derivation is in
-`rotors.transfer_matrix.wittrick_williams`.
+"""Compiled Wittrick-Williams root count of a discretised shaft, and the natural frequencies in its brackets.
 
-Importing this module imports numba. The arrays of a chain come in one order throughout: lengths and coefficients
-of the distinct pieces, the index of each piece among them, and stiffness and inertia of the nodes.
-
-Compiled search for natural frequencies inside brackets of the Wittrick-Williams root count.
-
-Importing this module imports numba. The arrays of a chain come in the order of
-`rotors.transfer_matrix.wittrick_williams_kernels`.
+The derivation is in `rotors.transfer_matrix.wittrick_williams`. The arrays of a discretised shaft come in one order
+throughout: lengths and coefficients of the distinct shaft elements, the index of each element among them, and stiffness
+and inertia of the nodes. Importing this module imports numba.
 """
 
 import math
@@ -22,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 State = tuple[float, float, float, float]
 
-# The whole of a piece, as a fraction of it.
+# The whole of an element, as a fraction of it.
 WHOLE = np.ones(1)
 
 
@@ -84,7 +79,7 @@ def _with_term(first: State, second: State, row: int, term: float) -> tuple[Stat
 def _beam_count(
     squared: float, transfer_matrices: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
-    """Number of roots below ω² and the determinant there, from the two admissible states of the left part."""
+    """Count a beam's roots below ω² and return the determinant there, from the left part's two admissible states."""
     first, second = (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)
     sign, total, scale = 1.0, 0, 1.0
     last = element.size
@@ -131,7 +126,7 @@ def _beam_count(
 def _rod_count(
     squared: float, transfer_matrices: FloatArray, element: IntArray, stiffness: FloatArray, inertia: FloatArray
 ) -> tuple[int, float]:
-    """The same for a rod, whose left part has one admissible state."""
+    """Count a rod's roots below ω² and return the determinant there, from the left part's one admissible state."""
     u, f, sign, total, scale = 1.0, 0.0, 1.0, 0, 1.0
     for node in range(element.size + 1):
         if math.isinf(stiffness[node, 0]):
@@ -166,7 +161,7 @@ def count_at(
     inertia: FloatArray,
     transfer_matrices: FloatArray,
 ) -> tuple[int, float]:
-    """Number of roots below a frequency and the determinant there; ``transfer_matrices`` (e, 1, 2n, 2n) is scratch."""
+    """Count roots below a frequency; the determinant there follows. ``transfer_matrices`` (e, 1, 2n, 2n) is scratch."""
     squared = frequency * frequency
     for e in range(lengths.size):
         element_transfer_matrices(lengths[e], given[e], squared, squared, WHOLE, transfer_matrices[e])
@@ -184,7 +179,7 @@ def wittrick_williams_count_of(
     stiffness: FloatArray,
     inertia: FloatArray,
 ) -> int:
-    """Number of roots below a frequency."""
+    """Return the number of roots below a frequency."""
     size = 2 * stiffness.shape[1]
     transfer_matrices = np.empty((lengths.size, 1, size, size))
     return count_at(frequency, lengths, given, element, stiffness, inertia, transfer_matrices)[0]
@@ -209,7 +204,7 @@ def lowest_roots(
     stiffness: FloatArray,
     inertia: FloatArray,
 ) -> tuple[int, int, FloatArray]:
-    """Counts at two frequencies and, if they enclose them, the roots numbered ``zeros`` to ``wanted``, ascending.
+    """Solve for the roots numbered ``zeros`` to ``wanted``, ascending, if two frequencies enclose them; return counts.
 
     Every root has a bracket of its own, with counts below and above it at the ends; each evaluation narrows all
     brackets. A bracket with a single root has determinants of both signs at its ends and is closed by the inverse

@@ -126,13 +126,13 @@ class ContourCount:
 
 
 def count_by_argument_principle(
-    chain: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray = NONE
+    equations: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray = NONE
 ) -> ContourCount:
     """Count the roots in a sector by the winding number of the determinant along its edge.
 
     Parameters
     ----------
-    chain
+    equations
         The exact equations.
     sector
         The region.
@@ -148,17 +148,17 @@ def count_by_argument_principle(
     """
     from rotors.whirl.argument_principle_kernels import follow_contour
 
-    entries = chain.entries
+    matrix = equations.shooting_matrix
     base, rate = complex(speed.base), complex(speed.rate)
     points, samples, count, left, path = follow_contour(
         sector.bounds,
         (base, rate),
-        chain.total_mass,
+        equations.total_mass,
         known,
         # With both senses and a speed that is real at real λ, roots come in conjugate pairs.
-        len(chain.blocks) > 1 and base.imag == 0.0 == rate.imag,
-        entries.arrays,
-        entries.pattern.arrays,
+        len(equations.blocks) > 1 and base.imag == 0.0 == rate.imag,
+        matrix.arrays,
+        matrix.pattern.arrays,
     )
     if points:
         return ContourCount(count, samples, path[:, :points], left)

@@ -37,7 +37,7 @@ SMALL, LARGE = 1e-100, 1e100
 
 @inner(error_model="python")
 def _logarithm_of_product(at: complex, divided: ComplexArray) -> complex:
-    """ln Π (λ − μ_k), up to multiples of 2πi."""
+    """Return ln Π (λ − μ_k), up to multiples of 2πi."""
     total, product = 0.0j, 1.0 + 0.0j
     for k in range(divided.size):
         product *= at - divided[k]
@@ -50,7 +50,7 @@ def _logarithm_of_product(at: complex, divided: ComplexArray) -> complex:
 
 @inner(error_model="python")
 def _principal(difference: complex) -> complex:
-    """A difference of logarithms with the imaginary part brought into (−π, π]."""
+    """Bring the imaginary part of a difference of logarithms into (−π, π]."""
     turns = math.floor(difference.imag / (2.0 * math.pi) + 0.5)
     return complex(difference.real, difference.imag - 2.0 * math.pi * turns)
 

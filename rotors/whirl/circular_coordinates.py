@@ -82,7 +82,7 @@ class NodeBearing:
 
 
 def coupled_motions(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
-    """Sets of motions that the bearings couple: 1 (forward), −1 (backward) and 0 (axial).
+    """Return the sets of motions that the bearings couple: 1 (forward), −1 (backward) and 0 (axial).
 
     Axial motion appears only where a bearing couples it to lateral motion; alone it is no whirl.
     """
@@ -98,16 +98,16 @@ def coupled_motions(bearings: Sequence[Bearing]) -> tuple[tuple[int, ...], ...]:
     couples = (circular > NO_COUPLING * circular.max(axis=(1, 2), initial=0.0)[:, None, None]).any(axis=0)
     couples |= couples.T
 
-    def tied(first: int, second: int) -> bool:
+    def coupled(first: int, second: int) -> bool:
         return bool(couples[list(BLOCK_COORDINATES[first])][:, BLOCK_COORDINATES[second]].any())
 
-    if tied(0, 1) or tied(0, -1):
+    if coupled(0, 1) or coupled(0, -1):
         return ((1, -1, 0),)
-    return ((1, -1),) if tied(1, -1) else ((1,), (-1,))
+    return ((1, -1),) if coupled(1, -1) else ((1,), (-1,))
 
 
-def node_bearing(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatArray) -> NodeBearing:
-    """A bearing of constant coefficients at a node, for some blocks; ``units`` (n,) are those of their coordinates."""
+def bearing_at_node(bearing: Bearing, node: int, blocks: tuple[int, ...], units: FloatArray) -> NodeBearing:
+    """Return a bearing of constant coefficients at a node, for some blocks; ``units`` (n,) are of their coordinates."""
     members = [member for block in blocks for member in BLOCK_COORDINATES[block]]
     circular = len(blocks) == 1
     if circular:

@@ -1,8 +1,9 @@
-"""Inertia count of whirl frequencies below a frequency, for rotors without damping or driving forces.
+"""Completeness of whirl modes: the inertia count of whirl frequencies, and the search for roots that are missing.
 
-Let stiffness be Hermitian and positive semidefinite and damping absent. At λ = iω the dynamic stiffness of the
-turning rotor over both planes is the Hermitian D(ω) = K − ω²M + ωG, with G Hermitian in circular coordinates and
-proportional to the speed Ω, or to ω where the speed follows the frequency. At a root, with D v = 0,
+The count is that of the frequencies below a frequency, for rotors without damping or driving forces. Let stiffness be
+Hermitian and positive semidefinite and damping absent. At λ = iω the dynamic stiffness of the turning rotor over both
+planes is the Hermitian D(ω) = K − ω²M + ωG, with G Hermitian in circular coordinates and proportional to the speed Ω,
+or to ω where the speed follows the frequency. At a root, with D v = 0,
 
     vᴴ D' v = −2ω vᴴMv + vᴴGv = −ω vᴴMv − vᴴKv / ω < 0,
 
@@ -12,15 +13,16 @@ difference of s(D), the negative eigenvalues: Wittrick and Williams' count, carr
 no stiffness, the free rotor's at zero, lie below both.
 
 Eliminating nodes from the left, with (U, F) the n states that the left part admits, S = F U⁻¹, and K₁₁ = T₁₂⁻¹T₁₁
-of the next piece, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.transfer_matrix.wittrick_williams`. Congruence with U
-spares the inverse:
+of the next shaft element, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.transfer_matrix.wittrick_williams`. Congruence
+with U spares the inverse:
 
     s(S + K₁₁) = s(Uᴴ T₁₂⁻¹ U_right).
 
 Pedestals are eliminated first: the negative eigenvalues of each one's own matrix count, and the bearing becomes the
 Schur complement.
 
-Completeness of whirl modes: roots counted, and searched for again where one is missing.
+Damped or driven rotors are counted by the argument principle (`rotors.whirl.argument_principle`). Where the count
+exceeds the roots found, the missing ones are searched for again.
 """
 
 from collections.abc import Sequence
@@ -66,19 +68,19 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
     return True
 
 
-def negative_count(chain: WhirlEquations, frequencies: FloatArray, speed: Speed) -> IntArray:
+def negative_count(equations: WhirlEquations, frequencies: FloatArray, speed: Speed) -> IntArray:
     """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω (rad/s), (b,)."""
     eigenvalues = (1j * frequencies).astype(np.complex128)
     # One unit of force for all frequencies: with that of a frequency near zero every bearing would seem rigid.
-    speeds, scale = speed(eigenvalues), np.full(frequencies.size, chain.force_scale(eigenvalues).max())
-    n, batch = chain.size, frequencies.size
-    nodes, added = _node_matrices(chain, eigenvalues, speeds, scale)
-    transfer_matrices = chain.dense_transfers(eigenvalues, speeds, scale)
+    speeds, scale = speed(eigenvalues), np.full(frequencies.size, equations.force_scale(eigenvalues).max())
+    n, batch = equations.size, frequencies.size
+    nodes, added = _node_matrices(equations, eigenvalues, speeds, scale)
+    transfer_matrices = equations.dense_transfers(eigenvalues, speeds, scale)
     displacements = np.broadcast_to(np.eye(n, dtype=np.complex128), (batch, n, n))
     forces = np.zeros((batch, n, n), dtype=np.complex128)
-    for piece in range(nodes.shape[1] - 1):
-        forces = forces + nodes[:, piece] @ displacements
-        transfer = transfer_matrices[piece]
+    for element in range(nodes.shape[1] - 1):
+        forces = forces + nodes[:, element] @ displacements
+        transfer = transfer_matrices[element]
         moved = transfer @ np.concatenate([displacements, forces], axis=1)
         reaction = np.linalg.solve(transfer[:, :n, n:], moved[:, :n])
         added += _negatives(_adjoint(displacements) @ reaction)
@@ -89,28 +91,28 @@ def negative_count(chain: WhirlEquations, frequencies: FloatArray, speed: Speed)
 
 
 def _node_matrices(
-    chain: WhirlEquations, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
+    equations: WhirlEquations, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
 ) -> tuple[ComplexArray, IntArray]:
     """Dynamic stiffness at every node, (b, p + 1, n, n), and the pedestals' own negative eigenvalues, (b,)."""
-    terms = chain.node_terms(eigenvalues, speeds) / scale[:, None, None]
-    nodes = terms[..., None] * np.eye(chain.size)
+    terms = equations.node_terms(eigenvalues, speeds) / scale[:, None, None]
+    nodes = terms[..., None] * np.eye(equations.size)
     negatives = np.zeros(eigenvalues.size, dtype=np.intp)
-    for tie in chain.ties:
-        reduced, own = _reduced(tie, eigenvalues)
-        nodes[:, tie.node] += reduced / scale[:, None, None]
+    for node_bearing in equations.node_bearings:
+        reduced, own = _reduced(node_bearing, eigenvalues)
+        nodes[:, node_bearing.node] += reduced / scale[:, None, None]
         negatives += own
     return nodes, negatives
 
 
-def _reduced(tie: NodeBearing, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
-    bearing, ground = tie.dynamic_stiffness(eigenvalues)
-    turned = tie.frame.conj().T
-    if not tie.foot:
-        return turned @ bearing @ tie.frame, np.zeros(eigenvalues.size, dtype=np.intp)
-    foot = list(tie.foot)
+def _reduced(node_bearing: NodeBearing, eigenvalues: ComplexArray) -> tuple[ComplexArray, IntArray]:
+    bearing, ground = node_bearing.dynamic_stiffness(eigenvalues)
+    turned = node_bearing.frame.conj().T
+    if not node_bearing.foot:
+        return turned @ bearing @ node_bearing.frame, np.zeros(eigenvalues.size, dtype=np.intp)
+    foot = list(node_bearing.foot)
     whole = ground + bearing[:, foot][:, :, foot]
     reduced = bearing - bearing[:, :, foot] @ np.linalg.solve(whole, bearing[:, foot])
-    return turned @ reduced @ tie.frame, _negatives(whole)
+    return turned @ reduced @ node_bearing.frame, _negatives(whole)
 
 
 def _negatives(matrices: ComplexArray) -> IntArray:
@@ -130,12 +132,12 @@ MOST_NUDGES = 6
 
 
 def oscillating(least: float, most: float) -> Sector:
-    """The sector of motions that oscillate, stable or not."""
+    """Return the sector of motions that oscillate, stable or not."""
     return Sector(least, most, NO_OSCILLATION, np.pi - NO_OSCILLATION)
 
 
 def certified_roots(
-    chain: WhirlEquations,
+    equations: WhirlEquations,
     roots: ExactRoots,
     speed: Speed,
     sector: Sector,
@@ -151,9 +153,9 @@ def certified_roots(
     """
     method = "inertia" if conservative else "winding"
     held = roots.take(sector.holds(roots.eigenvalues))
-    expected = count_roots(chain, speed, sector, conservative, np.concatenate([roots.eigenvalues, beyond]))
+    expected = count_roots(equations, speed, sector, conservative, np.concatenate([roots.eigenvalues, beyond]))
     if held.eigenvalues.size < expected:
-        held = search(chain, roots, speed, sector)
+        held = search(equations, roots, speed, sector)
     found = held.eigenvalues.size
     certificate = ModeCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
     if not certificate.complete:
@@ -166,48 +168,48 @@ def certified_roots(
 
 
 def count_roots(
-    chain: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
+    equations: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
 ) -> int:
-    """Number of roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
+    """Count the roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
     if conservative:
         edges = np.array([sector.least, sector.most])
-        low, high = negative_count(chain, edges, speed).tolist()
+        low, high = negative_count(equations, edges, speed).tolist()
         return int(high - low)
-    return count_by_argument_principle(chain, sector, speed, known).count
+    return count_by_argument_principle(equations, sector, speed, known).count
 
 
-def search(chain: WhirlEquations, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
+def search(equations: WhirlEquations, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
     """All roots in a sector: the known ones, and the missing ones by the argument principle and power sums."""
     roots, waiting, cuts = known, [sector], 0
     while waiting:
         part = waiting.pop()
-        winding = count_by_argument_principle(chain, part, speed, roots.eigenvalues)
+        counted = count_by_argument_principle(equations, part, speed, roots.eigenvalues)
         inside = roots.eigenvalues[part.holds(roots.eigenvalues)]
-        missing = winding.count - inside.size
+        missing = counted.count - inside.size
         if missing <= 0:
             continue
         if missing <= MOST_MISSING:
-            starts = winding.missing(missing)
-            roots = distinct(roots.joined(refine_roots(chain, starts, speed)))
+            starts = counted.missing(missing)
+            roots = distinct(roots.joined(refine_roots(equations, starts, speed)))
             for start in starts:
-                if int(part.holds(roots.eigenvalues).sum()) == winding.count:
+                if int(part.holds(roots.eigenvalues).sum()) == counted.count:
                     break
-                roots = with_circle(chain, roots, complex(start), speed)
-            if int(part.holds(roots.eigenvalues).sum()) == winding.count:
+                roots = with_circle(equations, roots, complex(start), speed)
+            if int(part.holds(roots.eigenvalues).sum()) == counted.count:
                 continue
         if cuts >= MOST_CUTS:
             break
         cuts += 1
-        waiting += _cut(chain, part, speed, roots.eigenvalues)
+        waiting += _cut(equations, part, speed, roots.eigenvalues)
     return roots.take(sector.holds(roots.eigenvalues))
 
 
-def _cut(chain: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
+def _cut(equations: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
     """Two parts of a sector without a root on their common side."""
     for nudge in range(MOST_NUDGES):
         halves = sector.halves(0.5 + 0.037 * nudge)
         try:
-            count_by_argument_principle(chain, halves[0], speed, known)
+            count_by_argument_principle(equations, halves[0], speed, known)
         except RootOnContourError:
             continue
         return list(halves)

@@ -1,10 +1,7 @@
-"""Compiled Newton iteration for whirl eigenvalues, each root by itself; see `rotors.whirl.eigenvalues`.
+"""Compiled Newton iteration for whirl eigenvalues, each root by itself, and tests of the eigenvalues.
 
-Importing this module imports numba.
-
-Compiled tests of eigenvalues: oscillating or not, separated or not, inside a sector or not.
-
-Importing this module imports numba.
+The tests decide whether eigenvalues oscillate, are separated, or lie inside a sector; the derivation of the iteration
+is in `rotors.whirl.eigenvalues`. Importing this module imports numba.
 """
 
 import cmath
@@ -25,7 +22,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 @inner(error_model="python")
 def logarithm(value: complex) -> complex:
-    """ln λ; minus infinity for zero."""
+    """Return ln λ; minus infinity for zero."""
     return complex(math.log(abs(value)), math.atan2(value.imag, value.real))
 
 

@@ -1,10 +1,10 @@
-"""Whirl eigenvalues by Newton's method on the exact equations: clusters refined together, duplicates recognised.
+"""Whirl eigenvalues by Newton's method on the exact equations, and by contour integrals where they coalesce.
 
-With the equations N(λ) x = 0 of `rotors.whirl.equations`, let X and Y span the right and left singular vectors of the
-k smallest singular values of N(σ), k the number of roots near σ. Projected on them the equations are
-Y^H [N(σ) + (λ − σ) N'(σ)] X q = 0 up to second order in λ − σ, a small eigenproblem that gives all k roots at once,
-double ones and nearly double ones with all their digits: a determinant would keep only half. For k = 1 this is
-Newton's method on the two-sided Rayleigh functional,
+Roots of a cluster are refined together, and duplicates are recognised. With the equations N(λ) x = 0 of
+`rotors.whirl.equations`, let X and Y span the right and left singular vectors of the k smallest singular values of
+N(σ), k the number of roots near σ. Projected on them the equations are Y^H [N(σ) + (λ − σ) N'(σ)] X q = 0 up to second
+order in λ − σ, a small eigenproblem that gives all k roots at once, double ones and nearly double ones with all their
+digits: a determinant would keep only half. For k = 1 this is Newton's method on the two-sided Rayleigh functional,
 
     λ ← λ − (yᴴ N x) / (yᴴ N' x),
 
@@ -12,11 +12,10 @@ whose error is squared at every step (Schwetlick and Schreiber, Linear Algebra A
 that are found to be separated are then refined one by one. Those that are not, whose vectors would mix, stay together;
 the neglected terms, of the order of the square of their distance, are below rounding.
 
-Coalescing eigenvalues, where Newton's method slows down: all roots inside a circle by contour integrals (Beyn).
-
-Where cross-coupling is just as large as the bearings' anisotropy allows, forward and backward whirl meet in one root
-with one shape: a defective pair. Under a perturbation each root moves as its square root, but their mean as the
-perturbation itself. Beyn's integrals (Linear Algebra Appl. 436, 2012)
+Newton's method slows down at coalescing eigenvalues. Where cross-coupling is just as large as the bearings' anisotropy
+allows, forward and backward whirl meet in one root with one shape: a defective pair. Under a perturbation each root
+moves as its square root, but their mean as the perturbation itself. Beyn's integrals (Linear Algebra Appl. 436, 2012)
+give all roots inside a circle:
 
     A₀ = (1/2πi) ∮ N(λ)⁻¹ V dλ,    A₁ = (1/2πi) ∮ (λ − c) N(λ)⁻¹ V dλ
 
@@ -93,11 +92,11 @@ class ExactRoots:
     scales: FloatArray
 
     def take(self, index: npt.NDArray[np.intp] | npt.NDArray[np.bool_]) -> "ExactRoots":
-        """Selected roots."""
+        """Return selected roots."""
         return ExactRoots(self.eigenvalues[index], self.solutions[index], self.residuals[index], self.scales[index])
 
     def joined(self, other: "ExactRoots") -> "ExactRoots":
-        """These roots followed by others."""
+        """Join these roots and others."""
         return ExactRoots(
             np.concatenate([self.eigenvalues, other.eigenvalues]),
             np.concatenate([self.solutions, other.solutions]),
@@ -115,22 +114,22 @@ def constant_speed(speed: float) -> Speed:
     return Speed(complex(speed))
 
 
-def converged_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
+def converged_roots(equations: WhirlEquations, starts: ComplexArray, speed: Speed) -> tuple[ExactRoots, ComplexArray]:
     """Exact roots near starting values, each once, and the places where the iteration has not converged.
 
     Parameters
     ----------
-    chain
+    equations
         The exact equations.
     starts
         (w,) complex, rad/s.
     speed
         Speed of rotation as an analytic function of λ.
     """
-    order = chain.pattern.order
+    order = equations.pattern.order
     first = random_vectors(starts.size, order)
     if starts.size and apart(starts, NEAR):
-        return _accepted(refine_alone(chain, starts, first, speed))
+        return _accepted(refine_alone(equations, starts, first, speed))
     groups = clusters(starts, NEAR)
     alone: list[tuple[complex, ComplexArray]] = []
     settled: list[ExactRoots] = []
@@ -138,16 +137,16 @@ def converged_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -
         if members.size == 1:
             alone.append((starts[members[0]], first[members[0]]))
             continue
-        near = _together(chain, starts[members], first[members], speed, steps=3)
+        near = _together(equations, starts[members], first[members], speed, steps=3)
         for nearer in clusters(near.eigenvalues, TIED):
             values, vectors = near.eigenvalues[nearer], near.solutions[nearer]
             if nearer.size == 1:
                 alone.append((values[0], vectors[0]))
             else:
-                settled.append(_together(chain, values, vectors, speed, steps=MOST_STEPS))
+                settled.append(_together(equations, values, vectors, speed, steps=MOST_STEPS))
     if alone:
         values, vectors = np.array([one[0] for one in alone]), np.array([one[1] for one in alone])
-        settled.append(refine_alone(chain, values, vectors, speed))
+        settled.append(refine_alone(equations, values, vectors, speed))
     if not settled:
         return ExactRoots(np.zeros(0, complex), np.zeros((0, order), complex), np.zeros(0), np.zeros(0)), starts
     roots = settled[0]
@@ -157,7 +156,7 @@ def converged_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -
 
 
 def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
-    """The converged roots, each once, and the values of the others."""
+    """Return the converged roots, each once, and the values of the others."""
     from rotors.whirl.eigenvalue_kernels import are_converged
 
     if are_converged(roots.eigenvalues, roots.residuals, ACCEPTED, SAME):
@@ -203,17 +202,17 @@ def distinct(roots: ExactRoots) -> ExactRoots:
     return roots.take(np.array(sorted(kept), dtype=np.intp))
 
 
-def slopes_at(chain: WhirlEquations, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray) -> ComplexArray:
+def slopes_at(equations: WhirlEquations, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray) -> ComplexArray:
     """Entries of dN/dλ at every λ, (b, nnz)."""
     step = SLOPE_STEP * np.abs(eigenvalues)
     ahead, behind = (
-        chain.values(shifted, speed(shifted), scale) for shifted in (eigenvalues + step, eigenvalues - step)
+        equations.values(shifted, speed(shifted), scale) for shifted in (eigenvalues + step, eigenvalues - step)
     )
     return np.asarray((ahead - behind) / (2.0 * step[:, None]))
 
 
 def refine_each(
-    chain: WhirlEquations, starts: ComplexArray, speeds: FloatArray, vectors: ComplexArray | None = None
+    equations: WhirlEquations, starts: ComplexArray, speeds: FloatArray, vectors: ComplexArray | None = None
 ) -> ExactRoots:
     """Exact roots from starting values, each alone and at its own speed, (w,) both; none is dropped.
 
@@ -221,20 +220,20 @@ def refine_each(
     `ACCEPTED`.
     """
     if vectors is None:
-        vectors = random_vectors(starts.size, chain.pattern.order)
-    return refine_alone(chain, starts, vectors, Speed(speeds.astype(np.complex128)))
+        vectors = random_vectors(starts.size, equations.pattern.order)
+    return refine_alone(equations, starts, vectors, Speed(speeds.astype(np.complex128)))
 
 
-def refine_alone(chain: WhirlEquations, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
+def refine_alone(equations: WhirlEquations, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
     from rotors.whirl.eigenvalue_kernels import newton
 
     # Arrays of one type, so that the kernel is compiled once: some of those given are read-only.
     starts, vectors = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))
     bases = np.array(speed.base, dtype=np.complex128, ndmin=1)
-    entries = chain.entries
-    arrays = entries.arrays, entries.pattern.arrays
-    return ExactRoots(*newton(starts, vectors, bases, complex(speed.rate), chain.total_mass, *arrays))
+    matrix = equations.shooting_matrix
+    arrays = matrix.arrays, matrix.pattern.arrays
+    return ExactRoots(*newton(starts, vectors, bases, complex(speed.rate), equations.total_mass, *arrays))
 
 
 @lru_cache(maxsize=64)
@@ -247,7 +246,7 @@ def random_vectors(count: int, order: int) -> ComplexArray:
 
 
 def _together(
-    chain: WhirlEquations, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int
+    equations: WhirlEquations, values: ComplexArray, vectors: ComplexArray, speed: Speed, steps: int
 ) -> ExactRoots:
     """All roots of one cluster by the small eigenproblem about their mean."""
     basis, mixture = vectors[None], np.eye(values.size, dtype=np.complex128)
@@ -255,11 +254,11 @@ def _together(
     scale = np.ones(1)
     for step in range(steps):
         centre = np.array([values.mean()])
-        scale = chain.force_scale(centre)
-        entries = chain.values(centre, speed(centre), scale)
-        slopes = slopes_at(chain, centre, speed, scale)
-        right, left = chain.pattern.null_vectors(entries, basis, 3 if step == 0 else 1)
-        top, bottom = (chain.pattern.forms(matrix, left, right)[0] for matrix in (entries, slopes))
+        scale = equations.force_scale(centre)
+        entries = equations.values(centre, speed(centre), scale)
+        slopes = slopes_at(equations, centre, speed, scale)
+        right, left = equations.pattern.null_vectors(entries, basis, 3 if step == 0 else 1)
+        top, bottom = (equations.pattern.forms(matrix, left, right)[0] for matrix in (entries, slopes))
         offsets, mixing = linalg.eig(top, -bottom)
         if not np.isfinite(offsets).all():
             return ExactRoots(values, basis[0], np.full(values.size, np.inf), np.full(values.size, scale[0]))
@@ -293,54 +292,54 @@ CLOSE = 3e-3
 SAME_PLACE = 1e-3
 
 
-def refine_roots(chain: WhirlEquations, starts: ComplexArray, speed: Speed) -> ExactRoots:
+def refine_roots(equations: WhirlEquations, starts: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots near starting values; fewer where several lead to one root, or one to none.
 
     Parameters
     ----------
-    chain
+    equations
         The exact equations.
     starts
         (w,) complex, rad/s.
     speed
         Speed of rotation as an analytic function of λ.
     """
-    roots, crawling = converged_roots(chain, starts, speed)
+    roots, crawling = converged_roots(equations, starts, speed)
     if crawling.size == 0:
         return roots
     for place in clusters(crawling, CIRCLES[0]):
-        roots = with_circle(chain, roots, complex(crawling[place].mean()), speed)
+        roots = with_circle(equations, roots, complex(crawling[place].mean()), speed)
     return distinct(roots)
 
 
-def with_circle(chain: WhirlEquations, roots: ExactRoots, centre: complex, speed: Speed) -> ExactRoots:
-    """The roots, with those about a place replaced by the roots of contour integrals."""
+def with_circle(equations: WhirlEquations, roots: ExactRoots, centre: complex, speed: Speed) -> ExactRoots:
+    """Replace the roots about a place by the roots of contour integrals."""
     for part in CIRCLES:
         radius = part * abs(centre)
-        found = roots_in_circle(chain, centre, radius, speed)
+        found = roots_in_circle(equations, centre, radius, speed)
         if found is not None:
             known = found.take(np.isfinite(found.residuals))
             return distinct(roots.take(np.abs(roots.eigenvalues - centre) > radius).joined(known))
     return roots
 
 
-def roots_in_circle(chain: WhirlEquations, centre: complex, radius: float, speed: Speed) -> ExactRoots | None:
+def roots_in_circle(equations: WhirlEquations, centre: complex, radius: float, speed: Speed) -> ExactRoots | None:
     """All roots within ``radius`` of ``centre``, rad/s; None where the circle passes too near one, or holds too many.
 
     The second vector of a coalesced pair is a principal vector: the pair has one shape.
     """
     turn = np.exp(2j * np.pi * (np.arange(POINTS) + 0.5) / POINTS)
     around = centre + radius * turn
-    scale = np.full(POINTS, chain.force_scale(np.array([centre]))[0])
-    values = chain.values(around, speed(around), scale)
-    phases = chain.entries.log_determinants(around, speed(around), scale).imag
+    scale = np.full(POINTS, equations.force_scale(np.array([centre]))[0])
+    values = equations.values(around, speed(around), scale)
+    phases = equations.shooting_matrix.log_determinants(around, speed(around), scale).imag
     steps = np.diff(np.append(phases, phases[0]))
     steps -= 2.0 * np.pi * np.round(steps / (2.0 * np.pi))
     count = round(float(steps.sum()) / (2.0 * np.pi))
     if np.abs(steps).max() > 1.0 or not 0 < count <= MOST_INSIDE:
         return None
-    sides = random_vectors(count, chain.pattern.order)
-    solved = chain.pattern.solve(values, np.broadcast_to(sides, (POINTS, *sides.shape)))
+    sides = random_vectors(count, equations.pattern.order)
+    solved = equations.pattern.solve(values, np.broadcast_to(sides, (POINTS, *sides.shape)))
     zeroth = np.einsum("b,bko->ok", turn, solved) / POINTS
     first = np.einsum("b,bko->ok", turn**2, solved) / POINTS
     left, sizes, right = np.linalg.svd(zeroth, full_matrices=False)
@@ -350,16 +349,18 @@ def roots_in_circle(chain: WhirlEquations, centre: complex, radius: float, speed
     found = centre + radius * offsets
     vectors = (left @ mixture).T
     roots = ExactRoots(found, vectors, np.full(count, np.inf), np.full(count, scale[0]))
-    parts = [_settled(chain, roots.take(group), left, radius, speed) for group in clusters(found, ONE_ROOT)]
+    parts = [_settled(equations, roots.take(group), left, radius, speed) for group in clusters(found, ONE_ROOT)]
     whole = parts[0]
     for part in parts[1:]:
         whole = whole.joined(part)
     return whole
 
 
-def _settled(chain: WhirlEquations, roots: ExactRoots, span: ComplexArray, radius: float, speed: Speed) -> ExactRoots:
+def _settled(
+    equations: WhirlEquations, roots: ExactRoots, span: ComplexArray, radius: float, speed: Speed
+) -> ExactRoots:
     """Roots of one group refined one by one, or kept together at their mean where they are not resolved."""
-    polished = refine_alone(chain, roots.eigenvalues, roots.solutions, speed)
+    polished = refine_alone(equations, roots.eigenvalues, roots.solutions, speed)
     moved = np.abs(polished.eigenvalues - roots.eigenvalues)
     near = (polished.residuals <= ACCEPTED) & (moved <= SAME_PLACE * radius)
     if near.all() and apart(polished.eigenvalues, ACCEPTED):
@@ -369,7 +370,7 @@ def _settled(chain: WhirlEquations, roots: ExactRoots, span: ComplexArray, radiu
     # Roots just outside a circle disturb the integrals by (radius / distance)^48: a narrow circle avoids them.
     narrow = abs(mean) * max(CLOSE, 5.0 * float(spread.max()))
     if narrow < 0.5 * radius:
-        again = roots_in_circle(chain, mean, narrow, speed)
+        again = roots_in_circle(equations, mean, narrow, speed)
         if again is not None and again.eigenvalues.size == roots.eigenvalues.size:
             return again
     if spread.size == 1 or spread.max() > ONE_ROOT:

@@ -5,7 +5,7 @@ A motion e^{λt} of a disc turning at Ω obeys I_d λ²β_x + Ω I_p λ β_y = M
 
     (I_d λ² ∓ iΩ I_p λ) β± = M± ,
 
-and since a round section's polar inertia is twice its diametral one, every piece of shaft obeys the planar
+and since a round section's polar inertia is twice its diametral one, every shaft element obeys the planar
 equations of `rotors.transfer_matrix.timoshenko` with
 
     ω² → −λ² for translation,     ω² → −λ² ± 2iΩλ for rotation.
@@ -22,13 +22,13 @@ displacements p of pedestals; the equations are those of multiple shooting,
 
 with the forces g in a node's bearings along directions F u of their own, and no force f right of the last node. Every
 entry is an entire function of λ, the pedestals' resonances included, and so is the determinant; its zeros are the
-eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the pieces and of
+eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the elements and of
 the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
 the pedestals to the forces on the right end and the pedestals.) `rotors.whirl.shooting_matrix` puts them in order.
 
-A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of pieces has
-the product of their transfer matrices (`WhirlEquations.in_runs`), so that a shaft of sixty steps has no more unknowns
-than a plain one.
+A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of elements
+has the product of their transfer matrices (`WhirlEquations.in_runs`), so that a shaft of sixty steps has no more
+unknowns than a plain one.
 
 Forces are scaled by the inertia forces of the frequency at hand, so that a nearly rigid shaft on soft
 bearings loses no digits to its own stiffness.
@@ -47,7 +47,7 @@ from rotors.model.shaft import Rotor
 from rotors.numerics.banded import BandPattern
 from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
-from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing, node_bearing
+from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing, bearing_at_node
 from rotors.whirl.shooting_matrix import Layout, ShootingMatrix, shooting_matrix
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,7 +56,7 @@ IntArray = npt.NDArray[np.intp]
 
 # Least unit of force of a response, as a part of the stiffest bearing's force per unit displacement.
 STATIC_FORCE = 1e-6
-# Largest growth of motion along a run of pieces, as a power of e: it costs the states two digits at most.
+# Largest growth of motion along a run of elements, as a power of e: it costs the states two digits at most.
 MOST_GROWTH = 4.5
 # Number of frequencies in an octave for which equations are made.
 REACH_STEPS = 4
@@ -71,10 +71,10 @@ class WhirlEquations:
     rotor
         The rotor.
     bending
-        Pieces and node inertias of one plane, without springs.
+        Elements and node inertias of one plane, without springs.
     blocks
         1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
-    ties
+    node_bearings
         Bearings with constant coefficients.
     kept
         (r + 1,): nodes whose states are unknowns, ascending: both ends, and nodes with inertia or a bearing.
@@ -83,7 +83,7 @@ class WhirlEquations:
     rotor: Rotor
     bending: DiscretisedShaft
     blocks: tuple[int, ...]
-    ties: tuple[NodeBearing, ...]
+    node_bearings: tuple[NodeBearing, ...]
     kept: IntArray
 
     @property
@@ -104,50 +104,52 @@ class WhirlEquations:
     @cached_property
     def total_mass(self) -> float:
         """Approximate mass of the rotor in scaled units."""
-        chain = self.bending
-        along = chain.coefficients_at(np.arange(chain.element.size), np.full(chain.element.size, 0.5))[:, 2]
-        return float(along @ chain.lengths + chain.node_inertia[:, 0].sum())
+        shaft = self.bending
+        along = shaft.coefficients_at(np.arange(shaft.element.size), np.full(shaft.element.size, 0.5))[:, 2]
+        return float(along @ shaft.lengths + shaft.node_inertia[:, 0].sum())
 
     @cached_property
     def layout(self) -> Layout:
         """Order of unknowns and equations."""
-        return Layout.of(self.blocks, self.kept, self.ties)
+        return Layout.of(self.blocks, self.kept, self.node_bearings)
 
     @cached_property
-    def entries(self) -> ShootingMatrix:
+    def shooting_matrix(self) -> ShootingMatrix:
         """The table from which the matrix is made at any λ."""
         axial = self.axial if 0 in self.blocks else None
-        return shooting_matrix(self.bending, axial, self.blocks, self.ties, self.kept, self.layout)
+        return shooting_matrix(self.bending, axial, self.blocks, self.node_bearings, self.kept, self.layout)
 
     @property
     def pattern(self) -> BandPattern:
         """Rows and columns of the entries in `values`."""
-        return self.entries.pattern
+        return self.shooting_matrix.pattern
 
     def force_scale(self, eigenvalues: ComplexArray) -> FloatArray:
-        """Unit of forces for roots near every λ: the inertia forces, or the shaft's own where they are less."""
+        """Return the unit of forces for roots near every λ: the lesser of the inertia forces and the shaft's own."""
         return np.asarray(np.minimum(np.maximum(np.abs(eigenvalues) ** 2 * self.total_mass, 1e-30), 1.0))
 
     def response_scale(self, eigenvalues: ComplexArray) -> FloatArray:
-        """Unit of forces for a response at every λ, zero included, where bearings may carry more than inertia."""
-        held = max((float(np.abs(tie.stiffness).max(initial=0.0)) for tie in self.ties), default=1.0)
+        """Return the unit of forces for responses at every λ, zero included: bearings may carry more than inertia."""
+        held = max(
+            (float(np.abs(node_bearing.stiffness).max(initial=0.0)) for node_bearing in self.node_bearings), default=1.0
+        )
         least = np.full(eigenvalues.size, min(max(STATIC_FORCE * held, 1e-30), 1.0))
         return np.asarray(np.maximum(self.force_scale(eigenvalues), least))
 
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries of the equations at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
-        return self.entries.values(eigenvalues, speeds, scale)
+        return self.shooting_matrix.values(eigenvalues, speeds, scale)
 
     def node_terms(self, eigenvalues: ComplexArray, speeds: ComplexArray) -> ComplexArray:
         """λ²M ∓ iΩλ I_p of the nodes' own inertias, (b, p + 1, n)."""
-        chain = self.bending
+        shaft = self.bending
         squared = eigenvalues[:, None] ** 2
         columns = []
         for block in self.blocks:
-            columns.append(squared * chain.node_inertia[:, 0])
+            columns.append(squared * shaft.node_inertia[:, 0])
             if block:
-                gyroscopic = (block * 1j * speeds * eigenvalues)[:, None] * chain.node_polar
-                columns.append(squared * chain.node_inertia[:, 1] - gyroscopic)
+                gyroscopic = (block * 1j * speeds * eigenvalues)[:, None] * shaft.node_polar
+                columns.append(squared * shaft.node_inertia[:, 1] - gyroscopic)
         return np.stack(columns, axis=-1)
 
     def dense_transfers(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
@@ -165,8 +167,8 @@ class WhirlEquations:
     def _transfers(
         self, block: int, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
     ) -> ComplexArray:
-        chain = self.bending if block else self.axial
-        transfer = chain.transfer_matrices(*squared_frequencies(block, eigenvalues, speeds))
+        shaft = self.bending if block else self.axial
+        transfer = shaft.transfer_matrices(*squared_frequencies(block, eigenvalues, speeds))
         half = transfer.shape[-1] // 2
         transfer[..., :half, half:] *= scale[:, None, None]
         transfer[..., half:, :half] /= scale[:, None, None]
@@ -181,7 +183,7 @@ class WhirlEquations:
         states, given = {}, np.ascontiguousarray(solutions)
         for block, places in zip(self.blocks, self._state_places, strict=True):
             own = np.empty((eigenvalues.size, self.bending.nodes.size, places.shape[1]), dtype=np.complex128)
-            runs = self.entries.beams if block else self.entries.rods
+            runs = self.shooting_matrix.beams if block else self.shooting_matrix.rods
             node_states(runs, *squared_frequencies(block, eigenvalues, speeds), places, scale, given, own)
             states[block] = own
         return states
@@ -198,20 +200,20 @@ class WhirlEquations:
         return places
 
     def in_runs(self) -> "WhirlEquations":
-        """The same equations with unknowns at loaded nodes only; no external load may act at the others."""
-        chain = self.bending
-        needed = chain.node_inertia.any(axis=1) | (chain.node_polar != 0.0)
-        needed[[0, -1, *(tie.node for tie in self.ties)]] = True
-        growth, total = chain.table.growth(chain.highest)[chain.element].tolist(), 0.0
-        for piece, own in enumerate(growth):
-            needed[piece] |= total + own > MOST_GROWTH
-            total = own if needed[piece] else total + own
+        """Reduce the equations to unknowns at loaded nodes only; no external load may act at the others."""
+        shaft = self.bending
+        needed = shaft.node_inertia.any(axis=1) | (shaft.node_polar != 0.0)
+        needed[[0, -1, *(node_bearing.node for node_bearing in self.node_bearings)]] = True
+        growth, total = shaft.table.growth(shaft.highest)[shaft.element].tolist(), 0.0
+        for number, own in enumerate(growth):
+            needed[number] |= total + own > MOST_GROWTH
+            total = own if needed[number] else total + own
         return replace(self, kept=np.flatnonzero(needed))
 
 
-def block_units(chain: DiscretisedShaft, blocks: tuple[int, ...]) -> FloatArray:
+def block_units(shaft: DiscretisedShaft, blocks: tuple[int, ...]) -> FloatArray:
     """Units of a node's displacements, (n,)."""
-    return np.concatenate([chain.displacement_unit if block else chain.displacement_unit[:1] for block in blocks])
+    return np.concatenate([shaft.displacement_unit if block else shaft.displacement_unit[:1] for block in blocks])
 
 
 def squared_frequencies(
@@ -223,7 +225,7 @@ def squared_frequencies(
 
 
 def whirl_reach(limit: float, speed: float) -> float:
-    """Planar frequency for which pieces must be short enough, for whirl up to ``limit`` at ``speed``, rad/s.
+    """Planar frequency for which elements must be short enough, for whirl up to ``limit`` at ``speed``, rad/s.
 
     The rotary inertia's ω² ± 2Ωω is largest in magnitude at ω(ω + 2|Ω|).
     """
@@ -246,32 +248,34 @@ def whirl_equations(
     blocks
         One of `rotors.whirl.circular_coordinates.coupled_motions`.
     highest
-        Planar frequency up to which pieces are short enough, rad/s: see `whirl_reach`.
+        Planar frequency up to which elements are short enough, rad/s: see `whirl_reach`.
     places
         Further places to be nodes, m.
     """
     supports = [RadialSupport(at, 0.0) for at in (*(bearing.at for bearing in bearings), *places)]
-    chain = discretised_bending_shaft(rotor, tuple(supports), highest)
-    units = block_units(chain, blocks)
-    ties = tuple(node_bearing(bearing, chain.node_at(bearing.at), blocks, units) for bearing in bearings)
-    return WhirlEquations(rotor, chain, blocks, ties, np.arange(chain.nodes.size))
+    shaft = discretised_bending_shaft(rotor, tuple(supports), highest)
+    units = block_units(shaft, blocks)
+    node_bearings = tuple(bearing_at_node(bearing, shaft.node_at(bearing.at), blocks, units) for bearing in bearings)
+    return WhirlEquations(rotor, shaft, blocks, node_bearings, np.arange(shaft.nodes.size))
 
 
-def whirl_chain(rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> WhirlEquations:
-    """The equations of `whirl_equations` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
+def whirl_equations_in_runs(
+    rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float
+) -> WhirlEquations:
+    """Assemble the equations of `whirl_equations` in runs, for whirl up to a planar frequency of ``highest`` rad/s."""
     return whirl_equations(rotor, bearings, blocks, reach_step(highest)).in_runs()
 
 
 def reach_step(highest: float) -> float:
-    """The next of the frequencies (rad/s) that equations are made for, so that those of near speeds are the same."""
+    """Round up to a frequency (rad/s) that equations are made for, so that those of near speeds are the same."""
     return math.exp2(math.ceil(REACH_STEPS * math.log2(highest)) / REACH_STEPS)
 
 
-def retied(chain: WhirlEquations, bearings: Sequence[Bearing], speed: float) -> WhirlEquations:
-    """The same equations with the bearings' coefficients at another speed (rad/s)."""
-    units = block_units(chain.bending, chain.blocks)
-    ties = tuple(
-        node_bearing(bearing.at_speed(speed), tie.node, chain.blocks, units)
-        for bearing, tie in zip(bearings, chain.ties, strict=True)
+def equations_at_speed(equations: WhirlEquations, bearings: Sequence[Bearing], speed: float) -> WhirlEquations:
+    """Replace the bearings' coefficients in the equations by those at another speed (rad/s)."""
+    units = block_units(equations.bending, equations.blocks)
+    node_bearings = tuple(
+        bearing_at_node(bearing.at_speed(speed), node_bearing.node, equations.blocks, units)
+        for bearing, node_bearing in zip(bearings, equations.node_bearings, strict=True)
     )
-    return replace(chain, ties=ties)
+    return replace(equations, node_bearings=node_bearings)

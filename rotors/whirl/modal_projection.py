@@ -11,10 +11,9 @@ matrices. Slopes, axial modes and pedestals are added where bearings have them. 
 couple is projected on its own; where forward and backward motion are not coupled, each in the circular coordinates of
 `rotors.whirl.circular_coordinates`.
 
-Lightly damped whirl of a projected rotor whose planes are coupled by the gyroscopic moment alone.
-
-Let Λ_x and Λ_y be the squared frequencies of both planes at rest, and all matrices be those of their modes. With
-states p = (Λ_x^½ q_x, q̇_y) and s = (q̇_x, −Λ_y^½ q_y), undamped motion at the speed Ω is
+A lightly damped rotor whose planes are coupled by the gyroscopic moment alone is solved by perturbation. Let Λ_x
+and Λ_y be the squared frequencies of both planes at rest, and all matrices be those of their modes. With states
+p = (Λ_x^½ q_x, q̇_y) and s = (q̇_x, −Λ_y^½ q_y), undamped motion at the speed Ω is
 
     ṗ = C s,    ṡ = −Cᵀp,    C = [[Λ_x^½, 0], [Ω G, Λ_y^½]],
 
@@ -118,8 +117,8 @@ class CoupledPlanes:
         from rotors.whirl.modal_projection_kernels import damped, squares
 
         squared, right = np.linalg.eigh(squares(self.frequencies, self.gyroscopic, speeds))
-        tie = self.frequencies, self.gyroscopic, speeds
-        values, mixed = damped(squared, right, *tie, self.damping_x, self.damping_y)
+        undamped = self.frequencies, self.gyroscopic, speeds
+        values, mixed = damped(squared, right, *undamped, self.damping_x, self.damping_y)
         return values, mixed > MOST_MIXED
 
 
@@ -192,7 +191,7 @@ def basis_for(
 
 
 def slowest(bearing: Bearing) -> float:
-    """The lowest speed of a bearing's tables, or zero, rad/s."""
+    """Return the lowest speed of a bearing's tables, or zero, rad/s."""
     return 0.0 if bearing.speeds is None else float(bearing.speeds[0])
 
 
@@ -226,7 +225,7 @@ class ModalProjection:
     def of(
         cls, rotor: Rotor, bearings: Sequence[Bearing], blocks: tuple[int, ...], basis: PlanarBasis
     ) -> "ModalProjection":
-        """The projection for one set of coupled motions of a rotor."""
+        """Project one set of coupled motions of a rotor on a planar basis."""
         frequencies, shapes = np.zeros(0), np.zeros((0, len(bearings)))
         if 0 in blocks:
             frequencies, shapes = _axial_modes(rotor, bearings)
@@ -266,7 +265,7 @@ class ModalProjection:
         return mass, stiffness, damping, gyroscopic
 
     def pencil(self, bearings: Sequence[Bearing]) -> "Pencil":
-        """The projected motion as a system of first order; bearings have constant coefficients."""
+        """Return the projected motion as a system of first order; bearings have constant coefficients."""
         mass, stiffness, damping, gyroscopic = self.matrices(bearings)
         order = mass.size
         # States W q and q̇ make the undamped system matrix nearly skew, so that high members of the basis
@@ -284,7 +283,7 @@ class ModalProjection:
         if self.blocks != (1, -1):
             return None
         b = self.basis.count
-        # Behind the shaft's coordinates stand those of pedestals, each in the plane that its stiffness ties it to.
+        # Behind the shaft's coordinates stand those of pedestals, each in the plane that its stiffness couples it to.
         in_x = np.asarray(stiffness[:, :b].any(axis=1))
         in_x[: 2 * b] = np.arange(2 * b) < b
         return CoupledPlanes.of(mass, stiffness, damping, gyroscopic, in_x)
@@ -341,7 +340,7 @@ class ModalProjection:
         )
 
     def _turned(self, radial: FloatArray) -> NumberArray:
-        """A matrix over x and y in the projection's coordinates."""
+        """Transform a matrix over x and y to the projection's coordinates."""
         if len(self.blocks) > 1:
             return radial
         turn = CIRCULAR[BLOCK_COORDINATES[self.blocks[0]][0], :2]
@@ -388,13 +387,12 @@ def pencils(rotor: Rotor, bearings: Sequence[Bearing], basis: PlanarBasis) -> li
 
 
 def _times(matrices: NumberArray, motions: FloatArray) -> NumberArray:
-    """Forces of all bearings under the motions of every coordinate, (bearings n, N)."""
+    """Return the forces of all bearings under the motions of every coordinate, (bearings n, N)."""
     return np.asarray((matrices @ motions).reshape(-1, motions.shape[-1]))
 
 
 def _axial_modes(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[FloatArray, FloatArray]:
     """Frequencies (a,) and shapes at the bearings (a, bearings) of the shaft free along its axis."""
-
     available = rod_shaft(rotor, (), "axial").available_modes
     modes = solve_axial_modes(rotor, count=int(min(AXIAL_MODES, available)))
     return modes.frequencies, modes.evaluate([bearing.at for bearing in bearings])

@@ -44,10 +44,10 @@ def squares(frequencies: FloatArray, gyroscopic: FloatArray, speeds: FloatArray)
             whole[speed, k, k] = frequencies[k] * frequencies[k]
         for i in range(y):
             for j in range(x):
-                tie = turning * gyroscopic[i, j]
-                whole[speed, j, x + i] = whole[speed, x + i, j] = tie * frequencies[x + i]
+                coupled = turning * gyroscopic[i, j]
+                whole[speed, j, x + i] = whole[speed, x + i, j] = coupled * frequencies[x + i]
                 for k in range(x):
-                    whole[speed, j, k] += tie * turning * gyroscopic[i, k]
+                    whole[speed, j, k] += coupled * turning * gyroscopic[i, k]
     return whole
 
 

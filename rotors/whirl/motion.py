@@ -1,9 +1,8 @@
-"""Complex motion of a shaft in both planes, continued exactly from the states at its nodes to any place.
+"""Complex motion of a shaft in both planes, continued exactly from its node states, and its strain energy.
 
-Strain energy of whirl modes in lengths of shaft, bearings and pedestals.
-
-In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. Meant here is the mean over one turn of
-the phase, with the growth or decay e^{Re λ t} left out, ¼ Re(q̂ᴴ K q̂): of the shaft
+In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. The strain energy of a length of shaft,
+a bearing or a pedestal is here the mean over one turn of the phase, with the growth or decay e^{Re λ t} left out,
+¼ Re(q̂ᴴ K q̂): of the shaft
 
     ¼ ∫ |f_x|²/(κGA + P) + |f_y|²/(κGA + P) + (|m_x|² + |m_y|²)/EI + g P (|β_x|² + |β_y|²) + |n|²/EA dz
 
@@ -46,8 +45,8 @@ class ShaftMotion:
 
     Attributes
     ----------
-    chain
-        Pieces and nodes of one plane.
+    shaft
+        Elements and nodes of one plane.
     eigenvalues, speeds
         (w,) complex: λ and Ω, rad/s.
     forward, backward
@@ -58,7 +57,7 @@ class ShaftMotion:
         The shaft's axial motion, discretised; None without any.
     """
 
-    chain: DiscretisedShaft
+    shaft: DiscretisedShaft
     eigenvalues: ComplexArray
     speeds: ComplexArray
     forward: ComplexArray
@@ -69,19 +68,19 @@ class ShaftMotion:
     @classmethod
     def of(
         cls,
-        chain: WhirlEquations,
+        equations: WhirlEquations,
         eigenvalues: ComplexArray,
         speeds: ComplexArray,
         solutions: ComplexArray,
         scale: FloatArray,
     ) -> "ShaftMotion":
         """Motions from solutions (w, order) and their unit of force (w,); blocks without equations are at rest."""
-        parts = chain.states(solutions, eigenvalues, speeds, scale)
+        parts = equations.states(solutions, eigenvalues, speeds, scale)
         for block in BLOCK_COORDINATES.keys() - parts.keys():
-            shape = (eigenvalues.size, chain.bending.nodes.size, 2 * len(BLOCK_COORDINATES[block]))
+            shape = (eigenvalues.size, equations.bending.nodes.size, 2 * len(BLOCK_COORDINATES[block]))
             parts[block] = np.zeros(shape, dtype=np.complex128)
-        rod = chain.axial if 0 in chain.blocks else None
-        return cls(chain.bending, eigenvalues, speeds, parts[1], parts[-1], parts[0], rod)
+        rod = equations.axial if 0 in equations.blocks else None
+        return cls(equations.bending, eigenvalues, speeds, parts[1], parts[-1], parts[0], rod)
 
     @property
     def count(self) -> int:
@@ -89,7 +88,7 @@ class ShaftMotion:
         return int(self.eigenvalues.size)
 
     def take(self, index: npt.ArrayLike) -> "ShaftMotion":
-        """Selected motions, in the order of the index."""
+        """Return selected motions, in the order of the index."""
         chosen = np.asarray(index)
         return replace(
             self,
@@ -101,7 +100,7 @@ class ShaftMotion:
         )
 
     def joined(self, other: "ShaftMotion") -> "ShaftMotion":
-        """These motions followed by others of the same shaft."""
+        """Join these motions and others of the same shaft."""
         return replace(
             self,
             eigenvalues=np.concatenate([self.eigenvalues, other.eigenvalues]),
@@ -133,13 +132,13 @@ class ShaftMotion:
         """
         from rotors.whirl.shooting_matrix_kernels import inertia_shares
 
-        chain = self.chain
-        along = chain.inertia_weights
-        pieces = chain.table.lengths, chain.table.coefficients, chain.element
+        shaft = self.shaft
+        along = shaft.inertia_weights
+        elements = shaft.table.lengths, shaft.table.coefficients, shaft.element
         shares = []
         for block, states in ((1, self.forward), (-1, self.backward)):
             squared = self._squared(block)
-            shares.append(inertia_shares(pieces, *squared, states, SQUARE_FRACTIONS, along, chain.node_inertia))
+            shares.append(inertia_shares(elements, *squared, states, SQUARE_FRACTIONS, along, shaft.node_inertia))
         return np.stack([*shares, self._axial_inertia()], axis=-1)
 
     def _axial_inertia(self) -> FloatArray:
@@ -147,11 +146,11 @@ class ShaftMotion:
         rod = self.rod
         if rod is None:
             return np.zeros(self.count)
-        pieces = np.repeat(np.arange(rod.element.size), SQUARE_FRACTIONS.size)
+        numbers = np.repeat(np.arange(rod.element.size), SQUARE_FRACTIONS.size)
         fractions = np.tile(SQUARE_FRACTIONS, rod.element.size)
-        transfer_matrices = rod.transfer_matrices_to(pieces, fractions, -(self.eigenvalues**2))
-        along = np.einsum("zwj,wzj->wz", transfer_matrices[:, :, 0], self.axial[:, pieces])
-        mass = rod.coefficients_at(pieces, fractions)[:, 1]
+        transfer_matrices = rod.transfer_matrices_to(numbers, fractions, -(self.eigenvalues**2))
+        along = np.einsum("zwj,wzj->wz", transfer_matrices[:, :, 0], self.axial[:, numbers])
+        mass = rod.coefficients_at(numbers, fractions)[:, 1]
         weight = np.tile(SQUARE_WEIGHTS, rod.element.size) * np.repeat(rod.lengths, SQUARE_FRACTIONS.size) * mass
         nodal = np.abs(self.axial[:, :, 0]) ** 2 @ rod.node_inertia[:, 0]
         return np.asarray(np.abs(along) ** 2 @ weight + nodal)
@@ -176,29 +175,29 @@ class ShaftMotion:
         RotorError
             A position is not on the shaft.
         """
-        positions = require_positions(self.chain.nodes, z)
-        pieces, fractions = self.chain.places(positions)
+        positions = require_positions(self.shaft.nodes, z)
+        numbers, fractions = self.shaft.places(positions)
         return (
-            self._inside(1, self.forward, pieces, fractions),
-            self._inside(-1, self.backward, pieces, fractions),
+            self._inside(1, self.forward, numbers, fractions),
+            self._inside(-1, self.backward, numbers, fractions),
         )
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex x and y at positions z (m), both (w, len(z)), m."""
         forward, backward = self.at(z)
-        unit = self.chain.displacement_unit[0]
+        unit = self.shaft.displacement_unit[0]
         return planes(forward[:, :, 0] * unit, backward[:, :, 0] * unit)
 
     def evaluate_slopes(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex slopes of the section in x and in y at positions z (m), both (w, len(z)), rad."""
         forward, backward = self.at(z)
-        unit = self.chain.displacement_unit[1]
+        unit = self.shaft.displacement_unit[1]
         return planes(forward[:, :, 1] * unit, backward[:, :, 1] * unit)
 
     def section_loads(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex shear forces (N) and bending moments (N·m) at positions z (m), both (2, w, len(z)) over x and y."""
         forward, backward = self.at(z)
-        unit = self.chain.displacement_unit
+        unit = self.shaft.displacement_unit
         shear = planes(forward[:, :, 2] / unit[0], backward[:, :, 2] / unit[0])
         moment = planes(forward[:, :, 3] / unit[1], backward[:, :, 3] / unit[1])
         return np.array(shear), np.array(moment)
@@ -206,20 +205,20 @@ class ShaftMotion:
     def axial_at(self, z: npt.ArrayLike) -> ComplexArray:
         """Axial states (w, len(z), 2) at positions z (m) of a shaft that moves along its axis, in scaled units."""
         assert self.rod is not None
-        pieces, fractions = self.rod.places(require_positions(self.rod.nodes, z))
-        transfer_matrices = self.rod.transfer_matrices_to(pieces, fractions, -(self.eigenvalues**2))
-        return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, self.axial[:, pieces]))
+        numbers, fractions = self.rod.places(require_positions(self.rod.nodes, z))
+        transfer_matrices = self.rod.transfer_matrices_to(numbers, fractions, -(self.eigenvalues**2))
+        return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, self.axial[:, numbers]))
 
-    def _inside(self, block: int, states: ComplexArray, pieces: IntArray, fractions: FloatArray) -> ComplexArray:
-        transfer_matrices = self.chain.transfer_matrices_to(pieces, fractions, *self._squared(block))
-        return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, states[:, pieces]))
+    def _inside(self, block: int, states: ComplexArray, numbers: IntArray, fractions: FloatArray) -> ComplexArray:
+        transfer_matrices = self.shaft.transfer_matrices_to(numbers, fractions, *self._squared(block))
+        return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, states[:, numbers]))
 
     def _squared(self, block: int) -> tuple[ComplexArray, ComplexArray]:
         return squared_frequencies(block, self.eigenvalues, self.speeds)
 
 
 def planes(forward: ComplexArray, backward: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """x and y of circular coordinates r± = (x ± i y)/√2."""
+    """Return x and y of circular coordinates r± = (x ± i y)/√2."""
     root = np.sqrt(0.5)
     return np.asarray(root * (forward + backward)), np.asarray(-1j * root * (forward - backward))
 
@@ -251,7 +250,7 @@ def strain_shares(motion: ShaftMotion, bearings: Sequence[Bearing], edges: npt.A
     RotorError
         A position is not on the shaft.
     """
-    lengths = _along(motion, require_positions(motion.chain.nodes, edges))
+    lengths = _along(motion, require_positions(motion.shaft.nodes, edges))
     held, grounded = np.zeros((2, motion.count, len(bearings)))
     for k, bearing in enumerate(bearings):
         held[:, k], grounded[:, k] = _in_springs(motion, bearing)
@@ -262,12 +261,12 @@ def strain_shares(motion: ShaftMotion, bearings: Sequence[Bearing], edges: npt.A
 
 def _along(motion: ShaftMotion, edges: FloatArray) -> FloatArray:
     """Four times the mean strain energy of the shaft between the edges, (w, e), J."""
-    chain = motion.chain
-    cuts = merged_positions(chain.nodes, edges.tolist())
+    shaft = motion.shaft
+    cuts = merged_positions(shaft.nodes, edges.tolist())
     widths = np.diff(cuts)
     places = (cuts[:-1, None] + widths[:, None] * GAUSS_FRACTIONS).ravel()
-    weights = (widths[:, None] / chain.length_unit * GAUSS_WEIGHTS).ravel()
-    bent = chain.coefficients_at(*chain.places(places)) * weights[:, None]
+    weights = (widths[:, None] / shaft.length_unit * GAUSS_WEIGHTS).ravel()
+    bent = shaft.coefficients_at(*shaft.places(places)) * weights[:, None]
     density = np.zeros((motion.count, places.size))
     for states in motion.at(places):
         squared = np.abs(states) ** 2

@@ -1,9 +1,9 @@
 """Planar basis of whirl: modes of one plane, and static responses to loads at bearings and discs.
 
-`rotors.whirl_basis` gives the same space as certified modes. Starting values need less: any mass-orthonormal basis of
-the space gives the same, and the roots have a proof of their own. Here the modes' fields and the responses are made
-orthonormal one after another, by Gram-Schmidt on their values at the quadrature points, so that the small part that a
-response adds to the modes keeps its digits.
+`rotors.whirl.modal_projection.whirl_basis` gives the same space as certified modes. Starting values need less: any
+mass-orthonormal basis of the space gives the same, and the roots have a proof of their own. Here the modes'
+fields and the responses are made orthonormal one after another, by Gram-Schmidt on their values at the quadrature
+points, so that the small part that a response adds to the modes keeps its digits.
 """
 
 from collections.abc import Sequence
@@ -60,7 +60,7 @@ class PlanarBasis:
 
     @classmethod
     def of_modes(cls, modes: LateralModes, bearings: Sequence[Bearing]) -> "PlanarBasis":
-        """The basis of certified modes and attachment modes, at the given bearings."""
+        """Return the basis of certified modes and attachment modes, at the given bearings."""
         displacement = slope = np.zeros((modes.count, 0))
         if bearings:
             displacement, slope = modes.evaluate([bearing.at for bearing in bearings])
@@ -92,19 +92,20 @@ def loaded_places(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[list[float
 
 
 def modes_needed(count: int | None, available: float) -> int:
-    """Number of planar modes in the basis for ``count`` whirl modes."""
+    """Return the number of planar modes in the basis for ``count`` whirl modes."""
     return int(min(max((count or DEFAULT_COUNT) // 2 + SPARE_MODES, LEAST_MODES), available))
 
 
 def planar_basis(
     rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
 ) -> PlanarBasis:
-    """The space of `rotors.whirl_basis`, without its proof.
+    """Assemble the planar basis: the space of `rotors.whirl.modal_projection.whirl_basis`, without its proof.
 
     Raises
     ------
     RotorError, IncompleteModesError
-        As `rotors.whirl_basis`, of wrong arguments, or where the root count does not reach the modes.
+        As `rotors.whirl.modal_projection.whirl_basis`, of wrong arguments, or where the root count does not
+        reach the modes.
     """
     from rotors.transfer_matrix.mode_shape_kernels import energy_rows, energy_weights, mass_orthonormal, null_states
 
@@ -112,30 +113,30 @@ def planar_basis(
     require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
     supports = mean_supports(bearings)
     require_unbuckled(rotor, supports)
-    chain, frequencies = _lowest_modes(bending_shaft(rotor, supports), frequency_limit, count)
-    zeros = min(chain.rigid_shapes.shape[0], frequencies.size)
+    shaft, frequencies = _lowest_modes(bending_shaft(rotor, supports), frequency_limit, count)
+    zeros = min(shaft.rigid_shapes.shape[0], frequencies.size)
     elastic = frequencies[zeros:]
     forces, moments = loaded_places(rotor, bearings)
-    nodes = [chain.node_at(place) for place in forces]
-    loads = [(node, 0) for node in nodes] + [(chain.node_at(place), 1) for place in moments]
+    nodes = [shaft.node_at(place) for place in forces]
+    loads = [(node, 0) for node in nodes] + [(shaft.node_at(place), 1) for place in moments]
     loads = list(dict.fromkeys(loads))
     # As in `rotors.modes.residual_modes`, a free shaft answers a little below zero.
     shift = -((FREE_SHIFT * (float(elastic[0]) if elastic.size else 1.0)) ** 2) if zeros else 0.0
     squared = shared_roots(elastic) ** 2
-    states = [null_states(squared, *shaft_arrays(chain))]
+    states = [null_states(squared, *shaft_arrays(shaft))]
     if zeros:
-        states.insert(0, rigid_states(chain)[:zeros])
+        states.insert(0, rigid_states(shaft)[:zeros])
     if loads:
-        states.append(responses(chain, loads, shift))
+        states.append(responses(shaft, loads, shift))
     squared = np.concatenate([np.zeros(zeros), squared, np.full(len(loads), shift)])
     fields = np.concatenate(states) if len(states) > 1 else states[0]
-    arrays = chain.table.lengths, chain.table.coefficients, chain.element
+    arrays = shaft.table.lengths, shaft.table.coefficients, shaft.element
     # The bearings' springs are added by the projection.
-    nodal = np.zeros_like(chain.node_stiffness), chain.node_inertia, chain.node_polar
+    nodal = np.zeros_like(shaft.node_stiffness), shaft.node_inertia, shaft.node_polar
     mass, polar, stiffness = energy_weights(GAUSS_FRACTIONS, GAUSS_WEIGHTS, *arrays, *nodal)
     motion, strain = np.empty((squared.size, mass.size)), np.empty((squared.size, stiffness.size))
     energy_rows(squared, fields, GAUSS_FRACTIONS, *arrays, motion, strain)
-    at_bearings = fields[:, nodes, :2] * chain.displacement_unit
+    at_bearings = fields[:, nodes, :2] * shaft.displacement_unit
     shapes = np.ascontiguousarray(at_bearings.reshape(squared.size, -1))
     kept = mass_orthonormal(motion, strain, shapes, mass, NOTHING_LEFT)
     motion, strain, shapes = motion[:kept], strain[:kept], shapes[:kept]
@@ -151,19 +152,19 @@ def planar_basis(
 
 
 def _lowest_modes(
-    line: ContinuousShaft, frequency_limit: float | None, count: int | None
+    continuous_shaft: ContinuousShaft, frequency_limit: float | None, count: int | None
 ) -> tuple[DiscretisedShaft, FloatArray]:
-    """A discretised shaft and its lowest natural frequencies, rad/s, those that the basis needs."""
-    available = line.available_modes
+    """Return a discretised shaft and its lowest natural frequencies, rad/s, those that the basis needs."""
+    available = continuous_shaft.available_modes
     if frequency_limit is not None:
         require_finite("frequency_limit", frequency_limit, positive=True)
         highest = BASIS_REACH * frequency_limit
-        chain = line.cut(highest)
-        below = wittrick_williams_count(chain, highest)
+        shaft = continuous_shaft.cut(highest)
+        below = wittrick_williams_count(shaft, highest)
         if below >= min(LEAST_MODES, available):
-            return chain, lowest_natural_frequencies(chain, below, highest)
+            return shaft, lowest_natural_frequencies(shaft, below, highest)
         wanted = int(min(LEAST_MODES, available))
     else:
         wanted = modes_needed(count, available)
-    chain = shaft_with_modes(line, wanted)
-    return chain, lowest_natural_frequencies(chain, wanted, chain.highest)
+    shaft = shaft_with_modes(continuous_shaft, wanted)
+    return shaft, lowest_natural_frequencies(shaft, wanted, shaft.highest)

@@ -1,18 +1,18 @@
-"""Shooting matrix of the whirl equations: a table from which compiled code makes its entries for any λ.
+"""Shooting matrix of the whirl equations: the order of its rows and columns, and the table of its entries.
 
-Beside the transfer matrices of runs of pieces every entry is, with Ω the speed of rotation and s the unit of force,
+From the table compiled code makes the entries for any λ. Beside the transfer matrices of runs of shaft elements every
+entry is, with Ω the speed of rotation and s the unit of force,
 
     (c₀ + c₁ λ + c₂ λ² + c₃ λΩ + c₄ s) / (d₁ s + d₀):
 
 inertias have c₂, c₃ and d₁; bearings and pedestals c₀, c₁, c₂ over s plus the largest stiffness of their row, so that
 stiff and soft directions are scaled alike; their forces c₄. Unit entries and directions are constant.
 
-Order of the unknowns (columns) and equations (rows) of the shooting matrix.
-
-Elimination goes from left to right, and its cost is its fill-in. At every node the unknowns of bearings come first,
-then those of one block after another, displacements before forces; the equations of a node stand in the order of the
-blocks too, followed by those of bearings. So a bearing's coupling is eliminated before the next run begins, and the two
-senses hardly fill in each other's rows. Right of the last node there is no force.
+Unknowns are columns, equations rows. Elimination goes from left to right, and its cost is its fill-in. At every node
+the unknowns of bearings come first, then those of one block after another, displacements before forces; the equations
+of a node stand in the order of the blocks too, followed by those of bearings. So a bearing's coupling is eliminated
+before the next run begins, and the two senses hardly fill in each other's rows. Right of the last node there is no
+force.
 """
 
 from collections.abc import Sequence
@@ -51,7 +51,7 @@ class Layout:
         (r + 1, n) and (r, n): columns of the state right of a node.
     continuity, balances
         (r, n) and (r + 1, n): rows of the displacements at every node but the first, and of the forces at every node.
-    ties
+    bearings
         For every bearing.
     """
 
@@ -60,19 +60,19 @@ class Layout:
     forces: IntArray
     continuity: IntArray
     balances: IntArray
-    ties: tuple[BearingPlaces, ...]
+    bearings: tuple[BearingPlaces, ...]
 
     @classmethod
-    def of(cls, blocks: tuple[int, ...], kept: IntArray, ties: Sequence[NodeBearing]) -> "Layout":
+    def of(cls, blocks: tuple[int, ...], kept: IntArray, node_bearings: Sequence[NodeBearing]) -> "Layout":
         """Layout of the blocks at the nodes with unknowns, (r + 1,), and of the bearings at some of them."""
         widths = np.array([len(BLOCK_COORDINATES[block]) for block in blocks])
         n, width = int(widths.sum()), np.repeat(widths, widths)
         # A block's displacements and then its forces, behind those of the blocks before it.
         own = np.arange(n) + np.repeat(np.cumsum(widths) - widths, widths)
-        at = [int(kept.searchsorted(tie.node)) for tie in ties]
+        at = [int(kept.searchsorted(node_bearing.node)) for node_bearing in node_bearings]
         extra = np.zeros(kept.size, dtype=np.intp)
-        for node, tie in zip(at, ties, strict=True):
-            extra[node] += len(tie.directions) + len(tie.foot)
+        for node, node_bearing in zip(at, node_bearings, strict=True):
+            extra[node] += len(node_bearing.directions) + len(node_bearing.foot)
         # The first node has no displacement to meet, the last no force.
         columns = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n)])
         rows = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n) - n])
@@ -82,8 +82,8 @@ class Layout:
         behind = rows + 2 * n
         behind[0] = n
         places = []
-        for node, tie in zip(at, ties, strict=True):
-            m, f = len(tie.directions), len(tie.foot)
+        for node, node_bearing in zip(at, node_bearings, strict=True):
+            m, f = len(node_bearing.directions), len(node_bearing.foot)
             column, row = np.arange(columns[node], columns[node] + m + f), np.arange(behind[node], behind[node] + m + f)
             places.append(BearingPlaces(column[:m], column[m:], row[:m], row[m:]))
             columns[node] += m + f
@@ -119,8 +119,8 @@ class ShootingMatrix:
     blocks
         1 for r+, −1 for r−, 0 for z.
     beams, rods
-        Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct pieces, each piece's index among them, (p,), the
-        nodes with unknowns, between which pieces form a run, (r + 1,), and for each run the first equal one, (r,); no
+        Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct elements, the index of each among them, (p,), the
+        nodes with unknowns, between which elements form a run, (r + 1,), and for each run the first equal one, (r,); no
         rods without z.
     numerators, denominators
         (t, 5) complex and (t, 2): of the entries that follow those of the transfer matrices.
@@ -160,11 +160,11 @@ def shooting_matrix(
     bending: DiscretisedShaft,
     axial: DiscretisedShaft | None,
     blocks: tuple[int, ...],
-    ties: Sequence[NodeBearing],
+    node_bearings: Sequence[NodeBearing],
     kept: IntArray,
     layout: Layout,
 ) -> ShootingMatrix:
-    """The shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
+    """Assemble the shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
     first, terms, runs = 0, _Terms(), []
     states = np.stack([layout.displacements[:-1], layout.forces])
     reached = np.stack([layout.continuity, layout.balances[1:]])
@@ -177,9 +177,9 @@ def shooting_matrix(
     terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
     terms.add(layout.continuity, layout.displacements[1:], [1.0])
     terms.add(layout.balances[:-1], layout.forces, [1.0])
-    for tie, own_places in zip(ties, layout.ties, strict=True):
-        node = int(kept.searchsorted(tie.node))
-        _add_tie(terms, tie, layout.balances[node], layout.displacements[node], own_places)
+    for node_bearing, own_places in zip(node_bearings, layout.bearings, strict=True):
+        node = int(kept.searchsorted(node_bearing.node))
+        _add_node_bearing(terms, node_bearing, layout.balances[node], layout.displacements[node], own_places)
     places, numerators, denominators, constants = terms.parted()
     rows, columns = np.concatenate(runs + places, axis=1)
     return ShootingMatrix(
@@ -193,16 +193,16 @@ def shooting_matrix(
     )
 
 
-def _runs(chain: DiscretisedShaft, kept: IntArray) -> Runs:
+def _runs(shaft: DiscretisedShaft, kept: IntArray) -> Runs:
     first: dict[bytes, int] = {}
-    pieces = [chain.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
-    like = [first.setdefault(same, run) for run, same in enumerate(pieces)]
-    return chain.table.lengths, chain.table.coefficients, chain.element, kept, np.array(like, dtype=np.intp)
+    elements = [shaft.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
+    like = [first.setdefault(same, run) for run, same in enumerate(elements)]
+    return shaft.table.lengths, shaft.table.coefficients, shaft.element, kept, np.array(like, dtype=np.intp)
 
 
-def _inertias(chain: DiscretisedShaft, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
+def _inertias(shaft: DiscretisedShaft, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
     """−M and the gyroscopic term of λΩ, (r + 1, n) both, of the nodes' own inertias."""
-    inertia, polar = chain.node_inertia[kept], chain.node_polar[kept]
+    inertia, polar = shaft.node_inertia[kept], shaft.node_polar[kept]
     squared, turning = [], []
     for block in blocks:
         squared += [-inertia[:, 0], -inertia[:, -1]][: len(BLOCK_COORDINATES[block])]
@@ -210,19 +210,26 @@ def _inertias(chain: DiscretisedShaft, kept: IntArray, blocks: tuple[int, ...]) 
     return np.stack(squared, axis=1), np.stack(turning, axis=1)
 
 
-def _add_tie(terms: "_Terms", tie: NodeBearing, balance: IntArray, node: IntArray, places: BearingPlaces) -> None:
+def _add_node_bearing(
+    terms: "_Terms", node_bearing: NodeBearing, balance: IntArray, node: IntArray, places: BearingPlaces
+) -> None:
     """Add the entries of a bearing's forces g and its pedestal's displacements p at a node."""
-    shared = list(tie.foot)
-    held = _over(tie.stiffness)
-    grounded = _over(tie.foot_stiffness)
+    shared = list(node_bearing.foot)
+    held = _over(node_bearing.stiffness)
+    grounded = _over(node_bearing.foot_stiffness)
     force, foot = places.force_rows, places.foot_rows
-    terms.add(balance[:, None], places.forces, [-tie.frame.conj().T])
-    terms.add(force[:, None], node, [-tie.stiffness @ tie.frame, -tie.damping @ tie.frame], held[:, None])
+    terms.add(balance[:, None], places.forces, [-node_bearing.frame.conj().T])
+    terms.add(
+        force[:, None],
+        node,
+        [-node_bearing.stiffness @ node_bearing.frame, -node_bearing.damping @ node_bearing.frame],
+        held[:, None],
+    )
     terms.add(force, places.forces, [0.0, 0.0, 0.0, 0.0, 1.0], held)
     if shared:
-        felt = [tie.stiffness[:, shared], tie.damping[:, shared]]
+        felt = [node_bearing.stiffness[:, shared], node_bearing.damping[:, shared]]
         terms.add(force[:, None], places.feet, felt, held[:, None])
-        ground = [tie.foot_stiffness, tie.foot_damping, tie.foot_mass]
+        ground = [node_bearing.foot_stiffness, node_bearing.foot_damping, node_bearing.foot_mass]
         terms.add(foot[:, None], places.feet, ground, grounded[:, None])
         terms.add(foot, places.forces[shared], [0.0, 0.0, 0.0, 0.0, -1.0], grounded)
 

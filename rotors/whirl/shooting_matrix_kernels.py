@@ -1,10 +1,6 @@
-"""Compiled shooting matrix of whirl: its entries, determinant and node states, as laid out by
-`rotors.whirl.shooting_matrix`.
+"""Compiled shooting matrix of whirl: its entries, determinant and node states, and kinetic-energy shares.
 
-Importing this module imports numba.
-
-Compiled kinetic-energy shares of complex motions, for `rotors.whirl.motion`.
-
+The matrix is laid out by `rotors.whirl.shooting_matrix`; the shares of complex motions serve `rotors.whirl.motion`.
 Importing this module imports numba.
 """
 
@@ -20,8 +16,8 @@ from rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices,
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-# Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct pieces, each piece's index among them, (p,), the nodes
-# between which pieces form a run, (r + 1,), and for each run the first equal one, (r,).
+# Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct elements, the index of each among them, (p,), the nodes
+# between which elements form a run, (r + 1,), and for each run the first equal one, (r,).
 Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
 # Blocks (of which 1 and −1 are bending, 0 axial motion), beams, rods, numerators (t, 5), denominators (t, 2) and
 # constants (c,).
@@ -48,7 +44,7 @@ def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
 def _put_runs(
     runs: Runs, translation: complex, rotation: complex, scale: float, transfer_matrices: Any, out: ComplexArray
 ) -> int:
-    """−T of every run of pieces, forces in the given unit, at the start of ``out``; returns the number of entries."""
+    """−T of every run of elements, forces in the given unit, at the start of ``out``; returns the number of entries."""
     lengths, given, element, kept, like = runs
     whole, over = np.ones(1), 1.0 / scale
     size, half, spare = transfer_matrices.shape[2], transfer_matrices.shape[2] // 2, lengths.size
@@ -62,10 +58,12 @@ def _put_runs(
                 entry += 1
             continue
         product = element[kept[run]]
-        for piece in range(kept[run] + 1, kept[run + 1]):
+        for number in range(kept[run] + 1, kept[run + 1]):
             # Two spare matrices take turns.
             following = spare + 1 if product == spare else spare
-            _times(transfer_matrices[element[piece], 0], transfer_matrices[product, 0], transfer_matrices[following, 0])
+            _times(
+                transfer_matrices[element[number], 0], transfer_matrices[product, 0], transfer_matrices[following, 0]
+            )
             product = following
         for i in range(size):
             for j in range(size):
@@ -79,7 +77,7 @@ def _put_runs(
 
 @inner(error_model="python")
 def force_unit(at: complex, mass: float) -> float:
-    """Unit of force for roots near λ, as `rotors.whirl.equations.WhirlEquations.force_scale`."""
+    """Return the unit of force for roots near λ, as `rotors.whirl.equations.WhirlEquations.force_scale`."""
     return min(max((at.real**2 + at.imag**2) * mass, 1e-30), 1.0)
 
 
@@ -100,7 +98,7 @@ def scratch(table: Table, size: int) -> tuple[ComplexArray, ComplexArray, Comple
 def put_entries(
     at: complex, speed: complex, scale: float, table: Table, beams: ComplexArray, rods: ComplexArray, out: ComplexArray
 ) -> None:
-    """The varying entries at one λ, speed Ω and unit of force; all arrays are those of `scratch`."""
+    """Put the varying entries at one λ, speed Ω and unit of force into ``out``; all arrays are those of `scratch`."""
     blocks, beam_runs, rod_runs, numerators, denominators, _ = table
     squared, turning = at * at, speed * at
     first = 0
@@ -180,7 +178,7 @@ def node_states(
 
 @counted(error_model="python")
 def inertia_shares(
-    pieces: tuple[FloatArray, FloatArray, IntArray],
+    elements: tuple[FloatArray, FloatArray, IntArray],
     translation: ComplexArray,
     rotation: ComplexArray,
     states: ComplexArray,
@@ -190,10 +188,10 @@ def inertia_shares(
 ) -> FloatArray:
     """Weighted sums of |r|² and |β|² over Gauss points and nodes, for every motion, (w,).
 
-    ``states`` (w, p + 1, 4) continue from the left end of every piece at ω² of (w,) ``translation`` and ``rotation``;
-    the weights are ``along`` (e, g, 2) at the ``fractions`` (g,) of the pieces and ``nodal`` (p + 1, 2).
+    ``states`` (w, p + 1, 4) continue from the left end of every element at ω² of (w,) ``translation`` and ``rotation``;
+    the weights are ``along`` (e, g, 2) at the ``fractions`` (g,) of the elements and ``nodal`` (p + 1, 2).
     """
-    lengths, given, element = pieces
+    lengths, given, element = elements
     transfer_matrices = np.empty((lengths.size, fractions.size, 4, 4), dtype=np.complex128)
     totals = np.zeros(states.shape[0])
     for w in range(states.shape[0]):
@@ -201,8 +199,8 @@ def inertia_shares(
             element_transfer_matrices(
                 lengths[e], given[e], translation[w], rotation[w], fractions, transfer_matrices[e]
             )
-        for piece in range(element.size):
-            state, e = states[w, piece], element[piece]
+        for number in range(element.size):
+            state, e = states[w, number], element[number]
             for g in range(fractions.size):
                 transfer = transfer_matrices[e, g]
                 for row in range(2):

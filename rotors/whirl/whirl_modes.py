@@ -23,7 +23,7 @@ from rotors.model.shaft import Rotor
 from rotors.modes.lateral import LateralModes
 from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, is_conservative, oscillating
 from rotors.whirl.eigenvalues import ExactRoots, Speed, constant_speed, refine_roots
-from rotors.whirl.equations import WhirlEquations, reach_step, whirl_chain, whirl_reach
+from rotors.whirl.equations import WhirlEquations, reach_step, whirl_equations_in_runs, whirl_reach
 from rotors.whirl.modal_projection import Pencil, basis_for, pencils
 from rotors.whirl.motion import ShaftMotion, StrainShares, strain_shares
 from rotors.whirl.planar_basis import DEFAULT_COUNT, PlanarBasis
@@ -170,7 +170,8 @@ class WhirlSolver:
     rotor, bearings
         The rotor and its bearings; tables over speed are read at each speed.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings; without it the solver makes its own.
+        From `rotors.whirl.modal_projection.whirl_basis`, of the same rotor and bearings; without it the
+        solver makes its own.
 
     Examples
     --------
@@ -184,6 +185,7 @@ class WhirlSolver:
     _held: dict[tuple[Hashable, ...], object] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Keep the bearings as a tuple."""
         object.__setattr__(self, "bearings", tuple(self.bearings))
 
     def modes(self, speed: float, *, frequency_limit: float | None = None, count: int | None = None) -> WhirlModes:
@@ -212,10 +214,10 @@ class WhirlSolver:
         )
 
     def equations(self, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> WhirlEquations:
-        """Exact equations of some tied motions on bearings of constant coefficients; see `whirl_chain`."""
+        """Exact equations of coupled motions on bearings of constant coefficients; see `whirl_equations_in_runs`."""
         return self._hold(
             ("equations", tuple(bearings), blocks, reach_step(highest)),
-            lambda: whirl_chain(self.rotor, bearings, blocks, highest),
+            lambda: whirl_equations_in_runs(self.rotor, bearings, blocks, highest),
         )
 
     def is_conservative_rotor(self, bearings: Sequence[Bearing]) -> bool:
@@ -258,7 +260,7 @@ def solve_whirl(
     count
         Number of modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with fewer gives all.
     basis
-        From `rotors.whirl_basis`, of the same rotor and bearings; without it one is made.
+        From `rotors.whirl.modal_projection.whirl_basis`, of the same rotor and bearings; without it one is made.
 
     Raises
     ------
@@ -276,7 +278,7 @@ class WhirlRoots:
 
     Attributes
     ----------
-    chains, parts
+    equation_sets, parts
         The equations of the sets, and their roots.
     speed
         Speed of rotation.
@@ -284,7 +286,7 @@ class WhirlRoots:
         (w,): index of each root among the roots of all sets.
     """
 
-    chains: Sequence[WhirlEquations]
+    equation_sets: Sequence[WhirlEquations]
     parts: Sequence[ExactRoots]
     speed: Speed
     order: npt.NDArray[np.intp]
@@ -298,8 +300,8 @@ class WhirlRoots:
     def motion(self) -> ShaftMotion:
         """The exact motion of every root, without normalisation."""
         motions = [
-            ShaftMotion.of(chain, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
-            for chain, one in zip(self.chains, self.parts, strict=True)
+            ShaftMotion.of(equations, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
+            for equations, one in zip(self.equation_sets, self.parts, strict=True)
         ]
         motion = motions[0]
         for more in motions[1:]:
@@ -321,7 +323,7 @@ def certified_whirl(
 
     ``starts`` are starting values for every set of coupled motions.
 
-    ``turning`` is the speed at which pieces must be short enough, rad/s; None where it follows the frequency.
+    ``turning`` is the speed at which elements must be short enough, rad/s; None where it follows the frequency.
     """
     from rotors.whirl.eigenvalue_kernels import ascending
 
@@ -334,9 +336,12 @@ def certified_whirl(
         reach = START_REACH * limit
     highest = max(START_REACH * reach, 10.0 * least)
     highest = whirl_reach(highest, highest if turning is None else turning)
-    chains = [solver.equations(bearings, blocks, highest) for blocks, _ in starts]
+    equation_sets = [solver.equations(bearings, blocks, highest) for blocks, _ in starts]
     near = [bisect_right(own, reach) for own in sizes]
-    refined = [refine_roots(chain, values[:k], speed) for chain, values, k in zip(chains, kept, near, strict=True)]
+    refined = [
+        refine_roots(equations, values[:k], speed)
+        for equations, values, k in zip(equation_sets, kept, near, strict=True)
+    ]
     if limit is None:
         assert count is not None
         sector = oscillating(least, _limit_behind(refined, least, count))
@@ -344,14 +349,14 @@ def certified_whirl(
         sector = oscillating(least, limit)
     conservative = solver.is_conservative_rotor(bearings)
     parts = [
-        certified_roots(chain, roots, speed, sector, conservative, values[k:])
-        for chain, roots, values, k in zip(chains, refined, kept, near, strict=True)
+        certified_roots(equations, roots, speed, sector, conservative, values[k:])
+        for equations, roots, values, k in zip(equation_sets, refined, kept, near, strict=True)
     ]
     found = _all([roots.eigenvalues for roots, _ in parts])
     order = np.lexsort((found.imag, np.abs(found)))[:count]
     proofs = [proof for _, proof in parts]
     certificate = combined_certificate(proofs, sector.most, proofs[0].method)
-    return WhirlRoots(chains, [roots for roots, _ in parts], speed, order), certificate
+    return WhirlRoots(equation_sets, [roots for roots, _ in parts], speed, order), certificate
 
 
 def is_conservative_rotor(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
@@ -371,7 +376,7 @@ def _reach_behind(ascending: Sequence[float], count: int) -> float:
 
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
-    """A frequency in a gap above the lowest ``count`` roots, or above all of them."""
+    """Return a frequency in a gap above the lowest ``count`` roots, or above all of them."""
     from rotors.whirl.eigenvalue_kernels import ascending
 
     sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, NO_OSCILLATION)).tolist()

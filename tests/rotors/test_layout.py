@@ -40,10 +40,10 @@ def test_every_place_is_taken_once(kind: str, pedestal: Pedestal | None) -> None
         columns = [
             layout.displacements,
             layout.forces,
-            *(place for tie in layout.ties for place in (tie.forces, tie.feet)),
+            *(place for tie in layout.bearings for place in (tie.forces, tie.feet)),
         ]
         rows = [layout.continuity, layout.balances]
-        rows += [place for tie in layout.ties for place in (tie.force_rows, tie.foot_rows)]
+        rows += [place for tie in layout.bearings for place in (tie.force_rows, tie.foot_rows)]
         for places in (columns, rows):
             taken = np.sort(np.concatenate([one.ravel() for one in places]))
             np.testing.assert_array_equal(taken, np.arange(layout.order))
@@ -58,7 +58,7 @@ def test_every_place_is_taken_once(kind: str, pedestal: Pedestal | None) -> None
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_determinant_is_that_of_any_other_order(kind: str) -> None:
     for chain in chains_of(KINDS[kind], None):
-        logarithm = chain.entries.log_determinants(AT, SPEED, chain.force_scale(AT))[0]
+        logarithm = chain.shooting_matrix.log_determinants(AT, SPEED, chain.force_scale(AT))[0]
         sign, size = np.linalg.slogdet(dense(chain))
         assert logarithm.real == pytest.approx(size, rel=1e-12)
         assert np.exp(1j * logarithm.imag) == pytest.approx(sign, abs=1e-11)
@@ -66,7 +66,7 @@ def test_the_determinant_is_that_of_any_other_order(kind: str) -> None:
 
 def test_no_row_reaches_further_than_from_one_state_to_the_next() -> None:
     (chain,) = chains_of(UNLIKE, None)
-    n, ties = chain.layout.displacements.shape[1], [tie.forces.size + tie.feet.size for tie in chain.layout.ties]
+    n, ties = chain.layout.displacements.shape[1], [tie.forces.size + tie.feet.size for tie in chain.layout.bearings]
     # From the first of a sense's four unknowns to the last of them at the next node, with the other sense and the ties
     # between, two of which stand at one node.
     widest = 2 * n + ties[1] + ties[2] + 3
@@ -80,8 +80,8 @@ def test_equal_runs_are_multiplied_once_and_no_others() -> None:
     steps = [Segment(0.25, 0.05 + 0.01 * (number // 2 == 1), 0.0, STEEL) for number in range(6)]
     for rotor, expected in ((PLAIN, [0, 0, 0]), (Rotor("stepped", steps, DISCS), [0, 1, 0])):
         chain = whirl_equations(rotor, bearings, (1, -1), 1e3).in_runs()
-        *runs, like = chain.entries.beams
+        *runs, like = chain.shooting_matrix.beams
         np.testing.assert_array_equal(like, expected)
-        apart = replace(chain.entries, beams=(*runs, np.arange(like.size)))
+        apart = replace(chain.shooting_matrix, beams=(*runs, np.arange(like.size)))
         scale = chain.force_scale(AT)
         np.testing.assert_array_equal(chain.values(AT, SPEED, scale), apart.values(AT, SPEED, scale))

@@ -16,7 +16,7 @@ DISTANCES = np.logspace(-3.0, -13.0, 81)
 @pytest.mark.parametrize("mode", range(6))
 def test_vectors_do_not_depend_on_where_the_iteration_began(mode: int) -> None:
     whirl = solve_whirl(ROTOR, BEARINGS, 400.0, count=6).roots
-    (chain,) = whirl.chains
+    (chain,) = whirl.equation_sets
     starts = whirl.eigenvalues[mode] * (1.0 + DISTANCES * np.exp(1j))
     found = refine_alone(chain, starts, random_vectors(starts.size, chain.pattern.order), whirl.speed)
     np.testing.assert_allclose(found.eigenvalues, whirl.eigenvalues[mode], rtol=1e-13)

@@ -6,7 +6,7 @@ import pytest
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve_whirl
 from rotors.whirl.completeness import NO_OSCILLATION
 from rotors.whirl.eigenvalues import refine_each
-from rotors.whirl.equations import whirl_chain
+from rotors.whirl.equations import whirl_equations_in_runs
 from rotors.whirl.modal_projection import Pencil, basis_for, pencils
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -82,7 +82,7 @@ def test_whirl_on_a_damped_pedestal_is_what_starts_of_the_whole_eigenproblem_lea
     assert modes.certificate.complete
     starts = by_whole_systems(one)[2]
     starts = starts[starts.imag > NO_OSCILLATION * np.abs(starts)]
-    chain = whirl_chain(ROTOR, held, one.blocks, 2.0 * modes.certificate.limit)
+    chain = whirl_equations_in_runs(ROTOR, held, one.blocks, 2.0 * modes.certificate.limit)
     roots = refine_each(chain, starts, np.full(starts.size, SPEEDS[2])).eigenvalues
     lost = np.abs(roots / modes.eigenvalues[:, None] - 1.0).min(axis=1)
     np.testing.assert_allclose(lost, 0.0, atol=1e-12)
