@@ -326,7 +326,7 @@ class ContactConnector:
         Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
     drives : bool
         Whether these flanks carry the mean load.
-    greatest_compression : float
+    compression_limit : float
         Largest compression that the teeth can follow [m]; a motion that exceeds it is refused.
     sliding : Sliding or None
         Friction, which adds μ Σ ± F_j (a + x_j b) to what the pairs' forces F_j do along d; None for none.

@@ -169,7 +169,7 @@ def order_map(
 
     Parameters
     ----------
-    turned : TurnedSignal
+    turned : AngleSignal
     turns, step : int
         Length of a window, and distance to the next, in revolutions.
     window : {"uniform", "hann"}

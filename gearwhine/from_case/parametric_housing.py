@@ -277,7 +277,7 @@ class HousingAtParameters:
 
     Attributes
     ----------
-    designs : HousingDesigns
+    designs : ParametricHousing
         The parametric housing.
     coordinates : ndarray, shape (n_parameters,)
     case : Case

@@ -207,7 +207,7 @@ def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -
 
     Parameters
     ----------
-    start : HousingDesign
+    start : HousingAtParameters
     effort : Effort
         Of the update.
     count : int
@@ -363,11 +363,11 @@ class SolvedUpdate:
     Attributes
     ----------
     fitted : FittedCase
-    before, after : HousingDesign
+    before, after : HousingAtParameters
         On the box's own mesh.
     misfit_before, misfit_after : Misfit
         Theirs.
-    start : HousingDesign
+    start : HousingAtParameters
         Where the search began, on its coarser mesh.
     target : Target
     left_out : int
@@ -375,7 +375,7 @@ class SolvedUpdate:
     posterior : Posterior
     steps : tuple of Step
         Every true solve of the search.
-    held_back : list of HeldBack
+    held_back : list of LeftOutMode
         Empty where not asked for.
     null : NullTest, or None
         Likewise None.

@@ -199,11 +199,11 @@ def test_attached_one_by_one_or_together_is_the_same(pair: tuple[Mesh, Matrices]
         LumpedMass("c", 0.2, position=(0.03, 0.03, 0.13)),
         Joint("d", Patch("lower"), Patch("upper"), Bushing((1e8,) * 6)),
     ]
-    together, one_by_one = attach_fixtures(free, mesh, things), free
+    together, serial_map = attach_fixtures(free, mesh, things), free
     for thing in reversed(things):
-        one_by_one = attach_fixtures(one_by_one, mesh, [thing])
+        serial_map = attach_fixtures(serial_map, mesh, [thing])
     for name in ("stiffness", "mass", "damping"):
-        ours, theirs = getattr(together, name).toarray(), getattr(one_by_one, name).toarray()
+        ours, theirs = getattr(together, name).toarray(), getattr(serial_map, name).toarray()
         np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=1e-14 * np.abs(ours).max())
 
 

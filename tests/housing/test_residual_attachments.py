@@ -354,7 +354,7 @@ def dense(
     sparse.csr_array,
     IntArray,
 ]:
-    """What residual_attachments takes, all modes by dense algebra; the shift in parts of the lowest eigenvalue."""
+    """What residual_attachment_modes takes, all modes by dense algebra; the shift in parts of the lowest eigenvalue."""
     free = np.setdiff1d(np.arange(3 * matrices.n_nodes), fixed)
     stiffness, mass = (sparse.csr_array(part[free][:, free]) for part in (matrices.stiffness, matrices.mass))
     values, vectors = linalg.eigh(stiffness.toarray(), mass.toarray())

@@ -98,7 +98,7 @@ class PairStates(PairPositions):
         Gap by profile and pitch [m], infinite where absent; at first touch for an uneven face.
     pitch_gap : ndarray, shape (n, m)
         Gap by pitch deviations alone [m].
-    faces : FaceState or None
+    faces : FaceSliceStates or None
         For an uneven face, the slices of the pairs that are present, row by row, without their pitch gaps.
     """
 
@@ -130,7 +130,7 @@ class ToothContact:
         flanks; empty for none.
     damping_depth : float
         Compression up to which the damping fades in [m]; 0 for full damping at first touch.
-    variants : tuple of PairCurves
+    variants : tuple of ToothPairCurves
         Of pairs of damaged teeth, numbered from 1; pairs of sound teeth are number 0.
     pair_variants, back_pair_variants : ndarray of int, shape (h,)
         Variant of the pair that enters at phase n, at n mod h; empty where all are alike.

@@ -133,7 +133,7 @@ def face_force_table(
     Parameters
     ----------
     slices : FaceSlices
-    kinds : tuple of PairCurves
+    kinds : tuple of ToothPairCurves
     module : float
         Of the gears [m]; it sets the depth of the table.
     weights : sequence of callable
@@ -260,7 +260,7 @@ def law_table(
 
     Parameters
     ----------
-    curves : sequence of PairCurves, or FaceTable
+    curves : sequence of ToothPairCurves, or FaceForceTable
         Of every kind of pair, behind the shared compliance.
     entering : ndarray, shape (h, 2)
         Gap [m] and kind of each pair of the hunting period.

@@ -97,7 +97,7 @@ def mesh_pressure(pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMes
         With the face widths over which the load spreads.
     contact : ToothContact
         Whose faces the line loads are on.
-    mesh : StaticMesh
+    mesh : LoadedMesh
 
     Returns
     -------

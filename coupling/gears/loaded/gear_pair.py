@@ -183,9 +183,9 @@ class LoadedGearPair:
         Of its teeth.
     contact : ToothContact
         Contact law with its damping.
-    static : StaticMesh
+    static : LoadedMesh
         Over the first mesh period.
-    hunting : StaticMesh or None
+    hunting : LoadedMesh or None
         Over the whole hunting period, where mesh periods differ by pitch deviations or damaged teeth.
     mesh_frequency : float or None
         [Hz]; None where no speed is given.

@@ -65,7 +65,7 @@ def mesh_friction(
     geometry : GearPairGeometry
     contact : ToothContact
         Contact law with which `mesh` was solved.
-    mesh : StaticMesh
+    mesh : LoadedMesh
         With phases over whole mesh periods.
     coefficient : float
         Of friction, mu.

@@ -129,7 +129,7 @@ def loaded_transmission_error(
 
     Returns
     -------
-    StaticMesh
+    LoadedMesh
 
     Raises
     ------
@@ -242,7 +242,7 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
 
     Returns
     -------
-    StaticMesh
+    LoadedMesh
         Result of `loaded_transmission_error` at the phases of ``contact.hunting_period`` mesh periods.
 
     Raises
