@@ -64,7 +64,7 @@ def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> Non
 
 def test_a_run_has_histories_in_memory_as_on_file(study: gw.Study, tmp_path: Path) -> None:
     found = study.simulate()
-    assert found.command == "run"
+    assert found.command == "simulate"
     assert found.proofs["energy_error"] < 1e-2
     found.write(tmp_path, pictures=False)
     assert not list(tmp_path.glob("*.png"))
@@ -156,3 +156,18 @@ def test_the_examples_of_docstrings_hold() -> None:
     from gearwhine import study as module
 
     assert doctest.testmod(module).failed == 0
+
+
+def test_a_simulation_leaves_the_results_of_a_run_in_the_folder(tmp_path: Path) -> None:
+    study = gw.load("spur-pair", SHORT)
+    study.run().write(tmp_path, pictures=False)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    files = study.simulate().write(tmp_path, pictures=False)
+    assert {"simulate/results.nc", "simulate/summary.json"} <= set(files)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+    assert json.loads((tmp_path / "simulate" / "summary.json").read_text(encoding="utf-8"))["command"] == "simulate"
+    assert run_command(["report", "spur-pair", "-q", "-o", str(tmp_path)]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<h2>gearwhine simulate</h2>" in page
+    assert "<h2>gearwhine run</h2>" in page
+    assert page.count("the energy balance closes") == 2
