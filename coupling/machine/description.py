@@ -8,7 +8,7 @@ solved. :meth:`Machine.assemble` reduces shafts and housing to modes (component 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import copysign, hypot
+from math import copysign
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,7 @@ from coupling.machine.gear_train import (
     GearTrain,
     Output,
     gear_train,
+    geometry_on_axes,
     require_balanced_outputs,
     require_one_plane,
     shared_torques,
@@ -147,8 +148,7 @@ class Machine:
         for pair in self.gear_pairs:
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
-            distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
-            found.append(GearPairGeometry(driver.gear, driven.gear, distance))
+            found.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes))
         return tuple(found)
 
     @cached_property

@@ -138,6 +138,15 @@ def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
     assert found == pytest.approx(study.system().dataset["system_frequency"].values, rel=1e-9)
 
 
+def test_axes_too_far_apart_are_refused_with_both_distances() -> None:
+    words = (
+        r"gear_pair\[0\].*the teeth lose contact at a centre distance of 244\.45 mm; they mesh without backlash at "
+        r"88\.9 mm; the axes are those of 'input' and 'output'"
+    )
+    with pytest.raises(gw.CaseError, match=words):
+        gw.load("spur-pair", {"rotor.input.axis": ["-200 mm", "0 mm"]})
+
+
 def test_changes_of_a_case_may_be_lists_and_tables() -> None:
     run = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
     changes = {"transient": {"run": run, "tolerance": 1e-3}, "measured": {"frequencies": ["658 Hz", 1049.0]}}
