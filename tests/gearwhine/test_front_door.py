@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import xarray as xr
 import gearwhine as gw
 from gearwhine.case import Bearing, Material, Rotor
 from gearwhine.cli import run_command
+from gearwhine.failures import explain
 
 COARSE = {"housing.box.mesh_size": "40 mm", "housing.frequency_limit": "2.5 kHz"}
 SHORT = {"transient.revolutions": 6, "transient.discard": 4, "transient.tolerance": 5e-3}
@@ -23,7 +25,7 @@ def study() -> gw.Study:
 
 
 def test_every_name_of_the_front_door_is_there_and_none_is_loaded_early() -> None:
-    assert len(gw.__all__) <= 32
+    assert len(gw.__all__) <= 35
     assert all(getattr(gw, name) is not None for name in gw.__all__)
     with pytest.raises(AttributeError, match="no attribute 'gear_box'"):
         gw.gear_box  # noqa: B018 - its absence is the point
@@ -136,6 +138,29 @@ def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
 
     found = coupled_modes(machine.assemble().system).frequencies_hz
     assert found == pytest.approx(study.system().dataset["system_frequency"].values, rel=1e-9)
+
+
+def test_wrong_input_is_a_value_error_and_a_failed_proof_a_runtime_error() -> None:
+    """So that one base class catches what all packages refuse; the command exits with 2 and 1."""
+    exported = (gw.CaseError, gw.GeometryError, gw.HousingError, gw.RotorError, gw.GearError, gw.CouplingError)
+    assert all(issubclass(one, ValueError) for one in exported)
+    wrong = proofs = 0
+    for name in ("meshes.errors", "housing.errors", "rotors.errors", "coupling.errors", "coupling.gears.errors"):
+        for error in vars(import_module(name)).values():
+            if isinstance(error, type) and issubclass(error, Exception):
+                code, message = explain(error("why"))
+                assert message == "why"
+                assert issubclass(error, ValueError if code == 2 else RuntimeError)
+                assert code == 1 or issubclass(error, exported)
+                wrong, proofs = wrong + (code == 2), proofs + (code == 1)
+    assert (wrong, proofs) >= (12, 10)
+    with pytest.raises(gw.RotorError, match="mass"):
+        gw.Disc(at=0.1, mass=-1.0, polar_inertia=0.0, diametral_inertia=0.0)
+
+
+def test_speeds_in_revolutions_a_minute_and_back() -> None:
+    assert gw.rpm(30.0) == pytest.approx(np.pi)
+    assert gw.to_rpm(gw.rpm(-1234.5)) == pytest.approx(-1234.5, rel=1e-15)
 
 
 def test_axes_too_far_apart_are_refused_with_both_distances() -> None:
