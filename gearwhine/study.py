@@ -215,7 +215,7 @@ class Study:
 
         return machine.system(
             self.case,
-            over_speed=campbell,
+            campbell=campbell,
             sidebands=sidebands,
             mesh_phase=mesh_phase,
             housing=self.housing,
@@ -230,8 +230,8 @@ class Study:
 
         return machine.steady(
             self.case,
-            over_speed=curve,
-            downwards=down,
+            curve=curve,
+            down=down,
             points=points,
             exact=exact,
             housing=self.housing,
