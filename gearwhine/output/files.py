@@ -149,6 +149,7 @@ SUMMARY = "summary.json"
 COMMANDS = (
     "run",
     "simulate",
+    "check",
     "modes",
     "rotors",
     "gears",

@@ -172,6 +172,22 @@ def test_axes_too_far_apart_are_refused_with_both_distances() -> None:
         gw.load("spur-pair", {"rotor.input.axis": ["-200 mm", "0 mm"]})
 
 
+def test_a_check_is_a_result_like_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = gw.load("spur-pair").check()
+    pair = found.document["gear_pairs"][0]
+    assert pair["mesh_frequency_hz"] == pytest.approx(28 * 5500.0 / 60.0, rel=1e-12)
+    assert found.solved.pairs[0].geometry.contact_ratio == pair["contact_ratio"]
+    assert found.warnings == []
+    assert run_command(["check", "spur-pair", "--json", "-q"]) == 0
+    assert json.loads(capsys.readouterr().out) == json.loads(found.json())
+    assert found.write(tmp_path) == ["case.toml", "summary.json"]
+    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["gear_pairs"][0] == pair
+    assert run_command(["report", "spur-pair", "-q", "-o", str(tmp_path)]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<h2>gearwhine check</h2>" in page
+    assert "mesh frequency 2566.67 Hz" in page
+
+
 def test_changes_of_a_case_may_be_lists_and_tables() -> None:
     run = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
     changes = {"transient": {"run": run, "tolerance": 1e-3}, "measured": {"frequencies": ["658 Hz", 1049.0]}}
