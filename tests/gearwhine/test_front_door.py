@@ -188,6 +188,23 @@ def test_a_check_is_a_result_like_the_others(tmp_path: Path, capsys: pytest.Capt
     assert "mesh frequency 2566.67 Hz" in page
 
 
+def test_modes_are_selected_by_their_number(study: gw.Study) -> None:
+    housing, system, rotors = study.modes().dataset, study.system().dataset, study.rotors().dataset
+    for data, variable, dimension in (
+        (housing, "housing_frequency", "housing_mode"),
+        (system, "system_frequency", "system_mode"),
+        (rotors, "rotor_rest_frequency", "rest_mode"),
+        (rotors, "rotor_torsional_frequency", "torsional_mode"),
+        (rotors, "rotor_lateral_shape", "lateral_mode"),
+        (rotors, "rotor_whirl_deflection", "whirl_mode"),
+    ):
+        numbers = data[dimension]
+        assert numbers.values.tolist() == list(range(1, data.sizes[dimension] + 1))
+        assert numbers.attrs["units"] == "1"
+        assert numbers.attrs["long_name"].startswith("number of the ")
+        np.testing.assert_array_equal(data[variable].sel({dimension: 3}), data[variable].isel({dimension: 2}))
+
+
 def test_changes_of_a_case_may_be_lists_and_tables() -> None:
     run = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
     changes = {"transient": {"run": run, "tolerance": 1e-3}, "measured": {"frequencies": ["658 Hz", 1049.0]}}
