@@ -23,7 +23,6 @@ crossings = diagram.crossings()
 for speed, frequencies in zip(speeds[::10], diagram.frequencies[::10], strict=True):
     print(f"{gw.to_rpm(speed):6.0f} rpm: " + "  ".join(f"{f:7.2f} rad/s" for f in np.sort(frequencies)))
 print("critical speeds: " + ", ".join(f"{gw.to_rpm(crossing.speed):.0f} rpm" for crossing in crossings))
-damping = -diagram.eigenvalues.real / np.abs(diagram.eigenvalues)
-figure = draw_campbell("Two discs", speeds, diagram.frequencies, diagram.direction, damping)
+figure = draw_campbell("Two discs", diagram)
 if len(sys.argv) > 1:
     figure.savefig(sys.argv[1])
