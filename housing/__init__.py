@@ -4,7 +4,8 @@
   :class:`HousingModes`.
 - Fixtures are :class:`Support`, :class:`Mount`, :class:`Joint`, :class:`Bushing` and :class:`LumpedMass`, each on a
   :class:`Patch` of the surface; :func:`bolted_joint` gives the stiffness of a preloaded bolt.
-- :func:`assemble` and :func:`attach_fixtures` make stiffness and mass matrices; :class:`Factorizer` factors them.
+- :func:`assemble` and :func:`attach_fixtures` make stiffness and mass matrices;
+  :mod:`housing.fem.factorization` factors them.
 - :func:`solve_modes` finds every mode below a limit (:class:`ModeSet`) with its :class:`Certificate`;
   :func:`add_residual_modes` makes the static compliance at the seats exact.
 - :func:`receptance`, :func:`effective_mass`, :func:`modal_damping` and :func:`health_report` evaluate a mode set;

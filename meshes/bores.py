@@ -1,9 +1,8 @@
 """Cylindrical bores on the surface of a mesh: search for all of them, and the facets of each.
 
-The corners of a bore's facets lie on its cylinder, however coarse the mesh, and the facets look towards its axis; the
-outside of a boss looks away from it. A fillet along the axis is no bore, for it goes round a quarter of the circle.
-
-Circles fitted to the surface of a mesh: candidates for bores, proposed by facets and their neighbours.
+Circles are fitted to the corners of facets; facets and their neighbours propose the candidates. The corners of a bore's
+facets lie on its cylinder, however coarse the mesh, and the facets look towards its axis; the outside of a boss looks
+away from it. A fillet along the axis is no bore, for it covers a quarter of the circle only.
 """
 
 from collections.abc import Sequence
@@ -15,6 +14,8 @@ import numpy.typing as npt
 from meshes.elements import Facets, FloatArray, IntArray, facet_centers, facet_corners, facet_normals, pick_facets
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
+
+BoolArray = npt.NDArray[np.bool_]
 
 SIDEWAYS = 0.5  # largest cosine between the axis and a facet's normal: chords of coarse meshes are askew
 SLACK = 0.01  # corners of a bore may be off its circle by this part of its diameter
@@ -36,7 +37,7 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
     Returns
     -------
     list of (ndarray of shape (3,), float)
-        A point of each one's axis and its radius [m].
+        A point of each circle's axis, and its radius [m].
     """
     boundary = mesh.boundary
     centers, normals = facet_centers(mesh.points, boundary), facet_normals(mesh.points, boundary)
@@ -134,8 +135,6 @@ def plane_axes(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     first /= np.linalg.norm(first)
     return first, np.cross(axis, first)
 
-
-BoolArray = npt.NDArray[np.bool_]
 
 _FACING = 0.5  # least cosine between a facet's normal and the direction to the axis
 _ARC_STEPS = 720
@@ -236,7 +235,7 @@ def fits_circle(
     center : sequence of float
         A point of the axis [m].
     radius, slack : float
-        Of the cylinder, and how far a corner may be off it [m].
+        Radius of the cylinder, and largest distance of a corner from it [m].
     axis : ndarray, shape (3,)
         Unit vector.
     """

@@ -1,8 +1,7 @@
 """Mesh diagnosis: the defects of a mesh by name, with their places and remedies.
 
-Conformity of a mesh: neighbouring elements share the nodes of their common edges, and none lies within a facet.
-
-Connectivity of a mesh: its bodies, and the defects where elements are not connected as they should be.
+Conformity: neighbouring elements share the nodes of their common edges, and no node lies within a facet. Connectivity:
+the bodies of the mesh, and the places where elements are not connected as they should be.
 """
 
 from collections.abc import Iterator

@@ -1,11 +1,11 @@
-"""Finite element types: reference coordinates of their nodes, their edges and faces; and blocks of elements.
+"""Finite element types and blocks of elements: reference coordinates of nodes, edges, faces, and face topology.
 
 A kind has meshio's name and numbers its nodes as VTK does: corners, then the middles of edges, of faces, of the
 element. Edges, faces and their middle nodes all follow from the reference coordinates of the nodes.
 Solids are numbered so that the map from the reference element has a positive determinant: of a wedge, the triangle
 0 1 2 turns towards 3 4 5.
 
-Mesh topology: the table of element faces, and their sharing between elements.
+The topology of a mesh is the table of its element faces, which shows the faces that elements share.
 """
 
 from collections.abc import Iterable, Sequence
@@ -47,7 +47,7 @@ class ElementKind:
 
     @property
     def dimension(self) -> int:
-        """2 for facets, 3 for solids."""
+        """Dimension: 2 for facets, 3 for solids."""
         return len(self.places[0])
 
     @property
@@ -262,7 +262,7 @@ def facet_normals(points: FloatArray, facets: Facets) -> FloatArray:
 
 
 def pick_facets(facets: Facets, chosen: npt.NDArray[np.bool_]) -> Facets:
-    """Those facets for which ``chosen`` is true, shape (n_facets,), block after block; no empty blocks."""
+    """Select the facets for which ``chosen`` is true, shape (n_facets,), block after block; no empty blocks."""
     ends = np.cumsum([len(block) for block in facets])[:-1]
     parts = zip(facets, np.split(chosen, ends), strict=True)
     return tuple(ElementBlock(block.kind, block.nodes[mask]) for block, mask in parts if mask.any())

@@ -1,6 +1,6 @@
 """Tetrahedral meshing of a gmsh model of solids: element size, order, middle nodes, node numbering.
 
-gmsh session: gmsh is imported when it is needed, silent, deterministic, and finalised after errors too.
+The gmsh session imports gmsh when it is needed, silent and deterministic, and finalises it after errors too.
 """
 
 import signal

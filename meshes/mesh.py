@@ -1,6 +1,6 @@
-"""Finite-element mesh: nodes, blocks of solid elements, named surfaces and volumes.
+"""Finite-element mesh: nodes, blocks of solid elements, named surfaces and volumes; and its defects.
 
-Mesh defects: name, severity, message, number and place.
+A mesh defect has a name, a severity, a message, a number and a place.
 """
 
 from collections.abc import Mapping
@@ -193,7 +193,7 @@ class Mesh:
 
     @property
     def block_ends(self) -> IntArray:
-        """Where arrays over all elements split into the blocks, as numpy.split takes it."""
+        """Indices at which arrays over all elements split into the blocks, for numpy.split."""
         return np.asarray(np.cumsum([len(block) for block in self.blocks])[:-1])
 
     @property

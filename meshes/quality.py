@@ -1,6 +1,6 @@
-"""Mesh quality: edge lengths and shape numbers of the elements.
+"""Mesh quality: edge lengths and shape numbers of the elements, and resolution of structural waves.
 
-Mesh resolution: element size against the shortest structural wave, and locking of linear tetrahedra.
+The resolution compares the element size with the shortest structural wave, and finds locking of linear tetrahedra.
 """
 
 from dataclasses import dataclass

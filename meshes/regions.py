@@ -37,7 +37,7 @@ def box_facets(mesh: Mesh, low: Sequence[float], high: Sequence[float]) -> Facet
 
 
 def plane_facets(mesh: Mesh, point: Sequence[float], normal: Sequence[float]) -> Facets:
-    """Boundary facets on a plane, whichever way they look.
+    """Boundary facets on a plane, of either orientation.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
-"""Shape functions and quadrature of every kind of element, from scikit-fem, with the nodes in VTK's order.
+"""Shape functions, quadrature and Jacobians of every kind of element, from scikit-fem, with the nodes in VTK's order.
 
 scikit-fem numbers nodes in its own way; the two orders are matched by the reference coordinates of the nodes. Two
 things that scikit-fem lacks are made here: the fifteen-node wedge, and a quadrature for wedges, the product of those
 of a triangle and a line.
 
-Jacobians of the map from the reference element; volumes and first moments of elements.
+The Jacobians of the map from the reference element give volumes and first moments of elements.
 """
 
 from dataclasses import dataclass

@@ -43,7 +43,7 @@ class Histories:
         Along each sensor [m/s²].
     gear_motion : dict of str to ndarray, shape (s, 3)
         x, y [m] of each gear's centre, and its rotation relative to the nominal one [rad].
-    tie_force : dict of str to ndarray, shape (s, d)
+    bearing_reaction : dict of str to ndarray, shape (s, d)
         Force of each shaft on its bearing in every held direction, x and y first [N, N m].
     mesh_force : dict of str to ndarray, shape (s,)
         Force along the line of action [N], drive flanks and back flanks apart.
@@ -52,7 +52,7 @@ class Histories:
     mesh_friction : dict of str to ndarray, shape (s, 2)
         Of every contact with friction: its force across the line of action [N], and its power loss from the nominal
         rotation [W]; see :func:`coupling.machine.tooth_friction.friction_of`.
-    tie_axes : dict of str to tuple of int
+    bearing_axes : dict of str to tuple of int
         Axes of the columns of each ``bearing_reaction``: x, y, z and the rotations about x and y, 0 to 4.
     """
 

@@ -63,7 +63,7 @@ MODE_CACHE_FILE = "modes.nc"
 
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the kept mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
-_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab", "pypardiso")
+_LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
 
 
 def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:

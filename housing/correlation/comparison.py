@@ -1,14 +1,16 @@
-"""Comparison of model and measured modes: pairs, frequency errors, and confidence of the pairing.
+"""Comparison of model and measured modes: pairs, frequency errors, shape correlation, and confidence in the pairs.
 
-Shape correlation beyond the pairs: all MACs, unpaired and double modes, close modes, quality of the survey.
+Two comparisons:
 
-Pairing by dominance: measured frequencies without shapes, compared with the model's dominant modes.
+- by shapes (:func:`compare_by_shapes`): measured and model shapes are paired by :mod:`housing.correlation.pairing` and
+  judged by all criteria of shape correlation: the MAC of every pair, unpaired modes, modes that are alike, close modes,
+  orthogonality, quality of the survey;
+- by dominance (:func:`compare_by_dominance`): measured frequencies without shapes are paired with the model's dominant
+  modes (:mod:`housing.modes.dominance`).
 
 When 25 model modes fill 3 kHz, any measured frequency has one within a few per cent, so the nearest one proves
 nothing. Where the measurement gives frequencies alone, the n dominant modes of the model, in order of frequency,
-are paired with the n measured ones; see :mod:`housing.modes.dominance`.
-
-Comparison by shapes: pairing of measured and model shapes, with all correlation criteria.
+are therefore paired with the n measured ones.
 """
 
 from collections.abc import Sequence
@@ -50,8 +52,8 @@ class LookAlikes:
         Of one with the other.
     one_frequency : bool
         Whether they are as close in frequency as close modes are, or an estimate's scatter: then of a test they are
-        most likely one mode found twice. Otherwise the survey has too few points, or in the wrong places, to tell
-        them apart.
+        most likely one mode found twice. Otherwise the survey has too few points, or in the wrong places, to
+        distinguish them.
     """
 
     first: int
@@ -135,14 +137,14 @@ class ShapeCorrelation:
 
     @property
     def largest_model_likeness(self) -> float:
-        """Largest MAC between different modes of the model in the band: those far outside need not be told apart."""
+        """Largest MAC between different modes of the model in the band: those far outside need not be distinguished."""
         which = np.array(self.orthogonality_modes, dtype=np.int64) - 1
         return largest_off_diagonal(self.model_auto_mac[np.ix_(which, which)]) if which.size else 0.0
 
 
 @dataclass(frozen=True)
 class ModePair:
-    """A measured mode and the model's.
+    """Pair of a measured mode and a model mode.
 
     Attributes
     ----------

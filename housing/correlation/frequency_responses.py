@@ -29,7 +29,7 @@ def synthesised_responses(
     frequencies: FloatArray,
     quantity: Quantity = "acceleration",
 ) -> ComplexArray:
-    """The model's responses at the measured degrees of freedom to unit forces, residual modes included.
+    """Return the model's frequency responses at the measured degrees of freedom to unit forces, with residual modes.
 
     (iw)^n times the receptance (:func:`housing.modes.receptance.receptance`), n = 0, 1, 2.
 
@@ -127,7 +127,7 @@ def fdac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     """Frequency domain assurance criterion: MAC of the model's vibration at every line with the test's at every line.
 
     Pascual, Golinval and Razeto (1997). Resonances that agree in shape but not in frequency stand as ridges beside the
-    diagonal, and the distance says by how much.
+    diagonal, at a distance equal to the shift in frequency.
 
     Parameters
     ----------

@@ -1,19 +1,19 @@
-"""Modal assurance criterion (MAC) of mode shapes, auto-MAC, pole-weighted MAC, and modal scale factor.
+"""Modal assurance criterion (MAC) of mode shapes, auto-MAC, pole-weighted MAC, modal scale factor, and COMAC.
 
 The criterion is the squared cosine of the angle between two vectors (Allemang and Brown 1982),
 
     MAC(a, b) = |aᴴ b|² / (aᴴ a · bᴴ b),
 
-between 0 and 1, whatever complex number scales either. It weighs degrees of freedom as they come: a survey with most
+between 0 and 1, whatever complex number scales either. It weighs all degrees of freedom alike: a survey with most
 points on one wall judges mostly that wall, and one with too few points finds different modes alike (Allemang 2003).
 :func:`auto_mac` shows the second; :mod:`housing.correlation.orthogonality` weighs by mass instead.
 
-Sets of mode shapes as matrices: one row a mode, one column a degree of freedom.
+The coordinate criteria :func:`comac` and :func:`enhanced_comac` give the difference of paired shapes at each degree of
+freedom. Shapes of unknown scale are comparable at one degree of freedom only after they are scaled alike: here both
+shapes of a pair are scaled to unit norm (``comac``) or unit largest entry (``enhanced_comac``) over the degrees of
+freedom that both have.
 
-Coordinate assurance criteria (COMAC, enhanced COMAC): differences of paired shapes at each degree of freedom.
-
-Shapes to unknown scales cannot be compared at one place before they are scaled alike. Here both shapes of a pair are
-scaled to unit norm (``comac``) or unit largest entry (``enhanced_comac``) over the degrees of freedom that both have.
+A set of mode shapes is a matrix: one row a mode, one column a degree of freedom.
 """
 
 from typing import Any, TypeAlias
@@ -30,7 +30,7 @@ ShapeArray: TypeAlias = npt.NDArray[np.inexact[Any]]
 
 
 def shape_set(shapes: npt.ArrayLike, name: str) -> ShapeArray:
-    """A set of shapes as a matrix, real where it is real.
+    """Return a set of mode shapes as a matrix, real where all entries are real.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def two_sets(
 
 
 def filled(shapes: ShapeArray) -> tuple[ShapeArray, BoolArray]:
-    """Each shape over its largest entry, against overflow of squares, zero where not measured; and where it was."""
+    """Scale shapes to unit largest entry against overflow of squares; 0 where not measured; and mark those measured."""
     seen = ~np.isnan(shapes)
     known = np.where(seen, shapes, 0.0)
     largest = np.abs(known).max(axis=1, keepdims=True)
@@ -124,7 +124,7 @@ def auto_mac(shapes: npt.ArrayLike) -> FloatArray:
 
 
 def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> ComplexArray:
-    """The factors that bring shapes nearest to those of a reference, pair by pair, by least squares.
+    """Return the modal scale factors: the least-squares factors from shapes to those of a reference, pair by pair.
 
     aᴴ b / aᴴ a with a a shape and b its reference (Allemang 1980), over the degrees of freedom that both have.
 

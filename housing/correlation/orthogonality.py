@@ -29,7 +29,7 @@ _WORST_CONDITION = 1e3
 
 
 def serep_mass(model: npt.ArrayLike) -> FloatArray:
-    """The model's mass at the survey's degrees of freedom, (Φ⁺)ᵀ Φ⁺, shape (n_dofs, n_dofs) [kg].
+    """Return the SEREP mass at the survey's degrees of freedom, (Φ⁺)ᵀ Φ⁺, shape (n_dofs, n_dofs) [kg].
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def self_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatAr
 
 
 def outside_span(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
-    """The part of each measured shape's square that no combination of the model's modes gives, shape (n_measured,).
+    """Return the part of each measured shape's square outside the span of the model's modes, shape (n_measured,).
 
     A large part points to noise, an error of geometry, or a mode that the model lacks. Raises as
     :func:`modal_coordinates`.

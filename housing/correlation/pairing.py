@@ -4,17 +4,15 @@ A measured mode j and a model mode i score
 
     s_ij = MAC_ij · exp(-½ (ln(ω_i / ω_j) / σ)²),
 
-nothing where ω_i / ω_j is beyond exp(±2σ) or the MAC below its least. The pairs are those with the largest sum of
-scores, each mode in one pair at most: choosing the largest MAC row by row would give one model mode to two measured
-ones. The frequency has a light weight (σ = 0.2: 5 % off costs 3 % of the score), because shapes are to decide and
-frequencies to be judged.
+nothing where ω_i / ω_j is beyond exp(±2σ) or the MAC below its least. The pairs are the linear assignment with the
+largest sum of scores, each mode in one pair at most: choosing the largest MAC row by row would give one model mode to
+two measured ones. The margin of an assignment is its lead over the next best one. The frequency has a light weight
+(σ = 0.2: 5 % off costs 3 % of the score), because shapes are to decide and frequencies to be judged.
 
 Close modes, of the model or of the test, mix. Each is then scored by the part of a shape that lies in the span of the
 other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
 group the members' own MACs decide where each is most of that score; where not, the members cannot be distinguished and
 the order of frequency is kept.
-
-Linear assignment of rows to columns by their scores, and its margin over the next best assignment.
 """
 
 from dataclasses import dataclass
@@ -29,6 +27,7 @@ from housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
 
 
 def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:
@@ -76,8 +75,6 @@ def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
     return float(np.clip(lost / own, 0.0, 1.0))
 
 
-IntArray = npt.NDArray[np.int64]
-
 _CLEAR = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
 _LEAST_FREEDOMS = 2
 _WINDOW = 2.0  # spreads of frequency within which pairs are made
@@ -111,6 +108,7 @@ class PairingRule:
         return _WINDOW * self.frequency_spread
 
     def __post_init__(self) -> None:
+        """Check that the thresholds lie within their ranges."""
         for name, low, high in (
             ("least_mac", 0.0, 1.0),
             ("frequency_spread", 0.0, np.inf),
@@ -124,7 +122,7 @@ class PairingRule:
 
 @dataclass(frozen=True)
 class ShapePair:
-    """A measured mode and the model mode that it is.
+    """Pair of a measured mode and its model mode.
 
     Attributes
     ----------
@@ -257,7 +255,7 @@ def _weight(model: FloatArray, measured: FloatArray, rule: PairingRule) -> Float
 def _blocks(
     chosen: list[tuple[int, int]], groups: tuple[IntArray, ...], test_groups: tuple[IntArray, ...]
 ) -> list[tuple[IntArray, IntArray]]:
-    """Sets of measured modes that share a group of close modes, each with all its possible model modes."""
+    """Split measured modes into sets that share a group of close modes, each with all its possible model modes."""
     model = {int(i): number for number, group in enumerate(groups) for i in group}
     test = {int(j): number for number, group in enumerate(test_groups) for j in group}
     blocks: list[tuple[set[int], set[int]]] = []
@@ -281,7 +279,7 @@ def _told_apart(own: FloatArray, shared: FloatArray) -> IntArray | None:
 
 
 def _in_order(distance: FloatArray) -> IntArray:
-    """The model modes (rows) nearest in frequency to the measured ones (columns), in ascending order."""
+    """Return the model modes (rows) nearest in frequency to the measured ones (columns), in ascending order."""
     _, rows = linear_sum_assignment(distance.T)
     return np.sort(rows)
 

@@ -18,7 +18,7 @@ _RANK = 1e-10  # singular values below so much of the largest are no directions 
 
 
 def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray, ...]:
-    """Groups of modes whose neighbours are within a part of their frequency; a mode apart is a group of one.
+    """Group close modes: neighbours within a part of their frequency; a mode apart is a group of one.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def span_mac(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> FloatArray:
 
 
 def nearest_in_span(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> npt.NDArray[np.complex128]:
-    """The combination of a basis that is nearest to each shape, at every degree of freedom; as :func:`span_mac`."""
+    """Return the combination of a basis nearest to each shape, at every degree of freedom; see :func:`span_mac`."""
     return _projected(basis, shapes)[0]
 
 

@@ -149,7 +149,7 @@ def straight_elements(points: FloatArray, block: ElementBlock) -> npt.NDArray[np
 
 
 def stiffness_degree(kind: ElementKind, *, affine: bool) -> int:
-    """The degree to which the stiffness of elements of a kind is integrated; see :func:`assemble`."""
+    """Return the quadrature degree of the stiffness of elements of a kind; see :func:`assemble`."""
     if kind.corners != "tetra":
         return 2 * kind.order
     # Bent ones have the next rule whose weights are all positive: that of degree 4 has a negative one.

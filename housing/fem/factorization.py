@@ -1,10 +1,7 @@
 """Sparse LDLᵀ factorisation of a symmetric matrix as an object: factor once, solve many, read the inertia.
 
-Available memory, and the refusal of work that would exceed it.
-
-Sparse direct solvers behind :mod:`housing.fem.factorization`: rslab and SuperLU with one interface.
-
-Both factor a symmetric matrix that need not be definite, from its lower triangle, and report its inertia.
+Two direct solvers, rslab and SuperLU, have one interface. Both factor a symmetric matrix that need not be definite,
+from its lower triangle, and report its inertia. Work that would exceed the available memory is refused beforehand.
 """
 
 import os
@@ -22,6 +19,8 @@ from scipy.sparse.linalg import splu
 
 from housing.errors import FactorizationError
 from housing.fem.linear_algebra import SymmetricMatrix
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def available_memory(*, system: Path = Path("/")) -> float:
@@ -73,7 +72,7 @@ def _machine(system: Path) -> float:
 
 
 def _group(system: Path) -> float:
-    """Of the nearest control group and of those around it, in version 2 of the kernel's files or in version 1."""
+    """Memory left to the nearest control group and those around it, in version 1 or 2 of the kernel's files."""
     least = float("inf")
     for line in _lines(system / "proc" / "self" / "cgroup"):
         number, controllers, name = line.strip().split(":", 2)
@@ -124,19 +123,16 @@ def _lines(path: Path) -> list[str]:
         return []
 
 
-FloatArray = npt.NDArray[np.float64]
-
-
 class NumericFactor(Protocol):
     """The factor of one matrix."""
 
     @property
     def fill(self) -> int:
-        """Entries."""
+        """Number of entries of the factor."""
 
     @property
     def negative(self) -> int:
-        """Negative eigenvalues of the matrix."""
+        """Number of negative eigenvalues of the matrix."""
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve for contiguous right-hand sides, shape (n,) or (n, m)."""
@@ -195,10 +191,10 @@ class SuperluSolver:
     """scipy's SuperLU without row exchanges, so that the signs of U's diagonal are the inertia."""
 
     def order(self, matrix: SymmetricMatrix) -> None:
-        """Nothing: SuperLU orders each matrix anew."""
+        """Do nothing: SuperLU orders each matrix anew."""
 
     def factor(self, matrix: SymmetricMatrix) -> "_SuperluFactor":
-        """Factor."""
+        """Factor a matrix."""
         handle = splu(
             matrix.full(),
             permc_spec="MMD_AT_PLUS_A",
@@ -334,7 +330,7 @@ class Factorizer:
 
 
 def default_backend() -> Backend:
-    """rslab where it can be imported, else SuperLU."""
+    """Return the name of the default solver: rslab where it can be imported, else SuperLU."""
     return "rslab" if can_import("rslab") else "superlu"
 
 

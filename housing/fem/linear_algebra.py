@@ -1,6 +1,7 @@
-"""Sparse symmetric matrix by its lower triangle, the form that factorisations take.
+"""Linear algebra of sparse symmetric matrices: storage by the lower triangle, and products of block vectors.
 
-Block vectors: products of bases and blocks of vectors on all degrees of freedom.
+A sparse symmetric matrix is kept by its lower triangle, the form that factorisations take. Block vectors are bases and
+blocks of vectors on all degrees of freedom; their products run on several threads.
 """
 
 from collections.abc import Callable
@@ -27,7 +28,7 @@ class Operator(Protocol):
         """Rows and columns."""
 
     def __matmul__(self, vectors: FloatArray, /) -> FloatArray:
-        """The product with one vector, shape (n,), or with many, shape (n, m)."""
+        """Multiply by one vector, shape (n,), or by many, shape (n, m)."""
 
 
 @dataclass(frozen=True)
@@ -53,18 +54,18 @@ class SymmetricMatrix:
 
     @classmethod
     def of(cls, matrix: sparse.csr_array) -> "SymmetricMatrix":
-        """From both triangles, of which the lower one is taken."""
+        """Take the lower triangle of a matrix with both."""
         lower = sparse.csc_array(sparse.tril(matrix, format="csc"))
         lower.sum_duplicates()
         return cls(lower.indptr.astype(np.int64), lower.indices.astype(np.int64), lower.data)
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(n, n)."""
+        """Rows and columns, (n, n)."""
         return len(self.pointer) - 1, len(self.pointer) - 1
 
     def diagonal(self) -> FloatArray:
-        """Shape (n,)."""
+        """Diagonal, shape (n,)."""
         return self.values[self.pointer[:-1]]
 
     @cached_property
@@ -79,6 +80,7 @@ class SymmetricMatrix:
         return sparse.csc_array(self.lower + sparse.tril(self.lower, k=-1).T)
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
+        """Multiply the symmetric matrix by one vector, shape (n,), or by many, shape (n, m)."""
         own = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
         if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(own):
             with ThreadPoolExecutor(1) as pool:

@@ -1,11 +1,8 @@
-"""Stiffness, mass and damping of a housing as sparse matrices of 3 x 3 blocks between pairs of nodes.
+"""Stiffness, mass and damping matrices of a housing: sparse, of 3 x 3 blocks between pairs of nodes.
 
-Sparse symmetric matrices of 3 x 3 blocks between pairs of nodes: additions of fixtures to the solid's matrices.
-
-Stiffness and mass on the free degrees of freedom, and the shifted matrix K - σM.
-
-Every shifted matrix K - σM of a search for modes has one sparsity pattern, so that the source of each entry is found
-once. A new shift is then one pass over the entries, and no sparse matrix is cut or converted.
+Fixtures add blocks to the matrices of the solid. On the free degrees of freedom stiffness and mass give the shifted
+matrix K - σM. Every shifted matrix of a search for modes has one sparsity pattern, so that the source of each entry is
+found once. A new shift is then one pass over the entries, and no sparse matrix is cut or converted.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -23,6 +20,7 @@ from housing.fem.linear_algebra import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+Int32Array = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -74,6 +72,7 @@ class NodeBlocks:
         return cls(np.repeat(nodes, n), np.tile(nodes, n), blocks)
 
     def __add__(self, other: "NodeBlocks") -> "NodeBlocks":
+        """Add two matrices block by block."""
         if not (len(self) and len(other)):
             return self if len(self) else other
         return NodeBlocks.summed(
@@ -83,10 +82,11 @@ class NodeBlocks:
         )
 
     def __len__(self) -> int:
+        """Return the number of blocks."""
         return len(self.rows)
 
     def matrix(self, n_nodes: int) -> sparse.csr_array:
-        """The whole matrix, shape (3 n_nodes, 3 n_nodes)."""
+        """Return the whole matrix, shape (3 n_nodes, 3 n_nodes)."""
         pointer = np.searchsorted(self.rows, np.arange(n_nodes + 1))
         blocked = sparse.bsr_array((self.blocks, self.columns, pointer), shape=(3 * n_nodes, 3 * n_nodes))
         return sparse.csr_array(blocked.tocsr())
@@ -129,15 +129,13 @@ class Additions:
     fixed: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     def __add__(self, other: "Additions") -> "Additions":
+        """Add stiffness, mass and damping, and unite the fixed degrees of freedom."""
         return Additions(
             self.stiffness + other.stiffness,
             self.mass + other.mass,
             self.damping + other.damping,
             np.union1d(self.fixed, other.fixed),
         )
-
-
-Int32Array = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -191,7 +189,7 @@ class Matrices:
 
     @cached_property
     def scalar_mass(self) -> sparse.csr_array:
-        """m of the solid alone [kg], shape (n_nodes, n_nodes)."""
+        """Scalar mass m of the solid alone [kg], shape (n_nodes, n_nodes)."""
         pointer, neighbors, place, _ = self._whole
         return sparse.csr_array((self.node_mass[place], neighbors, pointer))
 
@@ -224,14 +222,14 @@ class Matrices:
         return blocks
 
     def mass_diagonal(self) -> FloatArray:
-        """The diagonal of M [kg], shape (3 n_nodes,)."""
+        """Return the diagonal of M [kg], shape (3 n_nodes,)."""
         diagonal = np.repeat(self.node_mass[self.pointer[:-1]], 3)
         if len(self.attached_mass):
             diagonal += self.attached_mass.matrix(self.n_nodes).diagonal()
         return diagonal
 
     def plus(self, additions: Additions) -> "Matrices":
-        """The matrices with a fixture added.
+        """Return the matrices with a fixture added.
 
         Pairs of nodes that share no element and are now coupled, by stiffness or by mass, join the pattern.
         """
@@ -262,7 +260,7 @@ class Matrices:
         )
 
     def held(self, freedoms: npt.ArrayLike) -> "Matrices":
-        """The matrices with further degrees of freedom held at zero, of 3 n_nodes."""
+        """Return the matrices with further degrees of freedom held at zero, out of 3 n_nodes."""
         return replace(self, fixed=np.union1d(self.fixed, np.asarray(freedoms, dtype=np.int64)))
 
     @cached_property
@@ -280,8 +278,10 @@ class Matrices:
 
     @cached_property
     def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-        """The pattern of both triangles: its pointer and neighbours, where each block is kept, and
-        whether it stands there transposed."""
+        """Return the pattern of both triangles.
+
+        Its pointer and neighbours, the place where each block is kept, and whether it stands there transposed.
+        """
         upper = np.flatnonzero(self.neighbors != self.rows)
         places = np.concatenate([np.arange(len(self.neighbors)), upper])
         row = np.concatenate([self.rows, self.neighbors[upper]])
@@ -408,6 +408,7 @@ class FreeMass:
         self.shape = (len(free), len(free))
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
+        """Multiply M by one vector or by many, shape (n, m)."""
         columns = vectors.reshape(len(vectors), -1)
         if self._places is not None:
             columns = np.zeros((self._order, columns.shape[1]))
@@ -420,7 +421,7 @@ class FreeMass:
         return product.reshape(vectors.shape)
 
     def _multiply(self, columns: FloatArray) -> FloatArray:
-        """The scalar mass times some columns; scipy's products let other threads run."""
+        """Multiply the scalar mass by some columns; scipy's products release the interpreter to other threads."""
         if len(self._shares) == 1:
             return np.asarray(self._shares[0] @ columns)
         product = np.empty((self._order // 3, columns.shape[1]))
@@ -436,7 +437,7 @@ class FreeMass:
 
 
 def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArray, npt.NDArray[Any]]:
-    """The lower triangle by columns on the free degrees of freedom: pointer, rows, and each entry's place in blocks.
+    """Return the lower triangle by columns on the free degrees of freedom: pointer, rows, and places in blocks.
 
     The blocks are the upper triangle's, by rows, which are the lower one's columns.
     """

@@ -1,6 +1,6 @@
-"""Surface integration by quadrature, and the nearest point of the surface.
+"""Surface of a housing: integration by quadrature, nearest point, and the outer facets.
 
-Outer surface of a housing: the facets that are visible from outside, for sensors and hammer.
+The outer facets are those that are visible from outside, where sensors and the hammer reach.
 """
 
 from dataclasses import dataclass
@@ -120,7 +120,7 @@ class NearestOnSurface:
             raise HousingError("there are no facets to find a point on")
 
     def point(self, place: FloatArray) -> SurfacePoint:
-        """The point nearest to a place [m], shape (3,)."""
+        """Return the point of the surface nearest to a place [m], shape (3,)."""
         points, target = self._points, self._across @ place
         nearest: tuple[float, IntArray, FloatArray, FloatArray] | None = None
         for distance, block, member, start in self._candidates(target):
@@ -146,7 +146,7 @@ class NearestOnSurface:
         )
 
     def _candidates(self, target: FloatArray) -> list[tuple[float, ElementBlock, int, FloatArray]]:
-        """The facets nearest to the target by the plane triangles between their corners, nearest first.
+        """Return the facets nearest to the target by the plane triangles between their corners, nearest first.
 
         Each with its distance, block, number in the block, and the reference coordinates of the triangle's nearest
         point.
@@ -192,7 +192,7 @@ class _Triangles:
         return cls(block, places, corners, centers, radii)
 
     def near(self, target: FloatArray) -> IntArray:
-        """The triangles that may be among the nearest few: those whose ball comes as near as that many centres lie."""
+        """Return the triangles that may be among the nearest: their ball is as near as the few nearest centres."""
         apart = np.linalg.norm(self.centers - target, axis=1)
         few = min(_NEIGHBOURS, len(apart)) - 1
         reach = np.partition(apart, few)[few] * (1.0 + _ROUNDING)
@@ -200,7 +200,7 @@ class _Triangles:
 
 
 def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint:
-    """The point of some boundary facets nearest to a place; see :class:`NearestOnSurface`, which many places share.
+    """Return the surface point nearest to a place; :class:`NearestOnSurface` serves many places at once.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def _bulge(nodes: FloatArray, block: ElementBlock) -> float:
 
 @cache
 def _corner_shares(of: ElementKind) -> FloatArray:
-    """The corners' shape functions at each node, shape (n_nodes, n_corners)."""
+    """Return the corners' shape functions at each node, shape (n_nodes, n_corners)."""
     return shape_functions(of.corners, np.array(of.places, dtype=np.float64).T)[0]
 
 
@@ -242,7 +242,7 @@ _ROUNDING = 1e-12
 
 
 def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray, target: FloatArray) -> FloatArray:
-    """Reference coordinates of the facet's point nearest to the target, by Gauss-Newton steps from a first guess.
+    """Find the reference coordinates of the facet's point nearest to the target by Gauss-Newton steps.
 
     Only steps that come nearer are taken, shortened where they must be, and none that leaves the facet: on a flat
     facet the first guess is already the answer, and on a curved one no step makes it worse.
@@ -263,7 +263,7 @@ def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray,
 
 
 def _clipped(coordinates: FloatArray, block: ElementBlock) -> FloatArray:
-    """The nearest reference coordinates within the facet."""
+    """Clip reference coordinates to the facet."""
     if block.of.n_corners == 4:
         return np.clip(coordinates, 0.0, 1.0)
     excess = coordinates.sum() - 1.0
@@ -347,7 +347,7 @@ def sample_surface(mesh: Mesh, facets: Facets) -> SurfaceSamples:
 
 
 def outer_facets(mesh: Mesh) -> Facets:
-    """The boundary facets that are seen from outside, from a good part of the directions that they face.
+    """Return the outer facets: those visible from outside from enough of the directions that they face.
 
     Points of the surface are sorted into the cells of views from evenly spread directions: a facet whose middle lies
     well behind the foremost point of its cell is hidden. Walls inside a closed housing are hidden but for parts visible
@@ -386,7 +386,7 @@ def _middles(count: int) -> FloatArray:
 
 
 def _even_directions(count: int) -> FloatArray:
-    """Unit vectors spread evenly over the sphere along a spiral of the golden angle."""
+    """Return unit vectors spread evenly over the sphere along a spiral of the golden angle."""
     height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
     turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
     radius = np.sqrt(1.0 - height**2)

@@ -1,6 +1,6 @@
 """Alignment of a survey's frame with the model's: by landmarks, or by the nearest points of the surface (ICP).
 
-Rigid registration by least squares: points to points (Kabsch), and points to planes.
+Both are rigid registrations by least squares: points to points (Kabsch), and points to planes.
 """
 
 from collections.abc import Iterator, Mapping
@@ -25,7 +25,7 @@ _ON_A_LINE = 1e-6  # second largest spread of points as a part of the largest, b
 
 @dataclass(frozen=True)
 class RigidMotion:
-    """From one frame to another: x' = R x + t.
+    """Rigid motion from one frame to another: x' = R x + t.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ AT_REST = RigidMotion(np.eye(3), np.zeros(3))
 
 
 def fit_points(points: FloatArray, targets: FloatArray) -> tuple[RigidMotion, float]:
-    """The rigid motion that brings points nearest to their targets, and the scale of a similarity transformation.
+    """Fit points to their targets by a rigid motion, and return the scale of a similarity transformation too.
 
     Minimises Σ |R x + t - y|²: with U S Vᵀ the singular value decomposition of Σ (y - ȳ)(x - x̄)ᵀ, R = U D Vᵀ where
     D = diag(1, 1, det U Vᵀ) keeps it a rotation. The scale that would minimise Σ |s R x + t - y|² is
@@ -86,7 +86,7 @@ def fit_points(points: FloatArray, targets: FloatArray) -> tuple[RigidMotion, fl
 
 
 def small_motion(points: FloatArray, targets: FloatArray, normals: FloatArray) -> tuple[RigidMotion, FloatArray]:
-    """The small rigid motion that brings points nearest to planes, and how firmly the planes determine it.
+    """Fit points to planes by a small rigid motion, and return how firmly the planes determine it.
 
     Minimises Σ (n · (x + r × (x - x̄) + d - y))², linear in d and r (Y. Chen, G. Medioni, *Image and Vision Computing*
     10, 1992); the rotation by r is then made exact.
@@ -265,7 +265,7 @@ def _starts(points: FloatArray, centers: FloatArray) -> Iterator[FloatArray]:
 
 
 def _started(points: FloatArray, centers: FloatArray, rotation: FloatArray) -> RigidMotion:
-    """A rotation with the middle of the survey's extent on that of the surface."""
+    """Apply a rotation, and centre the survey's extent on that of the surface."""
     turned = points @ rotation.T
     middles = [(places.min(axis=0) + places.max(axis=0)) / 2.0 for places in (centers, turned)]
     return RigidMotion(rotation, middles[0] - middles[1])
@@ -337,7 +337,7 @@ def _turn_text(motion: RigidMotion) -> str:
 
 
 def _scale_remark(scale: float) -> str:
-    """A scale of the survey in words, as a unit taken for another where it is one."""
+    """Describe the survey's scale in words, as a mistaken unit where it matches one."""
     for told, size in UNITS.items():
         for meant, other in UNITS.items():
             if told != meant and abs(np.log(scale * size / other)) < 0.3:

@@ -2,9 +2,8 @@
 
 The two estimators are those of sdypy-EMA (extra ``ema``): the least-squares complex frequency-domain method with a
 common denominator (P. Verboven, dissertation, Vrije Universiteit Brussel, 2002), and the least-squares frequency-domain
-residues. A rule decides here on the physical poles, in place of a person who reads a stabilisation chart.
-
-Stabilisation chart: the rule by which stable poles over rising orders are taken as modes.
+residues. In place of a person who reads a stabilisation chart, a rule takes poles that are stable over rising orders as
+modes.
 """
 
 from dataclasses import dataclass, field
@@ -17,6 +16,7 @@ from housing.errors import HousingError, MeasuredDataError
 from housing.measured.survey_data import MeasuredModes, MeasuredResponses
 
 ComplexArray = npt.NDArray[np.complex128]
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class StabilityRule:
     orders : int
         Highest order: pairs of poles of the common denominator.
     frequency : float
-        Largest change from one order to the next, as a part.
+        Largest change of the frequency from one order to the next, as a part.
     damping : float
-        The same of the damping ratio.
+        Largest change of the damping ratio from one order to the next, as a part.
     largest_damping : float
         Ratios of poles lie between 0 and this.
     share : float
@@ -51,13 +51,14 @@ class StabilityRule:
     contribution: float = 1e-3
 
     def __post_init__(self) -> None:
+        """Check that orders, share and tolerances are within their ranges."""
         if not 2 <= self.orders <= 200 or not 0.0 < self.share <= 1.0 or min(self.frequency, self.damping) <= 0.0:
             raise HousingError(f"{self} is no rule; expected 2 to 200 orders, a share up to 1 and tolerances above 0")
 
 
 @dataclass
 class PoleLine:
-    """Poles that continue each other over the orders; it grows while they are gone through.
+    """Line of a stabilisation chart: poles that continue each other over the orders, added one by one.
 
     Attributes
     ----------
@@ -88,7 +89,7 @@ class PoleLine:
 
 
 def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high: float) -> list[PoleLine]:
-    """The lines of poles that are modes by a rule, each with the pole taken, ascending in frequency.
+    """Return the lines of stable poles that are modes by a rule, each with the pole taken, ascending in frequency.
 
     Parameters
     ----------
@@ -142,8 +143,6 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
             found.append(line)
     return sorted(found, key=lambda line: abs(line.pole))
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _TURNS = 200  # of the two least-squares problems
 _NOTHING = 1e-12  # of a weight, below which nothing was measured
@@ -249,7 +248,7 @@ def identify_modes(
 
 
 def _spacing(hertz: FloatArray) -> tuple[float, int]:
-    """The even spacing of frequencies [Hz], and the number of spacings from 0 to the first.
+    """Return the even spacing of frequencies [Hz], and the number of spacings from 0 to the first.
 
     Raises
     ------
@@ -276,7 +275,7 @@ def _residues(model: Any, lines: list[PoleLine], low: float, high: float) -> tup
 def _contributing(
     lines: list[PoleLine], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
 ) -> list[PoleLine]:
-    """The lines whose modes make a good part of the responses at their own resonance."""
+    """Return the lines whose modes contribute enough to the responses at their own resonance."""
     kept = []
     power = ("receptance", "mobility", "accelerance").index(form)
     for number, line in enumerate(lines):
@@ -307,7 +306,7 @@ def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[Co
 def _completed(
     table: ComplexArray, measured: npt.NDArray[np.bool_], shape: ComplexArray, participation: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """The pair φ, ψ of the least Σ |R - φ ψᵀ|² over the measured entries, by alternating least squares."""
+    """Fit the pair φ, ψ of the least Σ |R - φ ψᵀ|² over the measured entries, by alternating least squares."""
     for _ in range(_TURNS):
         before = shape
         weight = measured.T @ np.abs(shape) ** 2

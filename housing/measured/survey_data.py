@@ -1,10 +1,8 @@
-"""Survey data: content of one file of a modal survey.
+"""Survey data of a modal test: measuring points and directions, measured modes, frequency response functions.
 
-Measuring points of a modal survey, and the directions measured at each.
-
-Measured modes of a modal test: frequencies, and damping and shapes where they were measured.
-
-Measured frequency response functions: motions at the survey's degrees of freedom by forces at references.
+:class:`SurveyData` is the content of one file: the points with the directions measured at each
+(:class:`MeasuredGeometry`), frequencies with damping and shapes where they were measured (:class:`MeasuredModes`), and
+motions at the survey's degrees of freedom by forces at references (:class:`MeasuredResponses`).
 """
 
 from dataclasses import dataclass
@@ -17,6 +15,7 @@ from housing.errors import HousingError, MeasuredDataError
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _UNIT = 1e-6  # largest deviation of a unit vector's length from one: files carry six digits
 
@@ -51,6 +50,7 @@ class MeasuredGeometry:
     lines: tuple[tuple[int, ...], ...] = ()
 
     def __post_init__(self) -> None:
+        """Check shapes of arrays, unique labels, indices of points, and unit directions."""
         n_points, n_dofs = len(self.labels), len(self.points)
         if self.positions.shape != (n_points, 3) or self.directions.shape != (n_dofs, 3):
             raise HousingError(
@@ -66,9 +66,6 @@ class MeasuredGeometry:
         if np.any(np.abs(lengths - 1.0) > _UNIT):
             worst = int(np.argmax(np.abs(lengths - 1.0)))
             raise HousingError(f"direction {worst} of the survey has length {lengths[worst]:g}; expected a unit vector")
-
-
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -98,6 +95,7 @@ class MeasuredModes:
     geometry: MeasuredGeometry | None = None
 
     def __post_init__(self) -> None:
+        """Check ascending frequencies, number of damping ratios, and shapes against the geometry."""
         count = len(self.frequencies)
         if count == 0 or not self.frequencies[0] > 0.0 or not np.all(np.diff(self.frequencies) >= 0.0):
             raise HousingError(f"measured frequencies {self.frequencies} rad/s must be positive and ascending")
@@ -147,6 +145,7 @@ class MeasuredResponses:
     motion: Motion = "acceleration"
 
     def __post_init__(self) -> None:
+        """Check shapes of arrays, ascending frequencies, points of references, missing values, and kind of motion."""
         references, lines = len(self.reference_points), len(self.frequencies)
         expected = (len(self.geometry.points), references, lines)
         if self.values.shape != expected or self.reference_directions.shape != (references, 3):
@@ -186,5 +185,6 @@ class SurveyData:
     remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        """Check that the survey holds points, modes or responses."""
         if self.geometry is None and self.modes is None and self.responses is None:
             raise MeasuredDataError("the file holds no points, no modes and no frequency responses")

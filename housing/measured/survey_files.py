@@ -1,6 +1,6 @@
-"""CSV tables of measured modes.
+"""Survey files: universal files, and CSV tables of measured modes, chosen by their ending.
 
-Two forms, distinguished by the first cell of the header:
+Tables have two forms, distinguished by the first cell of the header:
 
 - ``frequency_hz[,damping_ratio]``: a mode a row.
 - ``point,x,y,z,direction,NAME,…``: a degree of freedom a row, a mode a column. `direction` is an axis (``x``, ``-y``)
@@ -10,8 +10,6 @@ Two forms, distinguished by the first cell of the header:
   reader.
 
 Commas, semicolons or tabs separate the cells; a line that begins with # is a remark.
-
-Survey files: universal files and CSV tables, chosen by their ending.
 """
 
 import csv
@@ -110,7 +108,7 @@ def _digits(value: float) -> str:
 
 
 def _rows(path: Path) -> list[tuple[int, list[str]]]:
-    """The rows that are no remarks, each with its line number; the header first."""
+    """Return the rows of the table without remarks, each with its line number; the header first."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:

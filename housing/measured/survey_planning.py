@@ -1,11 +1,11 @@
-"""Sensor placement by effective independence, and driving points for the hammer.
+"""Survey planning: sensor placement by effective independence, driving points for the hammer, survey grid.
 
 Effective independence (D. C. Kammer, *J. Guidance, Control, and Dynamics* 14, 1991): the candidate that contributes
 least to the linear independence of the modes is removed, repeatedly. Its share is the diagonal of the projector on the
 shapes' space, E = diag Φ (Φᵀ Φ)⁻¹ Φᵀ, between 0 and 1: removing candidate i multiplies the determinant of the
 information Φᵀ Φ by (1 - E_i), so that a candidate of share 1 is indispensable.
 
-Survey grid: measuring points over the outer faces of a box, along the outward normal.
+The survey grid has measuring points over the outer faces of a box, along the outward normal.
 """
 
 from dataclasses import dataclass
@@ -22,6 +22,7 @@ from meshes import Mesh
 from meshes.elements import Facets, facet_centers, facet_normals, pick_facets
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 # Columns and rows of points on each face. The rig's survey had 116 points (TM-104434, "Experimental study"), laid
 # out in a way not printed; here they cover the five faces that are within reach, at nearly even density:
@@ -123,8 +124,6 @@ def survey_grid(
     )
 
 
-IntArray = npt.NDArray[np.int64]
-
 _PLACES = 3  # for the hammer
 _DEPENDENT = 1e-8  # smallest singular value of the shapes as a part of the largest, below which two are one
 
@@ -147,7 +146,7 @@ class SurveyPlan:
         Candidates for the hammer: the best single one, the best one to add to it, and so on.
     residues : ndarray, shape (n_places,)
         With the places up to each: the least over the modes of the best driving-point residue, as a part of the largest
-        that the mode has anywhere. Near 0 a mode is hardly excited from any of them.
+        of the mode over all candidates. Near 0 a mode is hardly excited from any of them.
     """
 
     sensors: IntArray
@@ -169,7 +168,7 @@ def plan_survey(shapes: FloatArray, count: int) -> SurveyPlan:
     A blow at candidate i excites mode r by its driving-point residue, φ_ir² / (2 ω_r) for mass-normalised shapes (D. J.
     Ewins, *Modal Testing*, 2000). Divided by the largest that the mode has at any candidate, ω_r drops out; the best
     place is where the least of these over the modes is largest: no mode is missed there. Further places are added
-    one by one so that, with the best of all for each mode, the least is largest.
+    one by one so that the least over the modes, each at its best place, is largest.
 
     Parameters
     ----------
@@ -274,7 +273,7 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
 
 
 def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbours: int = 3) -> MeasuredGeometry:
-    """The chosen degrees of freedom as a survey of their own, points joined with their neighbours to be drawn.
+    """Return the chosen degrees of freedom as a survey of their own, neighbouring points joined by trace lines.
 
     Points are numbered from 1 in the order given.
     """

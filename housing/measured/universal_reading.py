@@ -1,6 +1,6 @@
 """Reader of universal files: points, shapes and responses of a survey, in SI and one frame.
 
-Coordinate systems of a universal file: Cartesian, cylindrical or spherical, resolved into the survey's frame.
+Cartesian, cylindrical and spherical coordinate systems of the file are resolved into the survey's frame.
 """
 
 from collections.abc import Mapping
@@ -41,7 +41,7 @@ class CoordinateSystem:
     kind: int = CARTESIAN
 
     def position(self, coordinates: FloatArray) -> FloatArray:
-        """A place in the survey's frame from its three coordinates in this system."""
+        """Return the place in the survey's frame of three coordinates in this system."""
         local = coordinates
         if self.kind != CARTESIAN:
             radius, turn = coordinates[0], np.deg2rad(coordinates[1])
@@ -53,7 +53,7 @@ class CoordinateSystem:
         return np.asarray(self.origin + local @ self.axes)
 
     def directions(self, position: FloatArray) -> FloatArray:
-        """The three directions of motion at a place of the survey's frame, as rows, shape (3, 3)."""
+        """Return the three directions of motion at a place of the survey's frame, as rows, shape (3, 3)."""
         if self.kind == CARTESIAN:
             return self.axes
         x, y, z = self.axes @ (position - self.origin)
@@ -73,7 +73,7 @@ GLOBAL = CoordinateSystem(np.eye(3), np.zeros(3))
 
 
 def systems_of(datasets: list[dict[str, Any]]) -> dict[int, CoordinateSystem]:
-    """The coordinate systems of a universal file by number: datasets 18 and 2420; 0 is the survey's own frame.
+    """Read the coordinate systems of a universal file, datasets 18 and 2420, by number; 0 is the survey's own frame.
 
     Dataset 18 gives the origin, a point on +x and a point on the +xz plane in another system. Dataset 2420 gives a
     matrix of four rows, read as row vectors are multiplied: rows 1 to 3 are the axes x, y, z, row 4 the origin.
@@ -103,7 +103,7 @@ def systems_of(datasets: list[dict[str, Any]]) -> dict[int, CoordinateSystem]:
 
 
 def _resolved(number: int, given: Mapping[int, tuple[int, CoordinateSystem]]) -> CoordinateSystem:
-    """A system in the survey's frame, through those that it is given in."""
+    """Resolve a coordinate system into the survey's frame, through the systems in which it is given."""
     within, system = given[number]
     for _ in range(_DEEPEST):
         if within == 0 or within == number or within not in given:
@@ -124,7 +124,7 @@ def _axes_from_points(number: int, origin: FloatArray, on_x: FloatArray, on_xz: 
 
 
 def _square(axes: FloatArray) -> FloatArray:
-    """The perpendicular unit vectors nearest to three that are so within a file's digits."""
+    """Return the perpendicular unit vectors nearest to three that are perpendicular within a file's digits."""
     left, _, right = np.linalg.svd(axes)
     return np.asarray(left @ right)
 
@@ -240,7 +240,7 @@ def _points(datasets: list[Dataset], length: float, remarks: list[str]) -> Surve
 
 
 def _system(systems: dict[int, CoordinateSystem], number: float, label: str, remarks: list[str]) -> CoordinateSystem:
-    """The system of this number. Number 1 that is defined nowhere is the program's own global frame."""
+    """Return the coordinate system of a number; an undefined number 1 is the program's own global frame."""
     if int(number) in systems:
         return systems[int(number)]
     if int(number) == 1:
@@ -252,7 +252,7 @@ def _system(systems: dict[int, CoordinateSystem], number: float, label: str, rem
 
 
 def _lines(dataset: Dataset, points: SurveyPoints) -> list[tuple[int, ...]]:
-    """The trace lines of one dataset 82; a 0 lifts the pen."""
+    """Read the trace lines of one dataset 82, in which a 0 starts a new line."""
     lines: list[list[int]] = [[]]
     for node in dataset["nodes"]:
         if node == 0:

@@ -79,7 +79,7 @@ _HEADER |= {"date_db_saved": "NONE", "time_db_saved": "NONE", "date_file_written
 
 
 def _nodes(geometry: MeasuredGeometry) -> list[int]:
-    """The labels as the format's numbers."""
+    """Return the labels as the format's numbers."""
     wrong = [label for label in geometry.labels if not (label.isdecimal() and 0 < int(label) < 10**9)]
     if wrong:
         raise MeasuredDataError(f"point {wrong[0]!r}: a universal file knows points by whole numbers above 0")
@@ -103,7 +103,7 @@ def _frames(
 
 
 def _frame(label: str, given: list[FloatArray]) -> FloatArray:
-    """The axes themselves where the directions are along them, else the directions, made up to three."""
+    """Return the global axes where the directions lie along them, else the directions completed to three."""
     if all(np.any(np.abs(_AXES @ direction) > 1.0 - 1e-12) for direction in given):
         return _AXES
     frame: list[FloatArray] = []

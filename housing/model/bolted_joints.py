@@ -100,7 +100,7 @@ def frustum_stiffness(
 def bolted_joint(
     diameter: float, grip: float, parts: Material, bolt: Material | None = None, *, outer: float = math.inf
 ) -> BoltedJoint:
-    """A bolt through two parts of one material, each half of the grip carrying a cone of pressure.
+    """Compute the stiffness of a bolt through two parts of one material, a cone of pressure in each half of the grip.
 
     Parameters
     ----------

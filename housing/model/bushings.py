@@ -62,6 +62,7 @@ class Bushing:
     axes: Axes = GLOBAL_AXES
 
     def __post_init__(self) -> None:
+        """Check stiffness, damping and axes."""
         for what, amounts in (("stiffness", self.stiffness), ("damping", self.damping)):
             if np.shape(amounts) != (6,) or not all(0.0 <= amount < np.inf for amount in amounts):
                 raise HousingError(f"{what} {amounts}: expected six finite numbers, none of them negative")
@@ -74,7 +75,7 @@ class Bushing:
 
     @classmethod
     def along(cls, axis: Point, stiffness: Axial, damping: Axial | None = None) -> "Bushing":
-        """Springs and dashpots that are symmetric about an axis, given by a vector of any length; it becomes the own z.
+        """Springs and dashpots that are symmetric about an axis, given by a vector of any length, as their z.
 
         Raises
         ------
@@ -89,7 +90,7 @@ class Bushing:
         return np.asarray(turn.T @ np.diag(amounts) @ turn)
 
     def additions(self, port: sparse.csr_array, name: str) -> Additions:
-        """Matrices that it adds where it resists the six motions of a port of shape (6, 3 n_nodes)."""
+        """Matrices of the bushing on the six motions of a port of shape (6, 3 n_nodes)."""
         stiffness, damping = self.matrix(self.stiffness), self.matrix(self.damping)
         return port_fixture_matrices(port, name=name, stiffness=stiffness, damping=damping)
 
@@ -166,6 +167,7 @@ class Joint:
     center: Point | None = None
 
     def __post_init__(self) -> None:
+        """Check that the joint has two different patches."""
         if self.first == self.second:
             raise HousingError(f"joint {self.name!r} ties a patch to itself; give two patches")
 

@@ -39,7 +39,7 @@ class Fixture(Protocol):
 
 
 def attach_fixtures(matrices: Matrices, mesh: Mesh, fixtures: Iterable[Fixture]) -> Matrices:
-    """The matrices of a housing with supports, mounts, joints and masses on it.
+    """Attach supports, mounts, joints and masses to the matrices of a housing.
 
     Raises
     ------

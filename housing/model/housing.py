@@ -71,6 +71,7 @@ class Housing:
     damping_ratio: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check unique names, volumes of the materials, and the damping ratio."""
         for kind, names in (
             ("seat", [seat.name for seat in self.seats]),
             ("sensor", [sensor.name for sensor in self.sensors]),
@@ -370,7 +371,7 @@ class HousingModes:
 
 
 def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
-    """A seat's motions x, y, z and rotations about x and y at a distance from its centre [m], shape (5, 3 n_nodes).
+    """Return a seat's motions x, y, z and rotations about x, y at a distance from its centre [m], shape (5, 3 n_nodes).
 
     Any bearing can load these; none loads the rotation about z, in which the shaft turns.
     """
@@ -401,7 +402,7 @@ def _bolted(bolt: Bolt, parts: Material, own: Material, rim: float) -> Joint:
 
 
 def _with_bores(mesh: Mesh, seats: Sequence[Seat]) -> Mesh:
-    """The mesh with a surface for each seat of a given diameter."""
+    """Return the mesh with a named surface for each seat that is given by a diameter."""
     for seat in seats:
         if seat.diameter is not None:
             mesh = with_bore(mesh, seat.name, seat.center, seat.diameter)

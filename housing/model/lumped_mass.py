@@ -57,6 +57,7 @@ class LumpedMass:
     offset: Point = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
+        """Check mass, place and inertia; a tensor that no real body has is refused."""
         if not 0.0 < self.mass < np.inf:
             raise HousingError(f"mass {self.name!r} of {self.mass} kg: expected a positive one")
         if (self.patch is None) == (self.position is None):
@@ -76,7 +77,7 @@ class LumpedMass:
             )
 
     def place(self, mesh: Mesh) -> SurfacePoint:
-        """The point of the surface that carries a mass given by its position."""
+        """Return the point of the surface that carries a mass given by its position."""
         if self.position is None:
             raise HousingError(f"mass {self.name!r} is on a patch, not at a point")
         return surface_point(mesh, mesh.boundary, np.array(self.position))

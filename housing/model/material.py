@@ -1,8 +1,7 @@
-"""Material: linear elastic and isotropic; Lamé's constants, and the constants of each element of a mesh.
+"""Material of a housing: linear elastic and isotropic; Lamé's constants, and mass properties of a meshed solid.
 
-Enclosed volume and centroid of a meshed body from its boundary alone, by the divergence theorem.
-
-Mass properties of a meshed solid: mass and centre of mass from the geometry of the elements.
+Each element of a mesh has the constants of its material. Mass and centre of mass follow from the geometry of the
+elements; the enclosed volume and its centroid follow from the boundary alone, by the divergence theorem.
 """
 
 from collections.abc import Mapping
@@ -14,6 +13,8 @@ import numpy.typing as npt
 from housing.errors import HousingError
 from meshes import Mesh
 from meshes.shape_functions import element_moments, quadrature, shape_functions
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class Material:
     density: float
 
     def __post_init__(self) -> None:
+        """Check Young's modulus, density and Poisson's ratio."""
         if not (self.youngs_modulus > 0.0 and self.density > 0.0):
             raise HousingError(f"E = {self.youngs_modulus} Pa and ρ = {self.density} kg/m³ must be positive")
         if not 0.0 <= self.poisson_ratio < 0.5:
@@ -83,8 +85,6 @@ def element_constants(mesh: Mesh, material: Material, materials: Mapping[str, Ma
         constants[:, members] = np.array([*own.lame, own.density])[:, None]
     return constants
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _DEGREE = 6  # of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
 

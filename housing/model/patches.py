@@ -1,6 +1,6 @@
-"""Patches of the surface, and the rigid motion of each as a port of the nodes' displacements.
+"""Patches of the surface: the rigid motion of each as a port of the nodes' displacements; rigid-body properties.
 
-Rigid body: rigid motions of points, and mass, centre of gravity and inertia from a mass matrix.
+Rigid motions of points, with a mass matrix, give mass, centre of gravity and inertia of the body.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def rigid_motions(points: FloatArray, center: FloatArray) -> FloatArray:
-    """The displacement R r of points in the rigid motion r: translation + rotation x (x - centre).
+    """Return the rigid motions of points: displacement R r = translation + rotation x (x - centre).
 
     Parameters
     ----------
@@ -119,11 +119,12 @@ class Patch:
     circle: tuple[Point, Point, float] | None = None
 
     def __post_init__(self) -> None:
+        """Check that the patch is given in exactly one way."""
         if sum(place is not None for place in (self.surface, self.box, self.plane, self.circle)) != 1:
             raise HousingError("a patch needs a surface, a box, a plane or a circle, one of the four")
 
     def facets(self, mesh: Mesh) -> Facets:
-        """The facets of the patch.
+        """Return the facets of the patch.
 
         Raises
         ------
@@ -140,18 +141,18 @@ class Patch:
         return circle_facets(mesh, *self.circle)
 
     def center(self, mesh: Mesh) -> FloatArray:
-        """The centre of its area [m], shape (3,)."""
+        """Return the centre of the patch's area [m], shape (3,)."""
         return patch_center(mesh, self.facets(mesh))
 
 
 def patch_center(mesh: Mesh, facets: Facets) -> FloatArray:
-    """The centre of the area of some facets [m], shape (3,)."""
+    """Return the centre of the area of some facets [m], shape (3,)."""
     parts, area = _quadrature(mesh, facets)
     return np.asarray(sum(np.einsum("fqi,fq->i", part.points, part.areas) for part in parts) / area)
 
 
 def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *, name: str = "") -> sparse.csr_array:
-    """The rigid motion of a patch from the nodes' displacements.
+    """Assemble the matrix P of a patch, which gives its rigid motion from the nodes' displacements.
 
     The six motions r = (translation, rotation) minimise ∫ |u - R r|² dA over the patch, with R the rigid field
     R r = translation + rotation x (x - centre): P = (∫ Rᵀ R dA)⁻¹ ∫ Rᵀ N dA. So the patch may deform; a load on it
@@ -199,7 +200,7 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
 
 
 def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
-    """The translations of a point of the surface, shape (3, 3 n_nodes); a point of a solid has no rotation."""
+    """Assemble the translations of a surface point, shape (3, 3 n_nodes); a point of a solid has no rotation."""
     columns = (3 * point.nodes[:, None] + np.arange(3)).ravel()
     return _port(np.asarray(np.kron(point.weights, np.eye(3)), dtype=np.float64), columns, mesh)
 
@@ -232,7 +233,7 @@ def _quadrature(mesh: Mesh, facets: Facets) -> tuple[tuple[SurfaceQuadrature, ..
 
 
 def _port(weights: FloatArray, columns: IntArray, mesh: Mesh) -> sparse.csr_array:
-    """A port from its weights, shape (n_motions, n), on some degrees of freedom, which may come several times."""
+    """Assemble a port from its weights, shape (n_motions, n), on degrees of freedom that may come several times."""
     motions = len(weights)
     entries = (weights.ravel(), (np.repeat(np.arange(motions), len(columns)), np.tile(columns, motions)))
     return sparse.csr_array(sparse.coo_array(entries, shape=(motions, 3 * len(mesh.points))))

@@ -79,8 +79,9 @@ class SensorPort:
 
 
 def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
-    """The rigid motion of a seat at its centre from the nodes' displacements; see
-    :func:`housing.model.patches.patch_matrix`.
+    """Assemble the matrix of a bearing seat: the rigid motion at its centre from the nodes' displacements.
+
+    See :func:`housing.model.patches.patch_matrix`.
 
     Returns
     -------

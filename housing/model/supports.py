@@ -1,6 +1,6 @@
 """Supports: patches of the surface that are fixed, or on springs and dashpots to the ground.
 
-Grounding check: rigid motions that the supports leave free, and the stiffness of each support.
+The grounding check finds the rigid motions that the supports leave free, and the stiffness of each support.
 """
 
 from collections.abc import Sequence
@@ -16,6 +16,8 @@ from housing.model.bushings import Mount
 from housing.model.patches import Patch, rigid_motions, spread
 from meshes import Mesh
 from meshes.elements import Facets, facet_nodes
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,7 @@ class Support:
     plane: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
 
     def __post_init__(self) -> None:
+        """Check that the support is given in exactly one way and holds something, and its amounts."""
         if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
             raise HousingError(f"support {self.name!r} needs a surface, a box or a plane, one of the three")
         if not (any(self.fixed) or any(self.stiffness) or any(self.damping)):
@@ -57,7 +60,7 @@ class Support:
                 raise HousingError(f"support {self.name!r}: {what} {amounts} {unit} must be finite and not negative")
 
     def facets(self, mesh: Mesh) -> Facets:
-        """The facets of the patch."""
+        """Return the facets of the patch."""
         return Patch(self.surface, self.box, self.plane).facets(mesh)
 
     def additions(self, mesh: Mesh) -> Additions:
@@ -80,8 +83,6 @@ def fixed_freedoms(mesh: Mesh, supports: Sequence[Support]) -> IntArray:
     ]
     return np.unique(np.concatenate(held)) if held else np.empty(0, dtype=np.int64)
 
-
-FloatArray = npt.NDArray[np.float64]
 
 RIGID_MOTIONS = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 
@@ -177,7 +178,7 @@ def _spring_stiffness(mesh: Mesh, support: Support | Mount, fields: FloatArray) 
 
 
 def _fixed_rows(mesh: Mesh, support: Support | Mount, fields: FloatArray) -> FloatArray:
-    """The rigid motions at the degrees of freedom that a support holds, shape (n, 6)."""
+    """Return the rigid motions at the degrees of freedom that a support holds, shape (n, 6)."""
     return fields[fixed_freedoms(mesh, [support])] if isinstance(support, Support) else fields[:0]
 
 

@@ -1,13 +1,11 @@
-"""Certificate of a set of modes: none is missing, none stands twice, and each is accurate.
+"""Certificate of a set of modes by Sylvester's law of inertia: none is missing, none stands twice, each is accurate.
 
-Inertia certificate (Sylvester): search for modes, repeated more widely until the count proves it complete.
-
-The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos (:mod:`housing.modes.eigensolver`) or
-scipy's ``eigsh`` (:mod:`housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative
-pivots in K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. A
-frequency limit is itself the shift, so that one factor both counts the modes below it and finds them. For a number of
-modes the shift lies just below zero, which keeps the shifted matrix positive definite for a free body too, and a
-second factor counts up to the gap behind the last.
+The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos or scipy's ``eigsh``
+(:mod:`housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
+K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. The search is
+repeated more widely until this count proves it complete. A frequency limit is itself the shift, so that one factor both
+counts the modes below it and finds them. For a number of modes the shift lies just below zero, which keeps the shifted
+matrix positive definite for a free body too, and a second factor counts up to the gap behind the last.
 """
 
 import time
@@ -22,7 +20,9 @@ from housing.errors import FactorizationError, HousingError, IncompleteModesErro
 from housing.fem.factorization import Factorization, Factorizer
 from housing.fem.linear_algebra import BlockAlgebra
 from housing.fem.matrices import FreeSystem
-from housing.modes.eigensolver import DEFAULT_SOLVER, TOLERANCE, Solver, arpack_modes, block_lanczos
+from housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
+
+FloatArray = npt.NDArray[np.float64]
 
 RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
@@ -61,8 +61,6 @@ class Certificate:
         proved = self.max_residual < RESIDUAL_BOUND and self.max_overlap < OVERLAP_BOUND
         return self.expected == self.found and proved
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _ATTEMPTS = 3
 _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away from a mode beside it
@@ -142,7 +140,7 @@ class CertifiedSearch:
         return factor, shift
 
     def lowest(self, count: int, progress: Callable[[str], None], *, draft: bool = False) -> CertifiedModes:
-        """The lowest modes by number; a multiple mode at the end is completed.
+        """Find the lowest modes by number; a multiple mode at the end is completed.
 
         A draft is not counted, and its last modes are less accurate.
         """
@@ -186,12 +184,8 @@ class CertifiedSearch:
         start = time.perf_counter()
         system = self._system
         try:
-            if self._solver == "eigsh":
-                tolerance = _DRAFT if draft else 0.0
-                return arpack_modes(
-                    factor.solve, self._mass, shift, count, above=above, seed=attempt, tolerance=tolerance
-                )
-            return block_lanczos(
+            return nearest_modes(
+                self._solver,
                 factor.solve,
                 self._mass,
                 shift,
@@ -199,7 +193,7 @@ class CertifiedSearch:
                 above=above,
                 seed=attempt,
                 threads=system.threads,
-                tolerance=_DRAFT if draft else TOLERANCE,
+                tolerance=_DRAFT if draft else None,
             )
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:
@@ -261,7 +255,7 @@ def _refined(
 
 
 def _gap_after(values: FloatArray, count: int, floor: float) -> float:
-    """A circular frequency in the first gap after ``count`` modes; 0 where they run out within a multiple mode.
+    """Return a circular frequency in the first gap after ``count`` modes; 0 where they end within a multiple mode.
 
     ``floor`` [rad²/s²] is far above the rounding of rigid modes, whose differences are no gaps.
     """

@@ -47,7 +47,7 @@ class Dominance:
         return np.sort(inside[np.argsort(-strength[inside], kind="stable")][:count])
 
     def gap(self, count: int, band: tuple[float, float]) -> float:
-        """ln of the ratio of the last chosen strength to the first one left out; infinite where none is."""
+        """Return ln of the ratio of the last chosen strength to the first one left out; infinite where none is."""
         inside = (self.frequencies >= band[0]) & (self.frequencies <= band[1])
         ranked = np.sort(self.acceleration[inside])[::-1]
         return float(np.log(ranked[count - 1] / ranked[count])) if len(ranked) > count else float("inf")

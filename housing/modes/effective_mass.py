@@ -1,15 +1,14 @@
-"""Effective modal mass: share of each mode in the housing's mass under rigid motion of the ground.
+"""Effective modal mass, and modal damping by dashpots, mounts and joints.
 
-For a ground that moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that
-is the participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
+The effective mass is the share of each mode in the housing's mass under rigid motion of the ground. For a ground that
+moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that is the
+participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
 frequency that exerts the same force on the ground. Over all modes of the free degrees of freedom
 
     Σ_r L_r² = Rᵀ M R,
 
 by completeness, so that the share of the discarded modes is known. A free body's rigid modes carry all of it; elastic
 modes are M-orthogonal to R and carry none. A fixed patch moves with the ground: its own mass is in no mode.
-
-Modal damping: damping of the housing's modes by dashpots, mounts and joints.
 """
 
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from housing.model.patches import rigid_body, rigid_motions
 from housing.modes.natural_modes import ModeSet
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
 def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
@@ -65,9 +65,6 @@ def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatAr
     return np.asarray(ratios + added)
 
 
-IntArray = npt.NDArray[np.int64]
-
-
 @dataclass(frozen=True)
 class EffectiveMass:
     """Effective mass along x, y, z [kg] and about axes along them through the centre of gravity [kg m²].
@@ -91,22 +88,22 @@ class EffectiveMass:
 
     @property
     def mass(self) -> FloatArray:
-        """Of each mode, L² [kg, kg m²], shape (n_modes, 6)."""
+        """Effective mass of each mode, L² [kg, kg m²], shape (n_modes, 6)."""
         return self.participation**2
 
     @property
     def fractions(self) -> FloatArray:
-        """Of each mode as a part of the whole body's, shape (n_modes, 6)."""
+        """Effective mass of each mode as a part of the whole body's, shape (n_modes, 6)."""
         return np.asarray(self.mass / self.total)
 
     @property
     def captured(self) -> FloatArray:
-        """Of the modes together as a part of the whole body's, shape (6,)."""
+        """Effective mass of all modes together as a part of the whole body's, shape (6,)."""
         return np.asarray(self.mass.sum(axis=0) / self.total)
 
     @property
     def missing(self) -> FloatArray:
-        """Of the modes above the limit, as a part of the whole body's, shape (6,)."""
+        """Effective mass of the modes above the limit as a part of the whole body's, shape (6,)."""
         return np.asarray((self.free - self.mass.sum(axis=0)) / self.total)
 
 

@@ -1,29 +1,24 @@
-"""Eigensolvers of K φ = λ M φ in shift-invert mode: the choice of one, and scipy's ``eigsh`` (ARPACK).
+"""Eigensolvers of K φ = λ M φ on the shifted inverse: block Lanczos (the default), and scipy's ``eigsh`` (ARPACK).
 
-The default is block Lanczos (:mod:`housing.modes.eigensolver`). ARPACK, an implicitly restarted Lanczos method, works
-on A = (K - σM)⁻¹ M, which is self-adjoint in the inner product of M and has the eigenvalues ν = 1/(λ - σ). The factor
-of K - σM stands behind ``OPinv``, so that it is shared with the inertia certificate. Modes below σ have ν < 0 and are
-exactly the smallest algebraic ν; modes above σ have ν > 0 and are the largest.
+Both work on A = (K - σM)⁻¹ M, which is self-adjoint in the inner product of M: A φ = ν φ and λ = σ + 1/ν. Modes below
+σ have ν < 0 and are the smallest algebraic ν, with the gap from -1/σ to 0 behind them; modes above σ have ν > 0 and are
+the largest. The factor of K - σM is shared with the inertia certificate.
 
-ARPACK may leave out a copy of a multiple mode without notice; the certificate (:mod:`housing.modes.certificate`)
-detects it.
-
-Block Lanczos eigensolver on the shifted inverse: the lowest modes of K φ = λ M φ from few sweeps over a factor.
-
-With A = (K - σM)⁻¹ M, self-adjoint in the product of M, A φ = ν φ and λ = σ + 1/ν. From an M-orthonormal block V₁ the
-recurrence
+*Block Lanczos* finds the modes from few sweeps over the factor. From an M-orthonormal block V₁ the recurrence
 
     A V_j = V_1 T_1j + … + V_j T_jj + V_{j+1} R_j
 
 builds a basis V and T = Vᵀ M A V. A Ritz pair T s = ν s has the residual |R_j s_j| with s_j the last block's part of
-s, so convergence costs nothing to see, and one step of inverse iteration on a Ritz vector is at hand:
+s, so that the check of convergence costs nothing, and one step of inverse iteration on a Ritz vector is at hand:
 
     A V s / ν = V s + V_{j+1} R_j s_j / ν.
 
-The modes wanted have the largest ν where σ lies below them all, and the most negative where σ lies above them, with
-the gap from -1/σ to 0 behind them. Every block is orthogonalised against the whole basis after the recurrence, so that
-no mode is found twice. Several columns at a time because the factor is read once for all of them (Golub and Underwood
-1977; Grimes, Lewis and Simon 1994); a multiple mode needs a block at least as wide as it is manifold.
+Every block is orthogonalised against the whole basis after the recurrence, so that no mode is found twice. A block has
+several columns because the factor is read once for all of them (Golub and Underwood 1977; Grimes, Lewis and Simon
+1994); a multiple mode needs a block at least as wide as its multiplicity.
+
+*ARPACK* is an implicitly restarted Lanczos method; the factor enters it as ``OPinv``. It may leave out a copy of a
+multiple mode without notice; the certificate (:mod:`housing.modes.certificate`) detects it.
 """
 
 from collections.abc import Callable
@@ -60,7 +55,7 @@ def block_lanczos(
     threads: int = 1,
     tolerance: float = TOLERANCE,
 ) -> tuple[FloatArray, FloatArray]:
-    """The modes nearest to a shift on one side of it.
+    """Solve for the modes nearest to a shift on one side of it by block Lanczos.
 
     Parameters
     ----------
@@ -221,7 +216,7 @@ def arpack_modes(
     seed: int = 0,
     tolerance: float = 0.0,
 ) -> tuple[FloatArray, FloatArray]:
-    """The modes nearest to a shift on one side of it, by ``scipy.sparse.linalg.eigsh``.
+    """Solve for the modes nearest to a shift on one side of it by ``scipy.sparse.linalg.eigsh`` (ARPACK).
 
     Parameters
     ----------
@@ -265,3 +260,44 @@ def arpack_modes(
         ) from error
     order = np.argsort(values)
     return values[order], np.asfortranarray(vectors[:, order])
+
+
+def nearest_modes(
+    solver: Solver,
+    solve: Callable[[FloatArray], FloatArray],
+    mass: Operator,
+    shift: float,
+    count: int,
+    *,
+    above: bool = False,
+    seed: int = 0,
+    threads: int = 1,
+    tolerance: float | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Find the modes nearest to a shift on one side of it by the eigensolver that is asked for.
+
+    Parameters
+    ----------
+    solver : {"lanczos", "eigsh"}
+        :func:`block_lanczos` or scipy's ``eigsh`` (:func:`arpack_modes`).
+    solve, mass, shift, count, above, seed, threads
+        As :func:`block_lanczos`; ``eigsh`` has one thread beside those of ``solve``.
+    tolerance : float, optional
+        Residual of a Ritz pair as a part of ν; by default the finest that the solver has.
+
+    Returns
+    -------
+    values : ndarray, shape (count,)
+        λ, ascending [rad²/s²].
+    vectors : ndarray, shape (n, count)
+        φ, with φᵀ M φ = 1.
+
+    Raises
+    ------
+    IncompleteModesError
+        Where the modes do not converge.
+    """
+    if solver == "eigsh":
+        return arpack_modes(solve, mass, shift, count, above=above, seed=seed, tolerance=tolerance or 0.0)
+    tolerance = TOLERANCE if tolerance is None else tolerance
+    return block_lanczos(solve, mass, shift, count, above=above, seed=seed, threads=threads, tolerance=tolerance)

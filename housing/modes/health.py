@@ -251,7 +251,7 @@ def _port_lines(modes: ModeSet) -> list[HealthLine]:
 
 
 def _asymmetry(matrix: sparse.csr_array) -> float:
-    """|A x - Aᵀ x| / |A x| for a random x: detects any asymmetry like a comparison of entries, at far less cost."""
+    """Return |A x - Aᵀ x| / |A x| for a random x: detects asymmetry at far less cost than a comparison of entries."""
     probe = np.random.default_rng(0).standard_normal(matrix.shape[0])
     forward = matrix @ probe
     return float(np.linalg.norm(forward - matrix.T @ probe) / np.linalg.norm(forward))

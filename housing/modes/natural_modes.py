@@ -1,6 +1,6 @@
 """Natural modes of the housing, with the proof that none is missing (:mod:`housing.modes.certificate`).
 
-Residual attachment modes for an existing mode set, read from a file or solved for with other ports.
+Residual attachment modes can be added to an existing mode set, read from a file or solved for with other ports.
 """
 
 import time
@@ -45,7 +45,7 @@ class ModeSet:
         The eigenvalue about which the modes were searched [rad²/s²].
     threads : int
         Workers of the factorisation.
-    attachments : Attachments or None
+    residual_modes : ResidualModes or None
         Residual modes, which complete the static response to loads at the ports, where ports were given.
     """
 
@@ -60,11 +60,11 @@ class ModeSet:
 
     @property
     def frequencies_hz(self) -> FloatArray:
-        """[Hz], shape (n_modes,)."""
+        """Natural frequencies [Hz], shape (n_modes,)."""
         return self.frequencies / (2.0 * np.pi)
 
     def project(self, port: sparse.csr_array) -> FloatArray:
-        """The modes' motions at a port, shape (n_modes, n_motions)."""
+        """Project a port on the modes: their motions at it, shape (n_modes, n_motions)."""
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
 
     def project_all(self, port: sparse.csr_array) -> FloatArray:
@@ -177,7 +177,7 @@ def solve_modes(
 
 
 def _oriented(vectors: FloatArray) -> FloatArray:
-    """The same vectors with their largest entry positive, so that equal input draws equal pictures.
+    """Orient mode shapes so that the largest entry is positive, and equal input draws equal pictures.
 
     Of entries that symmetry makes equally large, the first counts, or rounding would choose.
     """
@@ -208,7 +208,7 @@ def add_residual_modes(
     modes : ModeSet
         Complete up to its limit; its own residual modes are replaced.
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-        Such as those of :func:`housing.seat_matrix`; the static compliance has their order.
+        Such as those of :func:`housing.model.seats.seat_matrix`; the static compliance has their order.
     factor, shift : Factorization and float, optional
         A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
         neither.

@@ -1,4 +1,4 @@
-"""Receptance between ports: residues, frequency response, and the selection of modes that carry it in a band.
+"""Receptance between ports: residues, frequency response, selection of modes that carry it, operating deflection shape.
 
 With mass-normalised shapes and damping ratios ζ the motion of port b by a unit load on port a at the circular
 frequency w is (Ewins, *Modal Testing*, 2000, chapter 2)
@@ -7,8 +7,9 @@ frequency w is (Ewins, *Modal Testing*, 2000, chapter 2)
 
 the sum running over the kept modes and, where the mode set has them, its residual modes: these supply the response of
 the modes above the limit, which is nearly static below it. Each term is symmetric in a and b, so that H is reciprocal.
+The modes to keep are selected by their part of H in a band.
 
-Operating deflection shape: motion of the housing at one line of its spectrum, as a sum of its modes.
+An operating deflection shape is the motion of the housing at one line of its spectrum, as a sum of its modes.
 """
 
 from dataclasses import dataclass
@@ -77,7 +78,7 @@ def receptance(
     port_b: sparse.csr_array,
     frequencies: FloatArray,
 ) -> ComplexArray:
-    """Motion of port b by unit loads on port a, modes and attachments together.
+    """Motion of port b by unit loads on port a, modes and residual modes together.
 
     Parameters
     ----------
@@ -160,7 +161,7 @@ def select_modes(
 
 
 def _largest(values: ComplexArray) -> float:
-    """Of the norms over both ports' motions."""
+    """Return the largest norm over both ports' motions."""
     return float(np.linalg.norm(values, axis=(1, 2)).max())
 
 
@@ -227,6 +228,7 @@ class OperatingShape:
     modal: ComplexArray
 
     def __post_init__(self) -> None:
+        """Check the frequency and the modal amplitudes."""
         if not self.frequency > 0.0:
             raise HousingError(f"an operating shape at {self.frequency} rad/s; expected a frequency above zero")
         if not np.all(np.isfinite(self.modal)) or not np.any(self.modal):

@@ -22,7 +22,7 @@ Applications 29), so that with r loads r - 1 of these eigenvalues take no sweeps
 The span of X is then made a set of modes of its own: orthonormal in M to Φ and in itself, with a diagonal stiffness
 (Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2006, chapter 17, on residual attachment modes; after
 MacNeal 1971 and Rubin 1975). By Galerkin's argument its compliance at the ports errs by the square of the error
-of X. Modes and attachments side by side are a component with the unit mass, a diagonal stiffness and the exact static
+of X. Modes and residual modes together are a component with the unit mass, a diagonal stiffness and the exact static
 compliance at its ports.
 
 *Near the limit* the discarded modes no longer answer statically: their part in a receptance is Σ φ φᵀ / (λ - ω²), from
@@ -32,8 +32,8 @@ of A with σ at the limit gives the response there and its derivatives by ω²,
     X_1 = A⁻¹ F,    X_j = A⁻¹ M X_{j-1},        A = K - σM on the complement.                             (5)
 
 With X and X_1 to X_j in the basis, Galerkin's receptance from a port to any point is exact at rest and at the limit
-(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The attachments of the lowest frequencies then
-come close to the modes just above the limit, as far as the ports drive them.
+(a rational Krylov space: de Villemagne and Skelton 1987; Grimme 1997). The residual modes of the lowest frequencies
+then come close to the modes just above the limit, as far as the ports drive them.
 
 Computed modes have a residual, K φ = λ M φ + r, and ψᵀ K φ = ψᵀ r is a coupling that a diagonal stiffness leaves out:
 an error of first order, 2 |ψᵀ r| / √(λ ω²) of a port's compliance at most, the greater the softer the mode beside the
@@ -141,7 +141,7 @@ class ResidualModes:
     proof: StaticProof
 
     def project(self, port: sparse.csr_array) -> FloatArray:
-        """The residual modes' motions at a port, shape (k, n_motions)."""
+        """Project a port on the residual modes: their motions at it, shape (k, n_motions)."""
         return np.asarray((port @ self.shapes.reshape(len(self.shapes), port.shape[1]).T).T)
 
 
@@ -187,7 +187,7 @@ def residual_attachment_modes(
 
     Returns
     -------
-    attachments : Attachments
+    residual_modes : ResidualModes
     vectors : ndarray, shape (n, p)
         Φ, turned by Eq. (3).
 
@@ -354,7 +354,7 @@ def _orthonormal(
 def _turn(
     stiffness: Operator, squared: FloatArray, shapes: FloatArray, values: FloatArray, vectors: FloatArray
 ) -> FloatArray:
-    """The s of Eq. (3) for each attachment and mode, shape (k, p); 0 where they are farther off than modes may be."""
+    """Return s of Eq. (3) for each residual mode and mode, shape (k, p); 0 beyond the error of a certified mode."""
     coupling = np.asarray(stiffness @ shapes).T @ vectors
     apart = values - squared[:, None]
     small = np.abs(coupling) <= RESIDUAL_BOUND * np.abs(apart)
@@ -377,7 +377,7 @@ def _static_error(
     inertia: FloatArray,
     slack: float,
 ) -> float:
-    """The bound of :class:`StaticProof` by Eq. (4), from the displacements claimed for the balanced loads."""
+    """Bound the error of :class:`StaticProof` by Eq. (4), from the displacements claimed for the balanced loads."""
     held = np.asarray(stiffness @ claimed)
     left = loads - held
     cross = claimed.T @ loads
@@ -395,7 +395,7 @@ def _static_error(
 
 
 def _ratio(top: FloatArray, bottom: FloatArray) -> FloatArray:
-    """top / bottom, and 0 where a column has settled to nothing."""
+    """Return top / bottom, and 0 in a column that has converged to zero."""
     return np.asarray(np.divide(top, bottom, out=np.zeros_like(top), where=bottom > 0.0))
 
 
@@ -405,11 +405,11 @@ _SAME = 1e-6  # part of a response's strain energy, in its root, below which it 
 def leading_residual_modes(
     residual_modes: ResidualModes, ports: sparse.csr_array, shift: float, orders: int
 ) -> tuple[ResidualModes, FloatArray]:
-    """The residual modes of fewer orders that a set of more orders holds.
+    """Extract the residual modes of fewer orders from a set of more orders.
 
     Parameters
     ----------
-    attachments : Attachments
+    residual_modes : ResidualModes
         k of them.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes)
         Motions of the ports that they belong to.
@@ -420,7 +420,7 @@ def leading_residual_modes(
 
     Returns
     -------
-    attachments : Attachments
+    residual_modes : ResidualModes
         l <= k of them, with the proof of the whole set, whose static compliance they share.
     mixture : ndarray, shape (k, l)
         Their coefficients in terms of the given ones.

@@ -24,7 +24,7 @@ _PERIODS = 4  # of an MP4, which players show once; a GIF goes round
 
 
 def find_encoder() -> str:
-    """The ffmpeg of this machine, or the one that comes with the package imageio-ffmpeg.
+    """Find ffmpeg on this machine, or the one that comes with the package imageio-ffmpeg.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def animate_shapes(
         Made where it is missing.
     film : {"gif", "mp4"}
     view : str
-        One of :data:`housing.pictures.VIEWS`.
+        One of :data:`housing.pictures.images.VIEWS`.
     size : tuple of int
         Width and height [pixels], both even.
     progress : callable
@@ -98,7 +98,7 @@ def animate_shapes(
 
 
 def _frames(scene: Scene, shape: DrawnShape) -> Iterator[Image]:
-    """One period; a motion in one phase comes back the way it went, so that half of it is drawn."""
+    """Draw the frames of one period; a motion in one phase comes back the way it went, so that half are drawn."""
     scene.show(shape)
     drawn: list[Image] = []
     for number in range(_FRAMES):
@@ -110,7 +110,7 @@ def _frames(scene: Scene, shape: DrawnShape) -> Iterator[Image]:
 
 
 def _write_gif(frames: Sequence[Image], path: Path) -> None:
-    """One palette for all frames, from three of them: no colour flickers, and only moving parts are stored anew."""
+    """Write a GIF with one palette, from three frames: no colour flickers, and only moving parts are stored anew."""
     from PIL import Image as Pillow
 
     # Each colour counts once, however much of it there is: most of a frame is white.

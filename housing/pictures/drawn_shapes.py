@@ -1,6 +1,6 @@
-"""Drawn shapes: a housing's skin at rest, and its mode shapes or harmonic motions with captions.
+"""Drawn shapes: a housing's outer skin as triangles, and its mode shapes or harmonic motions with captions.
 
-Outer skin of a mesh as triangles for pictures and 3D models; scale and file names of drawn modes.
+Pictures, films and 3D models share the skin, the scale of the shapes, and the file names of drawn modes.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,6 +15,7 @@ from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+ComplexArray = npt.NDArray[np.complex128]
 
 DRAWN_SCALE = 0.07
 """Largest displacement drawn, as a part of the housing's diagonal."""
@@ -61,14 +62,14 @@ class Skin:
 
 
 def outer_skin(mesh: Mesh) -> Skin:
-    """The boundary of a mesh; four triangles for each quadratic triangle, so that its middle nodes bend too."""
+    """Return a mesh boundary as triangles: four for each quadratic triangle, so that its middle nodes bend too."""
     cut = [block.nodes[:, _CUTS[block.nodes.shape[1]]].reshape(-1, 3) for block in mesh.boundary]
     nodes, places = np.unique(np.concatenate(cut), return_inverse=True)
     return Skin(nodes, places.reshape(-1, 3))
 
 
 def drawn_name(modes: ModeSet, number: int) -> str:
-    """The name of a mode's picture or model, without ending: ``mode-03-1007Hz``."""
+    """Return the name of a mode's picture or model, without ending: ``mode-03-1007Hz``."""
     return f"mode-{number:02d}-{modes.frequencies_hz[number - 1]:.0f}Hz"
 
 
@@ -84,8 +85,6 @@ def check_numbers(modes: ModeSet, numbers: Sequence[int]) -> None:
     if missing or not numbers:
         raise HousingError(f"modes {missing or 'none'} asked for; give numbers from 1 to {len(modes.shapes)}")
 
-
-ComplexArray = npt.NDArray[np.complex128]
 
 MODE_QUANTITY = "Displacement / largest"
 
@@ -110,7 +109,7 @@ class DrawnHousing:
 
     @property
     def diagonal(self) -> float:
-        """Of the box around it [m]."""
+        """Diagonal of the bounding box [m]."""
         return float(np.linalg.norm(np.ptp(self.rest, axis=0)))
 
 
@@ -145,6 +144,7 @@ class DrawnShape:
     largest: float = 1.0
 
     def __post_init__(self) -> None:
+        """Check that the displacements are finite and not all zero."""
         if not np.all(np.isfinite(self.motion)) or not np.any(self.motion):
             raise HousingError(f"{self.title or self.name}: a shape to draw needs finite displacements, some not zero")
 
@@ -170,12 +170,12 @@ def peak_displacement(motion: FloatArray | ComplexArray) -> FloatArray:
 
 
 def widest_angle(motion: FloatArray | ComplexArray) -> float:
-    """The θ at which Σ |Re U e^{−iθ}|² over all points is largest [rad]; 0 where all move in phase with a real U."""
+    """Return the θ of the largest Σ |Re U e^{−iθ}|² over all points [rad]; 0 where all move in phase with a real U."""
     return 0.5 * float(np.angle((motion**2).sum()))
 
 
 def drawn_housing(mesh: Mesh) -> DrawnHousing:
-    """The surface of a mesh to draw shapes on."""
+    """Return the surface of a mesh on which shapes are drawn."""
     skin = outer_skin(mesh)
     return DrawnHousing(mesh.points[skin.nodes], skin.triangles, skin.nodes)
 

@@ -64,7 +64,7 @@ def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder
 
 
 def _model(mesh: Mesh, skin: Skin, modes: ModeSet, number: int) -> bytes:
-    """The whole file of one mode."""
+    """Return the whole GLB file of one mode."""
     shape = modes.shapes[number - 1][skin.nodes]
     rest = mesh.points[skin.nodes]
     amplitude = np.linalg.norm(shape, axis=1)
@@ -159,7 +159,7 @@ class _Buffer:
 
 
 def _container(document: dict[str, Any], binary: bytes) -> bytes:
-    """The header and the two chunks of a GLB file, each padded to whole words."""
+    """Return the header and the two chunks of a GLB file, each padded to whole words."""
     text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode("utf-8")
     text += b" " * (-len(text) % 4)
     binary += b"\0" * (-len(binary) % 4)

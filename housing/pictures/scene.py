@@ -1,6 +1,6 @@
 """Scene: one housing before one camera, drawn off-screen shape by shape for pictures and films.
 
-Off-screen renderer: search for EGL or OSMesa, and PyVista set up for it.
+The off-screen renderer is PyVista on EGL, or on OSMesa where EGL is missing.
 """
 
 import ctypes
@@ -14,6 +14,8 @@ import numpy.typing as npt
 
 from housing.errors import HousingError, RendererUnavailableError
 from housing.pictures.drawn_shapes import DRAWN_SCALE, MODE_QUANTITY, DrawnHousing, DrawnShape, Skin
+
+FloatArray = npt.NDArray[np.float64]
 
 _LIBRARIES = (
     ("libEGL.so.1", "vtkEGLRenderWindow"),
@@ -57,7 +59,6 @@ def load_pyvista() -> Any:
     return pyvista
 
 
-FloatArray = npt.NDArray[np.float64]
 Image = npt.NDArray[np.uint8]
 
 _VIEWS = {
@@ -135,11 +136,13 @@ class Scene:
             raise
 
     def __enter__(self) -> Self:
+        """Return the scene itself."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """Close the renderer."""
         self._plotter.close()
 
     def show(self, shape: DrawnShape) -> None:
@@ -149,11 +152,11 @@ class Scene:
         self._actor.mapper.scalar_range = (0.0, shape.largest)
 
     def picture(self, shape: DrawnShape, angle: float = 0.0) -> Image:
-        """The shape that is shown at a phase angle [rad], as pixels of shape (height, width, 3)."""
+        """Draw a shape at a phase angle [rad], as pixels of shape (height, width, 3)."""
         return self.shrunk(self.drawn(shape, angle))
 
     def drawn(self, shape: DrawnShape, angle: float = 0.0) -> Image:
-        """The same in the larger size in which it is rendered."""
+        """Draw a shape in the larger size of the renderer."""
         reach = DRAWN_SCALE * self._housing.diagonal
         points = (self._housing.rest + reach * shape.at(angle))[self._origin]
         self._solid.points = points
@@ -162,7 +165,7 @@ class Scene:
         return np.asarray(self._plotter.screenshot(None, return_img=True))
 
     def shrunk(self, drawn: Image) -> Image:
-        """The rendered image, reduced to the picture's own size."""
+        """Reduce a rendered image to the picture's own size."""
         from PIL import Image as Pillow
 
         return np.array(Pillow.fromarray(drawn).resize(self._size, Pillow.Resampling.HAMMING))
@@ -234,14 +237,14 @@ def check_view(view: str) -> None:
 
 
 def viewing_direction(view: str) -> FloatArray:
-    """From the housing towards the eye, a unit vector."""
+    """Return the viewing direction: the unit vector from the housing towards the eye."""
     check_view(view)
     towards = np.array(_VIEWS[view])
     return np.asarray(towards / np.linalg.norm(towards))
 
 
 def colour_strip(width: int) -> Image:
-    """A thin colour bar with its ends named, of shape (STRIP, width, 3)."""
+    """Return a thin colour bar with its ends named, of shape (STRIP, width, 3)."""
     pyvista = load_pyvista()
     # One unit is the strip's height.
     bar = pyvista.ImageData(dimensions=(256, 2, 1), spacing=(5.0 / 255, 0.3, 1.0), origin=(0.5, -0.15, 0.0))
@@ -265,7 +268,7 @@ def colour_strip(width: int) -> Image:
 
 
 def _frame(bounds: Sequence[float]) -> list[float]:
-    """The bounds at rest with room for the largest displacement, so that every shape has the same scale."""
+    """Return the bounds at rest with room for the largest displacement, so that every shape has the same scale."""
     low, high = np.array(bounds[::2]), np.array(bounds[1::2])
     room = DRAWN_SCALE * float(np.linalg.norm(high - low))
     return [float(value) for pair in zip(low - room, high + room, strict=True) for value in pair]

@@ -64,7 +64,7 @@ def point_motions(geometry: MeasuredGeometry, values: FloatArray) -> FloatArray:
 
 
 def laid_over(measured: ComplexArray, model: FloatArray) -> FloatArray:
-    """A measured shape at the model's phase and size, real, shape (n_dofs,); NaN where it was not measured.
+    """Scale a measured shape to the model's phase and size, real, shape (n_dofs,); NaN where it was not measured.
 
     It is turned by the angle of ψᴴφ, which brings it nearest to φ, and has φ's norm over the measured entries.
     """

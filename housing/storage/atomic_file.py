@@ -1,8 +1,7 @@
-"""Atomic writing of a file: it appears whole at its place, or not at all.
+"""Atomic writing of a file, which appears whole at its place or not at all; and its checksum.
 
-Checksum of a file: SHA-256 of its bytes, appended at its end, to detect damage before any reader opens it.
-
-HDF5 may loop for ever on a damaged file. It ignores bytes behind the end that the file itself states.
+The checksum, SHA-256 of the file's bytes, is appended at the end and detects damage before any reader opens the file:
+HDF5 may loop for ever on a damaged one. HDF5 ignores bytes behind the end that the file itself states.
 """
 
 import hashlib

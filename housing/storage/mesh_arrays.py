@@ -13,7 +13,7 @@ IntArray = npt.NDArray[np.int64]
 
 
 def mesh_arrays(mesh: Mesh) -> dict[str, LabelledArray]:
-    """The arrays that hold a mesh: nodes, elements by kind, named surfaces and volumes.
+    """Convert a mesh to labelled arrays: nodes, elements by kind, named surfaces and volumes.
 
     Elements stand in ``elements_1``, ``elements_2``, ... with their kind as an attribute. The facets of all named
     surfaces stand one after another in ``facets_KIND``, and ``facet_block_surface``, ``facet_block_kind`` and
@@ -29,7 +29,7 @@ def mesh_arrays(mesh: Mesh) -> dict[str, LabelledArray]:
 
 
 def mesh_from_arrays(arrays: Mapping[str, LabelledArray]) -> Mesh:
-    """The mesh that :func:`mesh_arrays` made into arrays, equal bit for bit.
+    """Convert the arrays of :func:`mesh_arrays` back to the mesh, equal bit for bit.
 
     Raises
     ------

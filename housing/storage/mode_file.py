@@ -1,15 +1,12 @@
 """Mode file: a solved housing as labelled NetCDF4, written whole and read back with its proof.
 
-The file opens in xarray, ncdump and every other reader of NetCDF4 or HDF5. It holds the mesh, the modes with their
-certificate, the motions of bearing seats and sensors, the inputs of the solution, and a digest.
+The file opens in xarray, ncdump and every other reader of NetCDF4 or HDF5. It holds one :class:`ModeRecord`: the mesh,
+the modes with their certificate, the residual modes, the motions of bearing seats and sensors, the inputs of the
+solution, and a digest. Each part is converted to labelled arrays and back.
 
 The certificate was made with the stiffness and mass matrices at hand. The digest (SHA-256 over every array, label and
 attribute) proves on reading that the content is, bit for bit, that of the certified set. It detects damage; it is no
 signature against forgery.
-
-Residual modes in a mode file: conversion to labelled arrays and back.
-
-Mode record: a solved housing with its mesh, modes, seats, sensors and inputs, as labelled arrays of a mode file.
 """
 
 import json
@@ -31,12 +28,14 @@ from housing.storage.mesh_arrays import mesh_arrays, mesh_from_arrays
 from housing.storage.netcdf import LabelledArray, canonical_json, content_key, digest, read_netcdf, write_netcdf
 from meshes import Mesh
 
+FloatArray = npt.NDArray[np.float64]
+
 _ONE = ("attachment",)
 _PORTS = ("loaded_motion", "moved_motion")
 
 
 def residual_mode_arrays(residual_modes: ResidualModes | None) -> dict[str, LabelledArray]:
-    """The arrays of residual modes and their proof; empty where there are none.
+    """Convert residual modes and their proof to labelled arrays; empty where there are none.
 
     An empty set, at ports whose response the modes hold already, keeps its proof; its arrays are left out, because a
     dimension of length 0 has another meaning in NetCDF.
@@ -65,7 +64,7 @@ def residual_mode_arrays(residual_modes: ResidualModes | None) -> dict[str, Labe
 
 
 def residual_modes_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> ResidualModes | None:
-    """The residual modes that these arrays were made of, equal bit for bit.
+    """Convert the arrays of :func:`residual_mode_arrays` back to residual modes, equal bit for bit.
 
     Raises
     ------
@@ -85,8 +84,6 @@ def residual_modes_of(arrays: Mapping[str, LabelledArray], n_nodes: int) -> Resi
         return ResidualModes(np.empty(0), np.empty((0, n_nodes, 3)), proof)
     return ResidualModes(arrays["attachment_circular_frequency"].values, arrays["attachment_shape"].values, proof)
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _MODE = ("mode",)
 _EXTRA = "extra_"
@@ -141,6 +138,7 @@ class ModeRecord:
     extras: Mapping[str, LabelledArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        """Check the shapes of the arrays, and that every sensor has a direction."""
         count = len(self.modes.frequencies)
         wanted = {
             "modes.shapes": (self.modes.shapes, (count, len(self.mesh.points), 3)),
@@ -161,7 +159,7 @@ class ModeRecord:
 
 
 def with_sensors(record: ModeRecord, ports: Iterable[SensorPort]) -> ModeRecord:
-    """The record with these sensors in place of its own, and the modes' motions along them."""
+    """Return the record with other sensors, and the modes' motions along them."""
     placed = list(ports)
     motions = [record.modes.project(port.matrix)[:, 0] for port in placed]
     sensors = []
@@ -192,7 +190,7 @@ def record_attributes(record: ModeRecord) -> dict[str, str]:
 
 
 def record_of(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -> ModeRecord:
-    """The record that these arrays and attributes were made of, equal bit for bit.
+    """Convert arrays and attributes back to the mode record, equal bit for bit.
 
     Raises
     ------
@@ -359,7 +357,7 @@ def read_modes(path: str | Path) -> ModeRecord:
 
 
 def _open(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
-    """The arrays and attributes of a file, once its kind, schema and digest are found right."""
+    """Return the arrays and attributes of a file after a check of its kind, schema and digest."""
     import h5py
 
     if not path.is_file():

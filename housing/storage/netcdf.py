@@ -1,6 +1,6 @@
-"""NetCDF4 files of labelled arrays, written and read without xarray, whose import takes long; xarray opens them.
+"""NetCDF4 files of labelled arrays: values with dimensions, unit and name; and their SHA-256 digest.
 
-Labelled arrays: values with dimensions, unit and name; and the SHA-256 digest of such arrays.
+Files are written and read without xarray, whose import takes long; xarray opens them.
 """
 
 import hashlib

@@ -36,7 +36,7 @@ class LeftOutMode:
     deviation : float
         Relative standard deviation of the prediction, by the posterior of the others and the mode's own noise.
     prior_deviation : float
-        The same before the fit, at the start design.
+        Standard deviation of the prediction before the fit, at the start design.
     start : float
         Frequency of the start design [rad/s].
     rms_percent : float
@@ -58,7 +58,7 @@ class LeftOutMode:
 
     @property
     def start_error_percent(self) -> float:
-        """The same of the start design."""
+        """Error of the start design in the same measure."""
         return 100.0 * (self.start / self.measured - 1.0)
 
 
@@ -112,10 +112,10 @@ class Procedure(Generic[AnyDesign]):
     count: int
 
     def __call__(self, target: Target) -> tuple[Misfit, Posterior]:
-        """Misfit of the result, by dominant modes, and posterior of the parameters."""
+        """Run the search: misfit of the result, by dominant modes, and posterior of the parameters."""
         meshes = Meshes(self.solve, None)
-        raced = multistart_search(meshes, target, self.parameters, self.start, None, self.effort, self.count)
-        found = polish(self.solve, raced, target, self.parameters, self.effort)
+        best = multistart_search(meshes, target, self.parameters, self.start, None, self.effort, self.count)
+        found = polish(self.solve, best, target, self.parameters, self.effort)
         design, coordinates = found.design, found.design.coordinates
         near = design.surrogate().at(coordinates)
         judged = measure(target, design.state, coordinates, strict=True)
@@ -128,7 +128,7 @@ def leave_one_out(
     each: Each = serial_map,
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[LeftOutMode]:
-    """Leave-one-out: fit to all measured modes but one, from the start, and predict that one; for each of them.
+    """Leave-one-out: for each measured mode fit all others from the start, and predict it.
 
     The number of dominant modes stays known, so that the pairing is the same as when all are fitted.
 
@@ -163,7 +163,7 @@ def leave_one_out(
 
 
 def _deviation(left: FloatArray, misfit: Misfit, mode: int, target: Target) -> float:
-    """Of the model's partner of a measured mode, and of its measurement; NaN where it has none."""
+    """Return the standard deviation of a measured mode and its model partner together; NaN without a partner."""
     pair = misfit.pairs[mode]
     return float("nan") if pair == UNPAIRED else float(np.hypot(left[pair], target.noise[mode]))
 

@@ -48,7 +48,7 @@ class MeshBias:
 
     @classmethod
     def between(cls, coarse: ModalState, fine: ModalState) -> "MeshBias":
-        """The bias seen at a design that was solved on both meshes; modes without a partner have the others' mean."""
+        """Learn the mesh bias at a design solved on both meshes; modes without a partner get the mean of the others."""
         own, other = _motions(coarse), _motions(fine)
         table = modal_assurance_criterion(own, other)
         rows, columns = linear_sum_assignment(-table)
@@ -90,7 +90,7 @@ class Debiased(Generic[AnyDesign]):
 
     @property
     def coordinates(self) -> FloatArray:
-        """z, shape (n_parameters,)."""
+        """Coordinates z, shape (n_parameters,)."""
         return self.design.coordinates
 
     @cached_property
@@ -117,7 +117,7 @@ class Debiased(Generic[AnyDesign]):
 
     @property
     def state(self) -> ModalState:
-        """Its modes."""
+        """Modes of the design."""
         return self._state
 
     @cached_property
@@ -134,7 +134,7 @@ class Debiased(Generic[AnyDesign]):
         )
 
     def surrogate(self) -> Surrogate:
-        """The surrogate about it."""
+        """Return the surrogate about the design, corrected by the bias."""
         return self._surrogate
 
 

@@ -49,7 +49,7 @@ class ModeCount:
 
 @dataclass(frozen=True)
 class Target:
-    """Measured modes and their uncertainties.
+    """Target of updating: measured modes and their uncertainties.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Target:
     gap : float
         Least gap ln(strength of the weakest chosen / strongest left out); not asked for where shapes were measured.
     margin : float
-        The same of the other two measures; not asked for by default.
+        Least gap by the other two measures of dominance; not asked for by default.
     count : ModeCount, optional
     firmness : float
         Factor on the penalties, before they are squared. Soft penalties let a search pass obstacles; firm ones leave no
@@ -90,6 +90,7 @@ class Target:
     firmness: float = 1.0
 
     def __post_init__(self) -> None:
+        """Check frequencies, noise and number of shapes."""
         measured = self.frequencies
         if len(measured) == 0 or measured[0] <= 0.0 or np.any(np.diff(measured) <= 0.0):
             raise HousingError(f"measured frequencies {measured} rad/s must be positive and ascending")
@@ -100,7 +101,7 @@ class Target:
 
     @property
     def logarithms(self) -> FloatArray:
-        """ln ω, shape (n,)."""
+        """Logarithms ln ω of the measured frequencies, shape (n,)."""
         return np.log(self.frequencies)
 
 
@@ -120,12 +121,12 @@ class Misfit:
         ln(strength of the weakest paired / strongest of the others in the band): negative where the modes paired are
         not the dominant ones, infinite where shapes decide.
     margin : float
-        The least of the same by the other two measures of dominance.
+        Least gap by the other two measures of dominance.
     count : int
         Modes below the limit of :class:`ModeCount`; 0 where none is given.
     mac : ndarray, shape (n,), or None
         Of each pair, where shapes were measured.
-    lacking : Lacking, or None
+    choice_shortfall : ChoiceShortfall, or None
         Shortfalls of the choice of modes from a clear one, where shapes do not decide.
     """
 
@@ -228,7 +229,7 @@ def is_met(target: Target, misfit: Misfit) -> bool:
 
 
 def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
-    """The modes that violate a known number of modes below a limit, or nearly do.
+    """Return the modes that violate a known number of modes below a limit, or nearly do.
 
     Returns
     -------
@@ -245,7 +246,7 @@ def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, Floa
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:
-    """The assignment of greatest total MAC, with the MAC of each pair; below one half a mode stays alone.
+    """Pair modes by greatest total MAC, and return the MAC of each pair; below one half a mode has no partner.
 
     Raises
     ------

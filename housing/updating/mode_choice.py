@@ -62,7 +62,7 @@ class ChoiceShortfall:
 
     @property
     def cost(self) -> float:
-        """Sum of squares."""
+        """Cost of the choice: sum of squares of the shortfalls."""
         return float(self.values @ self.values)
 
 
@@ -151,7 +151,7 @@ def choice_shortfall(
     gap : float
         ln of the least ratio of strengths between chosen and other modes, by acceleration.
     margin : float
-        The same by the other two measures; negative infinity where it is not asked for.
+        Least ratio by the other two measures; negative infinity where it is not asked for.
     firmness : float
         Factor on the penalties, before they are squared.
     """
@@ -223,7 +223,7 @@ def choose_modes(
 
 
 def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
-    """The thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures)."""
+    """Find the thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures)."""
     inside = known.beyond <= 0.0
     weakest = np.where(taken[..., None, :], known.logarithms, np.inf).min(axis=-1)
     strongest = np.where((~taken & inside)[..., None, :], known.logarithms, -np.inf).max(axis=-1)
@@ -240,10 +240,11 @@ def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
 
 
 def _best_choices(known: _Strengths, inside: IntArray, errors: FloatArray, thresholds: FloatArray) -> BoolArray:
-    """The modes of least cost for each row of thresholds, in order of frequency (dynamic programming).
+    """Choose the modes of least cost for each row of thresholds, in order of frequency (dynamic programming).
 
     Parameters
     ----------
+    known : _Strengths
     inside : ndarray of int, shape (n_inside,)
         The modes in the band.
     errors : ndarray, shape (n, n_inside)

@@ -40,11 +40,11 @@ class Each(Protocol):
     """A map of work over tasks, parallel or not, that yields the results in the tasks' order as they come."""
 
     def __call__(self, work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterable[Any]:
-        """The results."""
+        """Yield the results of the work."""
 
 
 def serial_map(work: Callable[[Any], Any], tasks: Sequence[Any]) -> Iterator[Any]:
-    """Serial :class:`Each`."""
+    """Map work over tasks one after the other; a serial :class:`Each`."""
     return map(work, tasks)
 
 
@@ -57,7 +57,7 @@ class Meshes(Generic[AnyDesign]):
     coarse : callable
         See :data:`housing.updating.Solve`.
     fine : callable
-        The same on the fine mesh, made anew at each design; None where there is one mesh only.
+        Solver on the fine mesh, which is made anew at each design; None where there is one mesh only.
     light : callable
         Reduces a design of that mesh for the next round, so that it is not solved again.
     """
@@ -67,7 +67,7 @@ class Meshes(Generic[AnyDesign]):
     light: Callable[[AnyDesign], AnyDesign] = lambda design: design
 
     def judge(self, coordinates: FloatArray, near: AnyDesign | None = None) -> AnyDesign:
-        """A design on the fine mesh, or on the only one."""
+        """Solve a design on the fine mesh, or on the only one."""
         return (self.coarse if self.fine is None else self.fine)(coordinates, None)
 
 
@@ -100,7 +100,7 @@ class MultistartResult(Generic[AnyDesign]):
     coordinates : ndarray, shape (n_parameters,)
         Of the best design on the fine mesh.
     misfit : Misfit
-        Its misfit there.
+        Misfit of that design.
     is_met : bool
         Whether it meets the target.
     steps : tuple of Step
@@ -134,7 +134,7 @@ class _Run(Generic[AnyDesign]):
     on_fine: bool
 
     def __call__(self, runner: Runner[AnyDesign]) -> Ran[AnyDesign]:
-        """The search's new state, its misfit there, and its steps; the misfit is infinite where no model is sound."""
+        """Return the search's new state, its misfit, and its steps; the misfit is infinite where no model is valid."""
         solve = self.meshes.judge if self.on_fine else self.meshes.coarse
         try:
             begin = solve(runner.coordinates, None) if runner.design is None else runner.design
@@ -169,7 +169,7 @@ def multistart_search(
     start : Design
         Solved on the coarse mesh.
     judged : ModalState, or None
-        The fine mesh's modes of the same; None where there is one mesh only.
+        Modes of the start on the fine mesh; None where there is one mesh only.
     effort : Effort
         Its solves are those of all searches in the round on the coarse mesh.
     count : int
@@ -191,18 +191,18 @@ def multistart_search(
     best = _better(None, target, first, lambda message: None)
     going = _going(count)
     steps = list[Step]()
-    for heat, number in enumerate(going):
-        on_fine = heat > 0
+    for index, number in enumerate(going):
+        on_fine = index > 0
         if best.is_met:
             break
-        solves = _FINE_SOLVES[heat - 1] if on_fine else max(1, effort.solves // count)
-        own = replace(effort, solves=solves, trust=TRUST[heat], starts=_STARTS)
-        weighed, off = replace(target, firmness=FIRMNESS[heat]), None if on_fine else bias
+        solves = _FINE_SOLVES[index - 1] if on_fine else max(1, effort.solves // count)
+        own = replace(effort, solves=solves, trust=TRUST[index], starts=_STARTS)
+        weighed, off = replace(target, firmness=FIRMNESS[index]), None if on_fine else bias
         run = _Run(meshes, weighed, tuple(parameters), own, off, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
         steps += [step for *_, own_steps in ran for step in own_steps]
         told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
-        progress(f"heat {heat + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
+        progress(f"round {index + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
         runners = [runner for runner, value, _ in ran if np.isfinite(value)]
         if on_fine:
             best = _best(best, target, runners, progress)
@@ -213,7 +213,7 @@ def multistart_search(
 
 def polish(
     solve: Solve[AnyDesign],
-    raced: MultistartResult[AnyDesign],
+    best: MultistartResult[AnyDesign],
     target: Target,
     parameters: Sequence[Parameter],
     effort: Effort,
@@ -227,12 +227,14 @@ def polish(
     ----------
     solve : callable
         On the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the result.
-    raced, target, parameters, effort, progress
+    best : MultistartResult
+        Result of :func:`multistart_search`.
+    target, parameters, effort, progress
         See :func:`multistart_search`.
     """
     firm = replace(target, firmness=FIRMNESS[-1])
-    own = replace(effort, solves=0 if raced.is_met else _POLISHED, trust=_REFINED)
-    begin = solve(raced.coordinates, None) if raced.design is None else raced.design
+    own = replace(effort, solves=0 if best.is_met else _POLISHED, trust=_REFINED)
+    begin = solve(best.coordinates, None) if best.design is None else best.design
 
     def is_enough(design: AnyDesign) -> bool:
         return is_met(target, measure(firm, design.state, design.coordinates, strict=True))
@@ -246,7 +248,7 @@ def _best(
     runners: Sequence[Runner[AnyDesign]],
     progress: Callable[[str], None],
 ) -> MultistartResult[AnyDesign]:
-    """The best of the previous best and of searches solved on the fine mesh."""
+    """Return the best of the previous best and of the searches solved on the fine mesh."""
     for runner in runners:
         best = _better(best, target, runner, progress)
     return best
@@ -255,7 +257,7 @@ def _best(
 def _better(
     best: MultistartResult[AnyDesign] | None, target: Target, runner: Runner[AnyDesign], progress: Callable[[str], None]
 ) -> MultistartResult[AnyDesign]:
-    """The better of the previous best and of a search solved on the fine mesh, by the penalties of the last round."""
+    """Return the better of the previous best and of one search on the fine mesh, by the penalties of the last round."""
     assert runner.judged is not None
     misfit = measure(replace(target, firmness=FIRMNESS[-1]), runner.judged, runner.coordinates, strict=True)
     met = is_met(target, misfit)
@@ -271,7 +273,7 @@ def _better(
 
 
 def _going(count: int) -> list[int]:
-    """Number of searches in each round."""
+    """Return the number of searches in each round."""
     going = [count]
     for few in _NEVER_PARTED:
         going.append(min(going[-1], max(few, (going[-1] + 1) // 2)))

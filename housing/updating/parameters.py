@@ -43,6 +43,7 @@ class Parameter:
     spread: float
 
     def __post_init__(self) -> None:
+        """Check range, nominal value and spread."""
         if not -np.inf < self.low < self.high < np.inf:
             raise HousingError(
                 f"parameter {self.name!r}: range {self.low:g} to {self.high:g}: expected an ascending one"
@@ -59,13 +60,13 @@ class Parameter:
         return self.low > 0.0
 
     def coordinate(self, value: float) -> float:
-        """z of a value."""
+        """Return the coordinate z of a value."""
         if self.is_positive:
             return float(np.log(value / self.nominal) / self._log_spread)
         return (value - self.nominal) / self.spread
 
     def value(self, coordinate: float) -> float:
-        """The value at z, within the range."""
+        """Return the value at z, within the range."""
         low, high = self.bounds
         inside = min(max(coordinate, low), high)
         if self.is_positive:
@@ -80,7 +81,7 @@ class Parameter:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """z at both ends of the range."""
+        """Coordinates z of both ends of the range."""
         return self.coordinate(self.low), self.coordinate(self.high)
 
     @property
@@ -89,10 +90,10 @@ class Parameter:
 
 
 def values_at(parameters: Sequence[Parameter], coordinates: FloatArray) -> FloatArray:
-    """The values of all parameters at z, shape (n,)."""
+    """Return the values of all parameters at z, shape (n,)."""
     return np.array([parameter.value(z) for parameter, z in zip(parameters, coordinates, strict=True)])
 
 
 def coordinate_bounds(parameters: Sequence[Parameter]) -> FloatArray:
-    """z at both ends of all ranges, shape (2, n)."""
+    """Return the coordinates z of both ends of all ranges, shape (2, n)."""
     return np.array([parameter.bounds for parameter in parameters]).T

@@ -95,7 +95,7 @@ class Posterior:
 
 
 def posterior(target: Target, misfit: Misfit, coordinates: FloatArray, near: Neighbour) -> Posterior:
-    """The posterior about a design.
+    """Compute the posterior of the parameters about a design.
 
     Parameters
     ----------

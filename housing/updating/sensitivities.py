@@ -1,10 +1,4 @@
-"""Sensitivities of stiffness and mass to parameters: integrals over elements, in modal coordinates.
-
-Most of the work is in products of all modes with all modes, once for each parameter. So elements are grouped by the
-parameters that concern them, σ : T is summed over the six components of the symmetric σ, and where div V is constant
-within straight elements their modal masses are computed once and scaled for every parameter.
-
-Sensitivities of modes to parameters: derivatives of stiffness and mass in modal coordinates, without assembly.
+"""Modal sensitivities: derivatives of stiffness and mass by the parameters in modal coordinates, without assembly.
 
 A parameter moves nodes, changes the elements' material, or changes fixtures. With nodes that move at
 the velocity V = dX/dp the gradient of a field that they carry changes by d(∂_j u_i) = -∂_l u_i ∂_j V_l and the volume
@@ -15,6 +9,10 @@ by div V, so that for two modes φ_a, φ_b of the stress σ = λ tr ε I + 2 μ 
 
 (the velocity form of shape sensitivities: Haug, Choi and Komkov 1986, chapter 3). With the elements' own quadrature
 these are the exact derivatives of the assembled matrices.
+
+Most of the work is in products of all modes with all modes, once for each parameter. So elements are grouped by the
+parameters that concern them, σ : T is summed over the six components of the symmetric σ, and where div V is constant
+within straight elements their modal masses are computed once and scaled for every parameter.
 """
 
 from collections.abc import Iterator, Sequence
@@ -50,7 +48,7 @@ class Changes:
     velocity : ndarray, shape (n_nodes, 3), or None
         Velocity of the nodes [m] per unit of the parameter.
     constants : ndarray, shape (3, n_elements), or None
-        Rates of λ, μ [Pa] and ρ [kg/m³].
+        Derivatives of λ, μ [Pa] and ρ [kg/m³].
     """
 
     velocity: FloatArray | None
@@ -91,7 +89,7 @@ class Part:
 
 
 def parts(mesh: Mesh, n_modes: int, changes: Sequence[Changes]) -> Iterator[Part]:
-    """The elements that some parameter concerns."""
+    """Yield the elements on which some parameter acts, in parts."""
     first = 0
     for block in mesh.blocks:
         straight = straight_elements(mesh.points, block)
@@ -194,7 +192,7 @@ def _add_stiffness(
     moving: dict[int, FloatArray],
     stiffness: FloatArray,
 ) -> None:
-    """By one product of all points' stresses with the parameter's changes of the gradients."""
+    """Add stiffness derivatives by one product of all stresses with the parameter's changes of the gradients."""
     n_modes = stiffness.shape[1]
     gradients = places.gradients(fields).reshape(*places.volumes.shape, 3, 3, n_modes)  # ..., j, i of ∂_j φ_i, mode
     strains = np.empty((*places.volumes.shape, 6, n_modes))
@@ -225,9 +223,9 @@ def _stresses(strains: FloatArray, volumes: FloatArray, lam: FloatArray, mu: Flo
 
 
 def _tilt(velocities: FloatArray) -> FloatArray:
-    """From ∇φ to T = ½ div V ∇φ - ∇φ ∇V as the stress works on it, from ∂_j V_l: shape (n, n_points, 6, 9).
+    """Matrix from ∇φ to the six strains of T = ½ div V ∇φ - ∇φ ∇V, by ∂_j V_l, shape (n, n_points, 6, 9).
 
-    The stress is symmetric: of a shear it takes T_ik + T_ki.
+    The stress is symmetric, so that the shears are T_ik + T_ki.
     """
     factor = 0.5 * np.einsum("eqjj->eq", velocities)[..., None, None] * np.eye(3) - velocities
     tilt = np.zeros((*factor.shape[:2], 6, 3, 3))  # component; j, i of ∂_j φ_i
@@ -240,7 +238,7 @@ def _tilt(velocities: FloatArray) -> FloatArray:
 
 
 def _is_even(divergence: FloatArray) -> bool:
-    """Whether it is the same at all points of each element."""
+    """Whether div V is the same at all points of each element."""
     return bool(np.ptp(divergence, axis=1).max() <= _EVEN * np.abs(divergence).max())
 
 
@@ -253,7 +251,7 @@ def _add_even_mass(
     divergences: dict[int, FloatArray],
     mass: FloatArray,
 ) -> None:
-    """Of straight elements with constant density rate and div V: each element's modal mass is scaled."""
+    """Add mass derivatives of straight elements with constant div V by scaling each element's modal mass."""
     points, weights = quadrature(part.kind.name, 2 * part.kind.order)
     values = shape_functions(part.kind.name, points)[0]
     n, n_modes = len(part.elements), mass.shape[1]
@@ -281,7 +279,7 @@ def _add_mass(
     changes: Sequence[Changes],
     mass: FloatArray,
 ) -> None:
-    """Of any elements, by matrices of scalar mass rates and the modes' quadratic forms in these."""
+    """Add mass derivatives of any elements by quadratic forms of the modes in scalar mass rates."""
     degree = 2 * part.kind.order
     places, n_modes = _Places.of(mesh, part, degree), mass.shape[1]
     values = shape_functions(part.kind.name, quadrature(part.kind.name, degree)[0])[0]
@@ -310,9 +308,9 @@ class ModelSensitivity:
     velocity : ndarray, shape (n_nodes, 3), optional
         Velocity of the nodes [m].
     constants : ndarray, shape (3, n_elements), optional
-        Rates of λ, μ [Pa] and ρ [kg/m³] of each element.
+        Derivatives of λ, μ [Pa] and ρ [kg/m³] of each element.
     stiffness, mass : scipy.sparse array, shape (3 n_nodes, 3 n_nodes), optional
-        Rates of the fixtures' matrices.
+        Derivatives of the fixtures' matrices.
     """
 
     velocity: FloatArray | None = None
@@ -340,7 +338,7 @@ class ModalSensitivities:
         return np.asarray(self.stiffness[:, diagonal, diagonal] - frequencies**2 * self.mass[:, diagonal, diagonal])
 
     def mixtures(self, frequencies: FloatArray) -> FloatArray:
-        """Derivatives of the shapes, c_ab of dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
+        """Return the derivatives of the shapes, c_ab of dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
 
         c_ab = φ_aᵀ (dK - λ_b dM) φ_b / (λ_b - λ_a) and c_bb = -½ φ_bᵀ dM φ_b (Fox and Kapoor 1968). Contributions of
         modes above those at hand are missing. For multiple modes that separate it has no meaning.
@@ -367,7 +365,7 @@ def modal_sensitivities(
         λ, μ [Pa] and ρ [kg/m³].
     shapes : ndarray, shape (n_modes, n_nodes, 3)
         Mass-normalised.
-    rates : sequence of ModelRate
+    rates : sequence of ModelSensitivity
 
     Raises
     ------
@@ -397,6 +395,6 @@ def modal_sensitivities(
 
 
 def _seen(rate: sparse.csr_array, flat: FloatArray) -> FloatArray:
-    """Φᵀ dA Φ of a fixture's matrix, which has few nodes."""
+    """Project the matrix of a fixture, which has few nodes, on the modes: Φᵀ dA Φ."""
     rows = np.flatnonzero(np.diff(rate.indptr))
     return np.asarray(flat[rows].T @ (rate[rows] @ flat)) if len(rows) else np.zeros((flat.shape[1],) * 2)

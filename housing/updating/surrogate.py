@@ -56,7 +56,7 @@ class ModalState:
 
 
 def elastic(state: ModalState) -> tuple[ModalState, BoolArray]:
-    """The modes that are not rigid, and which those are, shape (n_modes,)."""
+    """Return the elastic modes, and a mask of which modes they are, shape (n_modes,)."""
     eigenvalues = state.frequencies**2
     kept = eigenvalues > _RIGID * eigenvalues[-1]
     measured = None if state.measured is None else state.measured[kept]
@@ -92,7 +92,7 @@ class Neighbour:
         return np.asarray(self._turning(modes) @ self.surrogate.state.measured)
 
     def strength_slopes(self, modes: IntArray) -> FloatArray:
-        """d ln strength of some modes by acceleration, velocity and absolute, shape (3, n_parameters, n_modes)."""
+        """Return d ln strength of modes by acceleration, velocity and absolute, shape (3, n_parameters, n_modes)."""
         own, base, turning = self.state, self.surrogate.state, self._turning(modes)
         seats, skin = own.seats[modes], own.skin[modes]
         seats_rate = (turning @ base.seats.reshape(len(base.seats), -1)).reshape(len(turning), *seats.shape)
@@ -145,7 +145,7 @@ class Surrogate:
 
     @classmethod
     def about(cls, center: FloatArray, state: ModalState, rates: ModalSensitivities) -> "Surrogate":
-        """The surrogate about a design; rigid modes, which no parameter moves, are left out."""
+        """Build the surrogate about a design; rigid modes, which no parameter moves, are left out."""
         own, kept = elastic(state)
         eigenvalues = own.frequencies**2
         stiffness, mass = rates.stiffness[:, kept][:, :, kept], rates.mass[:, kept][:, :, kept]

@@ -29,14 +29,14 @@ class Design(Protocol):
 
     @property
     def coordinates(self) -> FloatArray:
-        """z, shape (n_parameters,)."""
+        """Coordinates z, shape (n_parameters,)."""
 
     @property
     def state(self) -> ModalState:
-        """Its modes."""
+        """Modes of the design."""
 
     def surrogate(self) -> Surrogate:
-        """The surrogate about it."""
+        """Return the surrogate about the design."""
 
 
 AnyDesign = TypeVar("AnyDesign", bound=Design)
@@ -120,7 +120,7 @@ def search(
 
     Returns
     -------
-    Found
+    SearchResult
         The best of all designs solved, the start among them; or the first at which the search may end.
     """
     bounds = coordinate_bounds(parameters)
@@ -166,7 +166,7 @@ def search(
 def search_surrogate(
     surrogate: Surrogate, target: Target, region: FloatArray, starts: int, generator: np.random.Generator
 ) -> tuple[FloatArray, float]:
-    """Least misfit of the surrogate within a region, shape (2, n), and its coordinates."""
+    """Minimise the misfit of the surrogate within a region, shape (2, n): least misfit and its coordinates."""
     low, high = region
     center = np.clip(surrogate.center, low, high)
     points = [center, *(low + (high - low) * generator.random((starts, len(low))))]
@@ -183,7 +183,7 @@ def search_surrogate(
 def descend(
     surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray, steps: int = _STEPS
 ) -> tuple[FloatArray, float]:
-    """Gauss and Newton's steps on the surrogate from a start, kept within the region."""
+    """Descend from a start by Gauss-Newton steps on the surrogate, within the region."""
     low, high = region
     near = surrogate.at(point)
     misfit = measure(target, near.state, point)

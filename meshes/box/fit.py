@@ -1,8 +1,6 @@
-"""Geometry checks of a box: walls, feet, ribs, fillets and bores; all misfits are reported at once.
+"""Geometry checks of a box: walls, feet, ribs, fillets and bores, and the cover with its flange and bolts.
 
-A misfit of a box: the dimension that does not fit, and what is expected of it.
-
-Geometry checks of a box's cover, its flange and its bolts.
+Each misfit names the dimension that does not fit and the value expected of it; all misfits are reported at once.
 """
 
 from __future__ import annotations
@@ -105,7 +103,7 @@ def _bolt_sizes(cover: Cover) -> Iterator[BoxMisfit]:
 
 
 def _patch_misfits(box: Box, cover: Cover) -> Iterator[BoxMisfit]:
-    """Bolts whose circles leave the rim or meet each other."""
+    """Yield bolts whose circles leave the rim or meet each other."""
     assert cover.bolts is not None
     bolts = layout.cover_bolts(box)
     by_place = bool(cover.bolts.positions)
@@ -179,7 +177,7 @@ def misfits(box: Box) -> Iterator[BoxMisfit]:
 
 
 def _wall_misfits(box: Box) -> Iterator[BoxMisfit]:
-    """Walls that meet."""
+    """Yield walls that meet."""
     for axis, size, (low, high) in zip("xyz", box.size, OPPOSITE_FACES, strict=True):
         if box.wall.of(low) + box.wall.of(high) >= size:
             expected = f"{low} and {high} walls that leave room inside the {mm(size)} of the box along {axis}"
@@ -187,7 +185,7 @@ def _wall_misfits(box: Box) -> Iterator[BoxMisfit]:
 
 
 def _foot_sizes(box: Box) -> Iterator[BoxMisfit]:
-    """Feet that touch would melt into one, and their undersides with them."""
+    """Yield feet that touch: they would melt into one, and their undersides with them."""
     if box.feet is None:
         return
     base = layout.body_block(box).size
@@ -198,7 +196,7 @@ def _foot_sizes(box: Box) -> Iterator[BoxMisfit]:
 
 
 def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
-    """A bore in no end wall, or one that leaves it, with its boss or without."""
+    """Yield the misfits of a bore: in no end wall, or beyond its edge, with its boss or without."""
     half, location = box.size[2] / 2.0, ("bores", index)
     if layout.end_wall(box, bore) is None:
         expected = (
@@ -219,7 +217,7 @@ def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
 
 
 def _bores_apart(box: Box) -> Iterator[BoxMisfit]:
-    """Bores that touch another bore or its boss, which would break the cylinder of either."""
+    """Yield bores that touch another bore or its boss, which would break the cylinder of either."""
     for index, bore in enumerate(box.bores):
         for other in box.bores[:index]:
             wall = layout.end_wall(box, bore)
@@ -250,7 +248,7 @@ def _feet_misfits(box: Box) -> Iterator[BoxMisfit]:
 
 
 def _fillet_sizes(box: Box) -> Iterator[BoxMisfit]:
-    """Radii that a box's own edges do not leave room for."""
+    """Yield fillet radii for which a box's own edges leave no room."""
     for key, radius, block in (
         ("inside", box.fillets.inside, layout.cavity_block(box)),
         ("outside", box.fillets.outside, layout.body_block(box)),
@@ -331,7 +329,7 @@ def _rib_ends(rib: Rib, limits: Block, location: tuple[str | int, ...]) -> Itera
 
 
 def _rib_clashes(box: Box) -> Iterator[BoxMisfit]:
-    """Ribs that run into feet, or across the joint of the cover into other ribs."""
+    """Yield ribs that run into feet, or across the joint of the cover into other ribs."""
     feet = layout.foot_blocks(box)
     blocks = [layout.rib_block(box, rib) for rib in box.ribs]
     for index, (rib, block) in enumerate(zip(box.ribs, blocks, strict=True)):

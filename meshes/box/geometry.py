@@ -18,7 +18,7 @@ class BoxMisfitError(GeometryError):
 
     Attributes
     ----------
-    misfits : tuple of Misfit
+    misfits : tuple of BoxMisfit
         Everything that does not fit.
     """
 

@@ -49,7 +49,7 @@ class Block:
 
 
 def end_wall(box: Box, bore: Bore) -> Literal["back", "front"] | None:
-    """The wall that a bore goes through, by the z of its centre; None for neither."""
+    """Return the end wall that a bore goes through, by the z of its centre; None for neither."""
     z, half = bore.center[2], box.size[2] / 2
     slack = 1e-9 + 1e-6 * half
     if -half - slack <= z <= -half + box.wall.back + slack:

@@ -1,8 +1,7 @@
-"""Meshing of a box housing with tetrahedra by gmsh.
+"""Meshing of a box housing with tetrahedra by gmsh: solid model, named surfaces, mesh.
 
-Solid model of a box in gmsh's OpenCASCADE kernel: a body, and a cover where it is a separate plate.
-
-Named surfaces of a box: the faces of its finished solid, found by their places.
+The solid model is made in gmsh's OpenCASCADE kernel: a body, and a cover where it is a separate plate. Named surfaces
+are the faces of the finished solid, found by their places.
 """
 
 from collections.abc import Callable

@@ -7,8 +7,6 @@ Every boundary node lies on faces that a box's dimensions place: on planes along
 its motion, and on the cylinders of bores and bosses, which fix two. The rest of each component slides along its faces
 and follows through the solid as a harmonic field: ∇²u_i = 0, with u_i given on the planes that are normal to axis i and
 on the cylinders. Middle nodes stay where they are between the ends of their edges, those of cylinders on the cylinder.
-
-Faces of a box whose places follow from its dimensions: planes along the axes, cylinders of bores and bosses.
 """
 
 from dataclasses import dataclass, replace

@@ -110,7 +110,7 @@ class Rib:
     along : {"x", "y", "z"}
         Axis along which it runs, one of the wall's own two.
     at : float
-        Place of its middle plane on the other of the two [m].
+        Position of its middle plane along the other axis [m].
     height, thickness : float
         [m]; the height is taken from the wall.
     side : {"outside", "inside"}
@@ -241,37 +241,37 @@ class Box(Protocol):
 
     @property
     def wall(self) -> WallThickness:
-        """Of every wall [m]."""
+        """Thickness of every wall [m]."""
         ...
 
     @property
     def bores(self) -> tuple[Bore, ...]:
-        """Through the end walls."""
+        """Bores through the end walls."""
         ...
 
     @property
     def feet(self) -> Feet | None:
-        """Under the base."""
+        """Feet under the base."""
         ...
 
     @property
     def ribs(self) -> tuple[Rib, ...]:
-        """On the walls."""
+        """Ribs on the walls."""
         ...
 
     @property
     def cover(self) -> Cover | None:
-        """Of one face."""
+        """Cover of one face."""
         ...
 
     @property
     def fillets(self) -> Fillets:
-        """Of the edges."""
+        """Fillets of the edges."""
         ...
 
     @property
     def bolts(self) -> tuple[Bolt, ...]:
-        """Of the cover."""
+        """Bolts of the cover."""
         ...
 
     def end_wall(self, bore: Bore) -> Literal["back", "front"]:

@@ -1,6 +1,6 @@
 """Solids of a CAD file in gmsh's OpenCASCADE kernel: read, sewn from surfaces where needed, made conforming.
 
-Unit of length of a CAD file: stated by the file, given by the user, and checked against the part's size.
+The unit of length is stated by the file or given by the user, and checked against the part's size.
 """
 
 import re
@@ -58,7 +58,7 @@ def _step_unit(text: str) -> float | None:
 
 
 def _iges_unit(text: str) -> float | None:
-    """Parameter 14 of the global section: a flag."""
+    """Read the unit of an IGES file: parameter 14 of its global section, a flag."""
     section = "".join(line[:72] for line in text.splitlines() if line[72:73] == "G")
     fields: list[str] = []
     place, delimiter = 0, ","
@@ -180,7 +180,7 @@ def read_solids(gmsh: Any, path: str, kind: str) -> list[int]:
 
 
 def extent(gmsh: Any) -> float:
-    """Longest side of the model, in its own unit."""
+    """Return the longest side of the model, in its own unit."""
     bounds = np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)
     return float(np.ptp(bounds, axis=0).max())
 
@@ -279,7 +279,7 @@ def _lies_within(gmsh: Any, inner: list[int], outer: list[int]) -> bool:
 
 
 def conforming(gmsh: Any, solids: list[int], *, glue: bool = True) -> Shape:
-    """Name the parts, and let solids that touch share their faces if they are to be one piece.
+    """Name the parts, and make touching solids share their faces where they are to be one piece.
 
     Raises
     ------

@@ -123,7 +123,7 @@ def _foreseen(request: Request, volume: float) -> float:
 
 
 def _refine(gmsh: Any, request: Request, unit: float) -> None:
-    """Let elements be smaller in a ball around each place."""
+    """Refine the elements in a ball around each place."""
     if request.place_size is None or not request.places:
         return
     field, balls = gmsh.model.mesh.field, []
@@ -142,7 +142,7 @@ def _refine(gmsh: Any, request: Request, unit: float) -> None:
 
 
 def _mesh(gmsh: Any, shape: Shape, request: Request, unit: float) -> None:
-    """Mesh; the error names the solid that cannot be meshed."""
+    """Mesh the solids; the error names the one that cannot be meshed."""
     smallest = min(request.mesh_size, request.place_size or request.mesh_size) / unit
     trouble = ""
     try:

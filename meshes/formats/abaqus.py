@@ -1,12 +1,7 @@
-"""Input decks of Abaqus and CalculiX: nodes, solid elements, sets and surfaces.
+"""Input decks of Abaqus and CalculiX: keyword cards; reader and writer of nodes, solid elements, sets and surfaces.
 
 meshio reads these files too, but gives an element set to the wrong block of elements where some blocks have none, and
-knows no ``*SURFACE``. Read here are flat decks, and those of one
-part and one instance.
-
-Keyword cards of an Abaqus or CalculiX input deck.
-
-Writer of input decks of Abaqus and CalculiX.
+knows no ``*SURFACE``. The reader takes flat decks, and decks of one part and one instance.
 """
 
 import re
@@ -341,7 +336,7 @@ def _quoted(name: str) -> str:
 
 
 def _label(block: ElementBlock, face: int) -> str:
-    """S1, S2, ... of a face in our order."""
+    """Label S1, S2, ... of a face by its number here."""
     corners = {corner + 1 for corner in block.of.corner_faces[face]}
     labels = [{int(corner) for corner in label} for label in FACE_LABELS[block.of.corners]]
     return f"S{labels.index(corners) + 1}"

@@ -1,6 +1,6 @@
 """Mesh files: read and write every format that meshio knows, and input decks of Abaqus and CalculiX.
 
-Nastran decks completed for meshio: framed bulk data, and every continuation marked.
+Nastran decks are completed for meshio: the bulk data are framed, and every continuation is marked.
 """
 
 import os
@@ -150,7 +150,7 @@ def _through_meshio(path: Path) -> MeshContent:
 
 
 def _check_ending(path: Path, known: Mapping[str, list[str]]) -> None:
-    """Refuse a file that no reader is chosen for."""
+    """Refuse a file whose ending has no reader."""
     endings = ["".join(path.suffixes[first:]).lower() for first in range(len(path.suffixes))]
     if not any(ending in known for ending in endings):
         raise GeometryError(

@@ -1,7 +1,4 @@
-"""Conversion to meshio, with regions in the form that the file format can hold.
-
-Conversion from meshio: element types, and regions from the ways in which file formats name them.
-"""
+"""Conversion to and from meshio: element types, and regions in the form that each file format holds."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
