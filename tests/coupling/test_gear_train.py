@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from coupling import CoupledMachine, CouplingError, GearMesh, MountedBearing, MountedGear, Torque, assemble_machine
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from coupling.machine import gear_train
 from coupling.machine.components import rotor_component
 from coupling.machine.loads import AnyTorque, TorqueHistory
 from rotors import Bearing, ModalRotor, Rotor, Segment, ShaftMaterial, modal_rotor
