@@ -11,6 +11,10 @@ A case, from a file or from Python, and its analyses::
     run.plot("spectrum")
     run.write("results")
 
+Wrong input is a :class:`ValueError`: :class:`CaseError` of a case, :class:`GeometryError`, :class:`HousingError`,
+:class:`RotorError`, :class:`GearError`, :class:`CouplingError` of objects. A result that fails its proof, and a missing
+system library, is a :class:`RuntimeError`.
+
 The parts of a machine as objects of the library: :class:`Housing`, :class:`Machine` with :class:`Shaft`,
 :class:`ShaftGear`, :class:`GearPair` and :class:`MountedBearing`. The physics stands in the packages ``meshes``,
 ``housing``, ``rotors`` and ``coupling``.
@@ -21,12 +25,14 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from coupling import CouplingError as CouplingError
     from coupling import Machine as Machine
     from coupling import MountedBearing as MountedBearing
     from coupling import Output as Output
     from coupling import Shaft as Shaft
     from coupling import ShaftGear as ShaftGear
     from coupling.gears import Gear as Gear
+    from coupling.gears import GearError as GearError
     from coupling.gears.loaded.gear_pair import GearPair as GearPair
     from gearwhine.analyses.result import Result as Result
     from gearwhine.case import Case as Case
@@ -35,7 +41,9 @@ if TYPE_CHECKING:
     from gearwhine.study import build as build
     from gearwhine.study import load as load
     from gearwhine.units import rpm as rpm
+    from gearwhine.units import to_rpm as to_rpm
     from housing import Housing as Housing
+    from housing import HousingError as HousingError
     from housing import Joint as Joint
     from housing import LumpedMass as LumpedMass
     from housing import Material as Material
@@ -43,9 +51,11 @@ if TYPE_CHECKING:
     from housing import Seat as Seat
     from housing import Sensor as Sensor
     from housing import Support as Support
+    from meshes import GeometryError as GeometryError
     from rotors import Bearing as Bearing
     from rotors import Disc as Disc
     from rotors import Rotor as Rotor
+    from rotors import RotorError as RotorError
     from rotors import Segment as Segment
     from rotors import ShaftMaterial as ShaftMaterial
 
@@ -55,15 +65,16 @@ except PackageNotFoundError:  # run from a checkout that is not installed
     __version__ = "0+unknown"
 
 _HOMES = {
-    "coupling": ("Machine", "MountedBearing", "Output", "Shaft", "ShaftGear"),
-    "coupling.gears": ("Gear",),
+    "coupling": ("CouplingError", "Machine", "MountedBearing", "Output", "Shaft", "ShaftGear"),
+    "coupling.gears": ("Gear", "GearError"),
     "coupling.gears.loaded.gear_pair": ("GearPair",),
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.study": ("Study", "build", "load"),
-    "gearwhine.units": ("rpm",),
-    "housing": ("Housing", "Joint", "LumpedMass", "Material", "Mount", "Seat", "Sensor", "Support"),
-    "rotors": ("Bearing", "Disc", "Rotor", "Segment", "ShaftMaterial"),
+    "gearwhine.units": ("rpm", "to_rpm"),
+    "housing": ("Housing", "HousingError", "Joint", "LumpedMass", "Material", "Mount", "Seat", "Sensor", "Support"),
+    "meshes": ("GeometryError",),
+    "rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

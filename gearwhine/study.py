@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from gearwhine.case import Case, LoadedCase, load_case, parse_case
 from gearwhine.case.checks import warnings_of
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.mode_pictures import ModeFormat
+    from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
@@ -139,11 +140,11 @@ class Study:
         part = None if solved is None else reduce_housing(self.case, solved, self.progress).component
         return describe_machine(self.case, part)
 
-    def check(self) -> dict[str, Any]:
-        """Return derived quantities of the case without solving: ratios, mesh frequencies, contact ratios, sizes."""
-        from gearwhine.results.check import check_document
+    def check(self) -> Result[CheckedCase]:
+        """Derive ratios, mesh frequencies and sizes, solving nothing; see :func:`gearwhine.analyses.case.check`."""
+        from gearwhine.analyses import case
 
-        return check_document(self.case, self.progress)
+        return case.check(self.case, progress=self.progress)
 
     def mesh(self, suffix: str = "msh") -> Result[Mesh]:
         """Mesh the housing; see :func:`gearwhine.analyses.housing.mesh`."""
@@ -216,7 +217,7 @@ class Study:
 
         return machine.system(
             self.case,
-            over_speed=campbell,
+            campbell=campbell,
             sidebands=sidebands,
             mesh_phase=mesh_phase,
             housing=self.housing,
@@ -231,8 +232,8 @@ class Study:
 
         return machine.steady(
             self.case,
-            over_speed=curve,
-            downwards=down,
+            curve=curve,
+            down=down,
             points=points,
             exact=exact,
             housing=self.housing,

@@ -3,12 +3,14 @@
 Speed ratios and senses of rotation follow from the teeth, centre distances from the shafts' axes, torques of the gear
 pairs from the torques that enter and leave the train. Parts that cannot form a machine are refused before anything is
 solved. :meth:`Machine.assemble` reduces shafts and housing to modes (component mode synthesis) and couples them.
+The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.campbell`,
+:meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import copysign, hypot
+from math import copysign
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +18,9 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.linear.campbell import SystemCampbell, system_campbell
+from coupling.linear.complex_modes import CoupledModes, coupled_modes
+from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
 from coupling.machine.assembly import CoupledMachine, assemble_machine
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
@@ -25,6 +30,7 @@ from coupling.machine.gear_train import (
     GearTrain,
     Output,
     gear_train,
+    geometry_on_axes,
     require_balanced_outputs,
     require_one_plane,
     shared_torques,
@@ -41,6 +47,8 @@ from coupling.machine.parts import (
     require_stations,
 )
 from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
+from coupling.periodic.response import PeriodicResponse
+from coupling.periodic.shooting import periodic_response
 from coupling.signals.histories import histories, transient_outputs
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
@@ -148,8 +156,7 @@ class Machine:
         for pair in self.gear_pairs:
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
-            distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
-            found.append(GearPairGeometry(driver.gear, driven.gear, distance))
+            found.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes))
         return tuple(found)
 
     @cached_property
@@ -272,6 +279,82 @@ class Machine:
             dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
         )
 
+    @cached_property
+    def assembled(self) -> CoupledMachine:
+        """The coupled equations of motion under constant torques, as :meth:`assemble` makes them; assembled once."""
+        return self.assemble()
+
+    def modes(self) -> CoupledModes:
+        """Complex natural modes about the mean contact, see :func:`coupling.coupled_modes`.
+
+        Raises
+        ------
+        ModesError
+            Where an eigenpair fails its proof.
+        """
+        return coupled_modes(self.assembled.system)
+
+    def campbell(
+        self,
+        speeds: Sequence[float] | FloatArray,
+        *,
+        frequency_limit: float,
+        progress: Callable[[float], None] = lambda fraction: None,
+    ) -> SystemCampbell:
+        """Campbell diagram: coupled modes over speed and their crossings with the orders of shafts and meshes.
+
+        Parameters
+        ----------
+        speeds : sequence of float
+            Signed speeds of the first driver [rad/s], two or more of one sense, ascending in size; zero may begin them.
+        frequency_limit : float
+            Branches below it at some speed are followed [rad/s].
+        progress : callable
+            Called with the part done, 0 to 1.
+
+        Raises
+        ------
+        CouplingError
+            For speeds that do not ascend, a limit that is not positive, or a machine that stands still.
+        ModesError
+            Where a mode fails its proof.
+        """
+        return system_campbell(self.assembled, speeds, frequency_limit=frequency_limit, progress=progress)
+
+    def mesh_error_response(self, frequencies: FloatArray, *, mesh: int = 0) -> FrequencyResponse:
+        """Response of bearings, meshes and sensors to a unit transmission error of one gear pair [1/m].
+
+        Parameters
+        ----------
+        frequencies : ndarray, shape (f,)
+            ω > 0 [rad/s].
+        mesh : int
+            Place of the gear pair in ``gear_pairs``.
+
+        Raises
+        ------
+        CouplingError
+            Where the machine has no such pair, or its teeth do not touch.
+        """
+        return mesh_error_response(self.assembled, frequencies, mesh=mesh)
+
+    def steady(self, *, tolerance: float = 1e-8) -> PeriodicResponse:
+        """Periodic steady state under the excitation of all meshes and unbalances, by shooting.
+
+        Parameters
+        ----------
+        tolerance : float
+            Of the state after a period, relative, see :func:`coupling.periodic_response`.
+
+        Raises
+        ------
+        CouplingError
+            Where the excitations have no common period.
+        PeriodicError
+            Where no periodic motion is found.
+        """
+        return periodic_response(self.assembled.system, tolerance=tolerance)
+
     def simulate(
         self,
         revolutions: int,
@@ -306,7 +389,7 @@ class Machine:
         if self.speed == 0.0:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
-        coupled = self.assemble(driving=driving)
+        coupled = self.assembled if driving is CONSTANT else self.assemble(driving=driving)
         settings = TransientSettings(
             duration=revolutions * period,
             record_from=discard * period,

@@ -18,7 +18,8 @@ from fractions import Fraction
 from math import hypot
 
 from coupling.errors import CouplingError
-from coupling.gears import GearPairGeometry
+from coupling.gears import Gear, GearPairGeometry
+from coupling.gears.errors import InterferenceError, NoContactError
 from coupling.gears.geometry.profile import meshing_rotations
 from coupling.machine.connectors import GearMesh
 from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, constant_torques, trains
@@ -348,6 +349,32 @@ def _require_place(mesh: GearMesh, starts: Mapping[str, float]) -> None:
             f"apart; expected the gears' centre distance, {1e3 * distance:.6g} mm"
         )
     require_one_plane(mesh.label, [starts[gear.rotor] + gear.at for gear in gears], mesh.geometry.face_width)
+
+
+def geometry_on_axes(
+    driver: Gear, driven: Gear, shafts: tuple[str, str], axes: Sequence[tuple[float, float]]
+) -> GearPairGeometry:
+    """Two gears in mesh at the distance of their shafts' axes.
+
+    Parameters
+    ----------
+    driver, driven : Gear
+    shafts : tuple of str
+        Names of the two shafts.
+    axes : sequence of (float, float)
+        Their places x, y [m].
+
+    Raises
+    ------
+    coupling.gears.GearError
+        Where the gears do not fit each other; at this distance: with the distance, that which the gears need, and the
+        shafts.
+    """
+    distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
+    try:
+        return GearPairGeometry(driver, driven, distance)
+    except (InterferenceError, NoContactError) as error:
+        raise type(error)(f"{error}; the axes are those of {shafts[0]!r} and {shafts[1]!r}") from error
 
 
 def require_one_plane(label: str, places: Sequence[float], face_width: float) -> None:

@@ -1,11 +1,41 @@
-"""The bundled cases, and a results folder as a page."""
+"""The bundled cases, what follows from a case without solving it, and a results folder as a page."""
+
+from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
 from gearwhine.output import staging
 from gearwhine.output.sections import Column, Document, Section, table_of
+from gearwhine.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from gearwhine.analyses.result import Result
+    from gearwhine.solve.case_summary import CheckedCase
+
+
+def check(case: Case, *, progress: Progress = silent) -> Result[CheckedCase]:
+    """Derive what follows from a case by arithmetic: ratios, mesh frequencies, contact ratios, sizes.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+        Told where the file of a geometry is read.
+
+    Raises
+    ------
+    CaseError, housing.HousingError, rotors.RotorError, coupling.CouplingError
+        Where something in the case cannot be built.
+    """
+    from gearwhine.analyses.result import Result
+    from gearwhine.output.quantity import document_of
+    from gearwhine.results.check import CHECK
+    from gearwhine.solve.case_summary import check_case
+
+    checked = check_case(case, progress)
+    return Result("check", case, checked, document_of(CHECK, checked))
 
 
 def list_examples() -> dict[str, Any]:

@@ -237,7 +237,7 @@ def update(
 
 def render(
     case: Case,
-    which: str | None = None,
+    modes: str | None = None,
     *,
     view: str = "iso",
     mode_format: ModeFormat = "png",
@@ -253,8 +253,8 @@ def render(
     Parameters
     ----------
     case : Case
-    which : str, optional
-        Modes: ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
+    modes : str, optional
+        ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
     view : {"iso", "front", "back", "left", "right", "top"}
     mode_format : {"png", "glb", "gif", "mp4"}
         Pictures, models that move, or films; the result writes them.
@@ -272,8 +272,8 @@ def render(
     housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
         Where nothing here draws or encodes.
     """
-    which = which or (None if lines or measured else "dominant")
-    check_request(case, which, mode_format, lines, measured=measured)
+    modes = modes or (None if lines or measured else "dominant")
+    check_request(case, modes, mode_format, lines, measured=measured)
     solved = _solved(case, "render", housing, folder, progress, fresh=fresh)
     comparison, survey = None, None
     if case.measured is not None and (measured or solved.strengths is not None):
@@ -281,8 +281,8 @@ def render(
     document = origin_document(solved)
 
     def files(place: Path, *, pictures: bool) -> None:
-        if which is not None:
-            draw_modes(solved, comparison, which, view, mode_format, place, progress)
+        if modes is not None:
+            draw_modes(solved, comparison, modes, view, mode_format, place, progress)
         if lines and folder is not None:
             document["lines"] = draw_lines(solved, folder, lines, view, mode_format, place, progress)
         if measured:

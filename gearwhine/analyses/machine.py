@@ -115,7 +115,7 @@ def system(
     case: Case,
     *,
     mesh_phase: float | None = None,
-    over_speed: bool = False,
+    campbell: bool = False,
     sidebands: int = 0,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
@@ -129,7 +129,7 @@ def system(
     case : Case
     mesh_phase : float, optional
         Part of the mesh period of the first pair about whose stiffness to linearise; the mean by default.
-    over_speed : bool
+    campbell : bool
         Whether to follow the modes over speed; a case with a `[sweep]` of speeds always does.
     sidebands : int
         Number of shaft-order sidebands drawn on each side of every mesh order.
@@ -153,7 +153,7 @@ def system(
         solved_housing,
         progress,
         mesh_phase=mesh_phase,
-        over_speed=over_speed or swept or sidebands > 0,
+        over_speed=campbell or swept or sidebands > 0,
         sidebands=sidebands,
     )
     document = system_document(solved)
@@ -180,8 +180,8 @@ def system(
 def steady(
     case: Case,
     *,
-    over_speed: bool = False,
-    downwards: bool = False,
+    curve: bool = False,
+    down: bool = False,
     points: int = 100,
     exact: bool = False,
     housing: SolvedHousing | None = None,
@@ -194,9 +194,9 @@ def steady(
     Parameters
     ----------
     case : Case
-    over_speed : bool
+    curve : bool
         Whether to follow the motion over speed.
-    downwards : bool
+    down : bool
         Whether to follow it from the highest speed downwards.
     points : int
         Of the curve where it runs straight.
@@ -220,8 +220,8 @@ def steady(
         machine,
         solved_housing,
         progress,
-        over_speed=over_speed or downwards,
-        downwards=downwards,
+        over_speed=curve or down,
+        downwards=down,
         points=points,
         exact=exact,
     )

@@ -205,7 +205,7 @@ def simulate(
     require(case, "rotor", "operation", "transient", command="simulate")
     only = case.model_copy(update={"measured": None})
     found = run(only, housing=housing, folder=folder, pictures=False, progress=progress)
-    return replace(found, case=case)
+    return replace(found, command="simulate", case=case)
 
 
 def run_into(

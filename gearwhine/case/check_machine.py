@@ -242,6 +242,7 @@ def _check_pair(
 ) -> Iterator[Finding]:
     """Yield why two gears do not mesh, at any distance or at that of their axes, or are not opposite each other."""
     from coupling.gears import GearError, GearPairGeometry
+    from coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes
 
     try:
         GearPairGeometry(*gears)
@@ -255,13 +256,10 @@ def _check_pair(
         return
     rotors = draft.rotor(given[0].rotor), draft.rotor(given[1].rotor)
     if rotors[0] is not None and rotors[1] is not None:
-        from coupling.machine.gear_train import LARGEST_OFFSET
-
         apart = math.hypot(rotors[0].axis[0] - rotors[1].axis[0], rotors[0].axis[1] - rotors[1].axis[1])
         if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
             expected = f"the distance of the rotors' axes, {millimetres(apart)}"
             yield Finding(("gear_pair", index, "centre_distance"), expected)
-        distance = apart
         shift = rotors[0].start + (given[0].at or 0.0) - rotors[1].start - (given[1].at or 0.0)
         reach = 0.5 * min(gear.face_width for gear in gears)
         if abs(shift) > reach + LARGEST_OFFSET:
@@ -270,23 +268,13 @@ def _check_pair(
                 f"{millimetres(abs(shift))} apart along z"
             )
             yield Finding(("gear_pair", index, "driven"), expected)
-    if distance is not None:
-        yield from _check_distance(index, gears, distance)
-
-
-def _check_distance(index: int, gears: tuple[BuiltGear, BuiltGear], distance: float) -> Iterator[Finding]:
-    """Yield a centre distance at which teeth jam, or lose each other, that mesh at another."""
-    from coupling.gears import GearPairGeometry
-    from coupling.gears.errors import InterferenceError, NoContactError
-
-    reference = gears[0].pitch_radius + gears[1].pitch_radius
-    shown = f"(pitch radii of {millimetres(reference)} in all; the axes are {millimetres(distance)} apart)"
     try:
-        GearPairGeometry(*gears, distance)
-    except InterferenceError:
-        yield Finding(("gear_pair", index), f"axes further apart: the gears jam {shown}", UNSAID)
-    except NoContactError:
-        yield Finding(("gear_pair", index), f"axes closer together: the gears lose contact {shown}", UNSAID)
+        if rotors[0] is not None and rotors[1] is not None:
+            geometry_on_axes(*gears, (rotors[0].name, rotors[1].name), (rotors[0].axis, rotors[1].axis))
+        elif distance is not None:
+            GearPairGeometry(*gears, distance)
+    except GearError as error:
+        yield Finding(("gear_pair", index), f"a centre distance that fits; {error}", UNSAID)
 
 
 def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:

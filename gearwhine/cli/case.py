@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, FreshRun, hand_over, on_case, results_folder
+from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, FreshRun, hand_over, on_case, results_folder, written
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
@@ -38,10 +38,14 @@ def run(
 
 def check(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     """Check the case and show speeds, mesh frequencies, torques and sizes; solve nothing."""
+    from gearwhine.analyses import case as analyses
     from gearwhine.output.terminal import shown_by
-    from gearwhine.results.check import check_document, sections
+    from gearwhine.results.check import sections
 
-    on_case(case, common, check_document, shown_by(sections))
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        return written(analyses.check(given, progress=progress), common.output, progress)
+
+    on_case(case, common, work, shown_by(sections))
 
 
 def examples(

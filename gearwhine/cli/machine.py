@@ -85,7 +85,7 @@ def system(
         found = analyses.system(
             given,
             mesh_phase=mesh_phase,
-            over_speed=campbell,
+            campbell=campbell,
             sidebands=sidebands,
             folder=common.output,
             fresh=fresh,
@@ -134,8 +134,8 @@ def steady(
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.steady(
             given,
-            over_speed=curve,
-            downwards=down,
+            curve=curve,
+            down=down,
             points=points,
             exact=exact,
             folder=common.output,

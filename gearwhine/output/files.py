@@ -145,8 +145,22 @@ def _file_content(path: Path) -> dict[str, str]:
 
 
 SUMMARY = "summary.json"
-COMMANDS = ("run", "modes", "rotors", "gears", "system", "steady", "sweep", "compare", "survey", "update", "render")
-"""Commands that leave results in the output folder."""
+COMMANDS = (
+    "run",
+    "simulate",
+    "check",
+    "modes",
+    "rotors",
+    "gears",
+    "system",
+    "steady",
+    "sweep",
+    "compare",
+    "survey",
+    "update",
+    "render",
+)
+"""Analyses that leave results in the output folder: the commands, and `simulate` of Python."""
 
 _STAGING = ".partial-"
 _DRAWN = (".png", ".glb", ".vtu")

@@ -4,12 +4,14 @@ from collections.abc import Callable
 from typing import Any
 
 from gearwhine.output.sections import Document, Section
-from gearwhine.results import comparison, gears, housing, rotors, run, sweep, system, update
+from gearwhine.results import check, comparison, gears, housing, rotors, run, sweep, system, update
 from gearwhine.results import steady_state as steady
 
 
 def chapters_of(document: Document) -> tuple[Section, ...]:
     """Return the chapters of a command's document, leaving out empty ones."""
+    if document.get("command") == "check":
+        return check.sections(document)
     modes = document.get("housing", document if "certificate" in document and "mesh" in document else {})
     makers: tuple[tuple[Callable[[Document], Section], Any], ...] = (
         (housing.report, modes),

@@ -432,7 +432,24 @@ ROTOR = (
 )
 """Of one rotor on grounded bearings."""
 
-ROTORS = (Rows("rotors", lambda solved: solved, ROTOR, "rotor"),)
+
+def _numbers(dimension: str, of: Any, what: str) -> Quantity:
+    """Numbers along the modes of the rotor that has most, from 1."""
+
+    def taken(solved: Any) -> Any:
+        count = max((len(modes) for modes in map(of, solved) if modes is not None), default=0)
+        return np.arange(1, count + 1) if count else None
+
+    return Quantity("", taken, dimension, (dimension,), "1", f"number of the {what}")
+
+
+ROTORS = (
+    _numbers("rest_mode", lambda one: one.rest.frequencies, "lateral mode at rest"),
+    _numbers("lateral_mode", lambda one: one.lateral.frequencies, "lateral mode"),
+    _numbers("torsional_mode", lambda one: one.torsional.frequencies, "torsional mode"),
+    _numbers("whirl_mode", lambda one: one.whirl_deflection, "whirl mode"),
+    Rows("rotors", lambda solved: solved, ROTOR, "rotor"),
+)
 """Of all rotors of a case."""
 
 

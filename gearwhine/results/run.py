@@ -219,6 +219,11 @@ RECORD = (
 ENERGY = tuple(Quantity(key, attrgetter(key)) for key in ("change", "loads", "lost", "teeth", "friction"))
 
 
+def _trusted(row: Any) -> dict[str, Any]:
+    """Up to which frequency a spectrum of the transient is complete: beyond it modes are missing."""
+    return {"trusted_below_hz": float(row[0].trusted_limit)}
+
+
 def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[Quantity, ...]:
     """Peak amplitudes and phases of the spectra of like signals."""
 
@@ -227,7 +232,7 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[
 
     def attributes(row: Any) -> dict[str, Any]:
         first, sampling = next(iter(of(row[0]).values())), row[0].record.sampling
-        told: dict[str, Any] = {"window": first.window}
+        told: dict[str, Any] = {"window": first.window} | _trusted(row)
         if sampling.is_long:
             told |= {
                 "averages": first.averages,
@@ -254,7 +259,13 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[
             attributes=attributes,
         ),
         Quantity(
-            "", lambda row: of_each(row, "phase"), f"{name}_phase", (dimension, "frequency"), "rad", f"phase of {what}"
+            "",
+            lambda row: of_each(row, "phase"),
+            f"{name}_phase",
+            (dimension, "frequency"),
+            "rad",
+            f"phase of {what}",
+            attributes=_trusted,
         ),
     )
 
@@ -268,7 +279,7 @@ def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, what:
         ("bearing", *axis, "frequency"),
         unit,
         f"peak amplitude of the {what}",
-        attributes=lambda found: {"window": next(iter(found[1].bearing_spectra.values())).window},
+        attributes=lambda found: {"window": next(iter(found[1].bearing_spectra.values())).window} | _trusted(found),
     )
 
 
@@ -308,6 +319,12 @@ LINES = (
 )
 """Of the lines of all sensors with their parts."""
 
+
+def _modal_spectrum(row: Any) -> Any:
+    found = row[0].modal_spectrum()
+    return None if found is None else (*found, float(row[0].trusted_limit))
+
+
 MODAL = (
     Quantity("", lambda row: row[0], "modal_coordinate", ("modal_coordinate",)),
     Quantity("", lambda row: row[1].frequencies, "frequency", ("frequency",), *_HERTZ_LONG),
@@ -318,10 +335,10 @@ MODAL = (
         ("modal_coordinate", "frequency"),
         "m kg0.5",
         f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
-        attributes=lambda row: {"window": row[1].window},
+        attributes=lambda row: {"window": row[1].window, "trusted_below_hz": row[2]},
     ),
 )
-"""Of the names of modal coordinates and their spectrum."""
+"""Of the names of modal coordinates, their spectrum, and the frequency up to which it is complete [Hz]."""
 
 HOUSING_LINES = (
     Quantity("", lambda row: row[0], "housing_line", ("housing_line",), *_HERTZ_LONG),
@@ -376,7 +393,7 @@ TRANSIENT: Fields = (
             _load_spectrum(
                 "moment", slice(3, 5), ("moment_axis",), "N m", "moment of the shaft on its bearing about x and y"
             ),
-            Part("", lambda row: row[0].modal_spectrum(), MODAL),
+            Part("", _modal_spectrum, MODAL),
             Part("", lambda row: row[1].line_table(), LINES),
             Part("", lambda row: row[1].housing_lines(row[0].trusted_limit), HOUSING_LINES),
         ),

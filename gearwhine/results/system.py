@@ -51,6 +51,7 @@ def _known(values: dict[str, float]) -> dict[str, float]:
 
 
 MODE = (
+    Quantity("", lambda row: row[1] + 1, "system_mode", unit="1", long_name="number of the coupled mode"),
     Quantity(
         "frequency_hz",
         lambda row: row[0].modes.frequencies_hz[row[1]],

@@ -304,6 +304,11 @@ class Campbell:
         return np.asarray(self.eigenvalues.imag)
 
     @property
+    def damping_ratios(self) -> FloatArray:
+        """−Re λ / |λ|, (s, m); negative where a mode grows."""
+        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
+
+    @property
     def log_decrements(self) -> FloatArray:
         """−2π Re λ / Im λ, (s, m)."""
         return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)

@@ -21,9 +21,8 @@ diagram = campbell(rotor, bearings, speeds, count=6)
 crossings = diagram.crossings()
 
 for speed, frequencies in zip(speeds[::10], diagram.frequencies[::10], strict=True):
-    print(f"{speed / gw.rpm(1.0):6.0f} rpm: " + "  ".join(f"{f:7.2f} rad/s" for f in np.sort(frequencies)))
-print("critical speeds: " + ", ".join(f"{crossing.speed / gw.rpm(1.0):.0f} rpm" for crossing in crossings))
-damping = -diagram.eigenvalues.real / np.abs(diagram.eigenvalues)
-figure = draw_campbell("Two discs", speeds, diagram.frequencies, diagram.direction, damping)
+    print(f"{gw.to_rpm(speed):6.0f} rpm: " + "  ".join(f"{f:7.2f} rad/s" for f in np.sort(frequencies)))
+print("critical speeds: " + ", ".join(f"{gw.to_rpm(crossing.speed):.0f} rpm" for crossing in crossings))
+figure = draw_campbell("Two discs", diagram)
 if len(sys.argv) > 1:
     figure.savefig(sys.argv[1])

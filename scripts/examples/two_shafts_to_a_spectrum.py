@@ -32,7 +32,7 @@ motion = machine.simulate(revolutions=12, discard=8, tolerance=2e-3)
 spectrum = motion.spectrum("mesh_force", "pinion -> wheel")
 mean_force = float(motion.dataset["mesh_force"].sel(contact="pinion -> wheel").mean())
 
-print({name: f"{speed / gw.rpm(1.0):.0f} rpm" for name, speed in machine.speeds.items()})
+print({name: f"{gw.to_rpm(speed):.0f} rpm" for name, speed in machine.speeds.items()})
 for harmonic in range(1, 6):
     frequency = harmonic * machine.mesh_frequencies[0]
     amplitude = np.interp(frequency, spectrum.frequencies, spectrum.amplitude)

@@ -21,8 +21,8 @@ motion = response.reading([0.4])[0][:, 0]  # along x, complex [m]
 orbit = np.abs(motion)  # radius of a circle, since the bearings are isotropic
 resonance = float(speeds[orbit.argmax()])
 
-print(f"first forward critical speed {first / gw.rpm(1.0):.0f} rpm")
-print(f"largest orbit {1e6 * orbit.max():.0f} µm at {resonance / gw.rpm(1.0):.0f} rpm")
+print(f"first forward critical speed {gw.to_rpm(first):.0f} rpm")
+print(f"largest orbit {1e6 * orbit.max():.0f} µm at {gw.to_rpm(resonance):.0f} rpm")
 probe = ProbeResponse("disc, along x", motion)
 figure = draw_unbalance_response("Disc with unbalance", speeds, [probe], critical_speeds=[first])
 if len(sys.argv) > 1:

@@ -10,11 +10,8 @@ from hypothesis import strategies as st
 
 from coupling import CoupledMachine, CouplingError, GearMesh, MountedBearing, MountedGear, Torque, assemble_machine
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from coupling.machine import gear_train
 from coupling.machine.components import rotor_component
 from coupling.machine.loads import AnyTorque, TorqueHistory
-from gearwhine.case import check_machine as check_running
-from gearwhine.case import check_machine as check_shafts
 from rotors import Bearing, ModalRotor, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -110,8 +107,3 @@ def test_a_torque_that_nothing_takes_is_refused(shaft: tuple[ModalRotor, list[Be
     # What speeds the train up for a while is no steady state.
     rising: AnyTorque = TorqueHistory("first", 0.0, np.array([0.0, 1.0]), np.array([70.0, 90.0]))
     built(shaft, torques=(rising, taken[1]))
-
-
-def test_the_case_reader_has_the_same_tolerances() -> None:
-    assert check_shafts.LARGEST_OFFSET == gear_train.LARGEST_OFFSET
-    assert check_running.LARGEST_IMBALANCE == gear_train.LARGEST_IMBALANCE

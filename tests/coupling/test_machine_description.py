@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
-from coupling.gears import ConstantStiffness, Gear, GearError
+from coupling.gears import ConstantStiffness, Gear, GearError, SquareStiffness
 from coupling.gears.loaded.gear_pair import GearPair
+from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
 from coupling.machine.gear_train import GearedShafts, gear_train
 from rotors import Bearing, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
@@ -155,7 +156,8 @@ def test_senses_and_ratios_cannot_be_given_wrong() -> None:
     machine = rig(28 * 3.175e-3)
     assert machine.speeds == {"input": -575.0, "output": 575.0}
     assert [torque.value for torque in machine.constant_torques] == pytest.approx([-71.77, -71.77], rel=1e-12)
-    with pytest.raises(GearError, match="200"):
+    needed = "at a centre distance of 200 mm; they mesh without backlash at 88.9 mm; the axes are those of 'input' and"
+    with pytest.raises(GearError, match=needed):
         rig(0.2)
 
 
@@ -255,3 +257,29 @@ def test_motion_is_labelled_and_carries_the_mean_torque() -> None:
     assert spectrum.frequencies[4 * 20] == pytest.approx(machine.mesh_frequencies[0], rel=1e-9)
     with pytest.raises(CouplingError, match="stands still"):
         two_stages(speed=0.0).simulate(2, 1)
+
+
+def test_the_analyses_of_a_machine_are_its_methods() -> None:
+    """The Campbell diagram passes through the modes at operation; the steady force on teeth is torque over radius."""
+    pairs = [GearPair(*names, SquareStiffness(2e8), damping_ratio=0.05) for names in (("a", "b"), ("c", "d"))]
+    machine = two_stages(gear_pairs=pairs)
+    assert machine.assembled is machine.assembled
+    modes, limit = machine.modes(), 2.0 * math.pi * 900.0
+    diagram = machine.campbell([100.0, 300.0], frequency_limit=limit)
+    damped = np.sort(modes.eigenvalues.imag[(modes.eigenvalues.imag > 0.0) & (np.abs(modes.eigenvalues) < limit)])
+    at_operation = np.sort(diagram.eigenvalues[1].imag)
+    assert damped.size > 3
+    assert at_operation[: damped.size] == pytest.approx(damped, rel=1e-9)
+    assert {line.order for line in diagram.lines} >= {20.0, 12.5}
+
+    frequencies = 2.0 * math.pi * np.array(machine.mesh_frequencies)
+    for mesh in (0, 1):
+        found = machine.mesh_error_response(frequencies, mesh=mesh)
+        expected = mesh_error_response(two_stages(gear_pairs=pairs).assemble(), frequencies, mesh=mesh)
+        assert np.array_equal(found.coordinates, expected.coordinates)
+        assert f"{pairs[mesh].driver} -> {pairs[mesh].driven}" in found.excitation
+
+    steady = machine.steady(tolerance=1e-5)
+    assert steady.period == pytest.approx(2.0 * math.pi / (300.0 * 2.5), rel=1e-12)  # of 20 and 12.5 a turn
+    radii = [MODULE * teeth / 2 * math.cos(math.radians(20.0)) for teeth in (20, 25)]
+    assert steady.mean_force[:2] == pytest.approx([40.0 / radii[0], 80.0 / radii[1]], rel=1e-3)

@@ -118,6 +118,14 @@ def test_every_quantity_has_its_dimensions_and_unit(written: Written) -> None:
     assert float(written.data.speed) == pytest.approx(3000.0)
 
 
+def test_spectra_tell_where_the_modes_of_the_housing_end(written: Written) -> None:
+    limit = float(written.modes["certificate_limit"]) / (2.0 * np.pi)
+    spectra = {name: data for name, data in written.data.items() if "frequency" in data.dims}
+    assert len(spectra) >= 8
+    for name, data in spectra.items():
+        assert data.attrs["trusted_below_hz"] == pytest.approx(limit, rel=1e-9), name
+
+
 def test_time_goes_on_from_what_is_discarded(written: Written) -> None:
     times = written.data.time.values
     step = np.diff(times)

@@ -40,7 +40,7 @@ def test_update_finds_the_modulus_of_the_twin(example: Any) -> None:
 
 def test_modes_of_shafts_in_a_housing_are_those_of_its_matrices(example: Any) -> None:
     found = example("housing_and_shafts_coupled")
-    system = found["coupled"].system
+    system = found["machine"].assembled.system
     n = system.size
     state = np.block([[np.zeros((n, n)), np.eye(n)], [-system.mean_stiffness, -system.mean_damping]])
     eigenvalues = np.linalg.eigvals(state)

@@ -28,6 +28,7 @@ from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.signature import SolvedSignature, solve_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
+from rotors import Campbell
 
 
 class Drawn(NamedTuple):
@@ -184,12 +185,10 @@ def test_forward_critical_speeds_are_filled_and_backward_ones_open() -> None:
     speeds = np.linspace(0.0, 400.0, 21)
     frequencies = np.column_stack([200.0 - 0.1 * speeds, 200.0 + 0.1 * speeds])
     directions = np.column_stack([-np.ones(21), np.ones(21)])
+    nothing: Any = None
     figure = draw_campbell(
         "t",
-        speeds,
-        frequencies,
-        directions,
-        0.0 * directions,
+        Campbell(speeds, 1j * frequencies, directions, 0.0 * directions, speeds < 0.0, nothing, ()),
         critical_speeds=[180.0, 222.0],
         critical_directions=[-1, 1],
     )

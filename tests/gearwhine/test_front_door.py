@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import xarray as xr
 import gearwhine as gw
 from gearwhine.case import Bearing, Material, Rotor
 from gearwhine.cli import run_command
+from gearwhine.failures import explain
 
 COARSE = {"housing.box.mesh_size": "40 mm", "housing.frequency_limit": "2.5 kHz"}
 SHORT = {"transient.revolutions": 6, "transient.discard": 4, "transient.tolerance": 5e-3}
@@ -23,7 +25,7 @@ def study() -> gw.Study:
 
 
 def test_every_name_of_the_front_door_is_there_and_none_is_loaded_early() -> None:
-    assert len(gw.__all__) <= 32
+    assert len(gw.__all__) <= 35
     assert all(getattr(gw, name) is not None for name in gw.__all__)
     with pytest.raises(AttributeError, match="no attribute 'gear_box'"):
         gw.gear_box  # noqa: B018 - its absence is the point
@@ -64,7 +66,7 @@ def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> Non
 
 def test_a_run_has_histories_in_memory_as_on_file(study: gw.Study, tmp_path: Path) -> None:
     found = study.simulate()
-    assert found.command == "run"
+    assert found.command == "simulate"
     assert found.proofs["energy_error"] < 1e-2
     found.write(tmp_path, pictures=False)
     assert not list(tmp_path.glob("*.png"))
@@ -138,6 +140,71 @@ def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
     assert found == pytest.approx(study.system().dataset["system_frequency"].values, rel=1e-9)
 
 
+def test_wrong_input_is_a_value_error_and_a_failed_proof_a_runtime_error() -> None:
+    """So that one base class catches what all packages refuse; the command exits with 2 and 1."""
+    exported = (gw.CaseError, gw.GeometryError, gw.HousingError, gw.RotorError, gw.GearError, gw.CouplingError)
+    assert all(issubclass(one, ValueError) for one in exported)
+    wrong = proofs = 0
+    for name in ("meshes.errors", "housing.errors", "rotors.errors", "coupling.errors", "coupling.gears.errors"):
+        for error in vars(import_module(name)).values():
+            if isinstance(error, type) and issubclass(error, Exception):
+                code, message = explain(error("why"))
+                assert message == "why"
+                assert issubclass(error, ValueError if code == 2 else RuntimeError)
+                assert code == 1 or issubclass(error, exported)
+                wrong, proofs = wrong + (code == 2), proofs + (code == 1)
+    assert (wrong, proofs) >= (12, 10)
+    with pytest.raises(gw.RotorError, match="mass"):
+        gw.Disc(at=0.1, mass=-1.0, polar_inertia=0.0, diametral_inertia=0.0)
+
+
+def test_speeds_in_revolutions_a_minute_and_back() -> None:
+    assert gw.rpm(30.0) == pytest.approx(np.pi)
+    assert gw.to_rpm(gw.rpm(-1234.5)) == pytest.approx(-1234.5, rel=1e-15)
+
+
+def test_axes_too_far_apart_are_refused_with_both_distances() -> None:
+    words = (
+        r"gear_pair\[0\].*the teeth lose contact at a centre distance of 244\.45 mm; they mesh without backlash at "
+        r"88\.9 mm; the axes are those of 'input' and 'output'"
+    )
+    with pytest.raises(gw.CaseError, match=words):
+        gw.load("spur-pair", {"rotor.input.axis": ["-200 mm", "0 mm"]})
+
+
+def test_a_check_is_a_result_like_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = gw.load("spur-pair").check()
+    pair = found.document["gear_pairs"][0]
+    assert pair["mesh_frequency_hz"] == pytest.approx(28 * 5500.0 / 60.0, rel=1e-12)
+    assert found.solved.pairs[0].geometry.contact_ratio == pair["contact_ratio"]
+    assert found.warnings == []
+    assert run_command(["check", "spur-pair", "--json", "-q"]) == 0
+    assert json.loads(capsys.readouterr().out) == json.loads(found.json())
+    assert found.write(tmp_path) == ["case.toml", "summary.json"]
+    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["gear_pairs"][0] == pair
+    assert run_command(["report", "spur-pair", "-q", "-o", str(tmp_path)]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<h2>gearwhine check</h2>" in page
+    assert "mesh frequency 2566.67 Hz" in page
+
+
+def test_modes_are_selected_by_their_number(study: gw.Study) -> None:
+    housing, system, rotors = study.modes().dataset, study.system().dataset, study.rotors().dataset
+    for data, variable, dimension in (
+        (housing, "housing_frequency", "housing_mode"),
+        (system, "system_frequency", "system_mode"),
+        (rotors, "rotor_rest_frequency", "rest_mode"),
+        (rotors, "rotor_torsional_frequency", "torsional_mode"),
+        (rotors, "rotor_lateral_shape", "lateral_mode"),
+        (rotors, "rotor_whirl_deflection", "whirl_mode"),
+    ):
+        numbers = data[dimension]
+        assert numbers.values.tolist() == list(range(1, data.sizes[dimension] + 1))
+        assert numbers.attrs["units"] == "1"
+        assert numbers.attrs["long_name"].startswith("number of the ")
+        np.testing.assert_array_equal(data[variable].sel({dimension: 3}), data[variable].isel({dimension: 2}))
+
+
 def test_changes_of_a_case_may_be_lists_and_tables() -> None:
     run = {"from": "1500 rpm", "to": "4500 rpm", "time": "0.5 s"}
     changes = {"transient": {"run": run, "tolerance": 1e-3}, "measured": {"frequencies": ["658 Hz", 1049.0]}}
@@ -156,3 +223,18 @@ def test_the_examples_of_docstrings_hold() -> None:
     from gearwhine import study as module
 
     assert doctest.testmod(module).failed == 0
+
+
+def test_a_simulation_leaves_the_results_of_a_run_in_the_folder(tmp_path: Path) -> None:
+    study = gw.load("spur-pair", SHORT)
+    study.run().write(tmp_path, pictures=False)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    files = study.simulate().write(tmp_path, pictures=False)
+    assert {"simulate/results.nc", "simulate/summary.json"} <= set(files)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+    assert json.loads((tmp_path / "simulate" / "summary.json").read_text(encoding="utf-8"))["command"] == "simulate"
+    assert run_command(["report", "spur-pair", "-q", "-o", str(tmp_path)]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<h2>gearwhine simulate</h2>" in page
+    assert "<h2>gearwhine run</h2>" in page
+    assert page.count("the energy balance closes") == 2

@@ -102,8 +102,8 @@ ONE_WRONG = {
     "helix of one gear": ("gear.0.helix_angle", "10 deg", "gear_pair[0].driven", 'has +10 deg, "wheel" +0 deg'),
     "planes": ("gear.1.at", "104 mm", "gear_pair[0].driven", "they are 4 mm apart along z"),
     "itself": ("gear_pair.0.driven", "pinion", "gear_pair[0].driven", "another gear than the driver itself"),
-    "too few teeth": ("gear.1.teeth", 26, "gear_pair[0]", "the gears lose contact"),
-    "too many teeth": ("gear.1.teeth", 30, "gear_pair[0]", "the gears jam"),
+    "too few teeth": ("gear.1.teeth", 26, "gear_pair[0]", "the teeth lose contact at a centre distance of 88.9 mm"),
+    "too many teeth": ("gear.1.teeth", 30, "gear_pair[0]", "the teeth jam at a centre distance of 88.9 mm"),
     "distance": ("gear_pair.0.centre_distance", "89 mm", "gear_pair[0].centre_distance", "axes, 88.9 mm"),
 }
 

@@ -1,6 +1,7 @@
 """Pictures over speed: Campbell diagram, critical-speed map, unbalance response."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from gearwhine.figures import ProbeResponse, draw_campbell, draw_critical_map, d
 from gearwhine.figures.rotors.campbell import stability_onset
 from gearwhine.figures.rotors.critical_speed_map import map_intersections
 from gearwhine.figures.rotors.responses import phase_lag
+from rotors import Campbell
 
 RPM = 60.0 / (2.0 * math.pi)
 SPEEDS = np.linspace(0.0, 400.0, 21)
@@ -25,6 +27,16 @@ def texts(figure: Figure) -> set[str]:
     return {text.get_text() for axes in figure.axes for text in axes.texts}
 
 
+def diagram(
+    speeds: np.ndarray, frequencies: np.ndarray, directions: np.ndarray, ratios: np.ndarray, axial: float = 0.0
+) -> Campbell:
+    """What a rotor's whirl over speed would be, made up; |λ| and ζ are those given."""
+    values = frequencies * (-ratios + 1j * np.sqrt(1.0 - ratios**2))
+    nothing: Any = None
+    proved = np.zeros(speeds.size, dtype=bool)
+    return Campbell(speeds, values, directions, np.full(values.shape, axial), proved, nothing, ())
+
+
 def branches() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A backward and a forward branch of made-up slopes, and one whose sense changes halfway."""
     frequencies = np.column_stack([200.0 - 0.1 * SPEEDS, 200.0 + 0.1 * SPEEDS, np.full_like(SPEEDS, 500.0)])
@@ -33,7 +45,7 @@ def branches() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def test_campbell_lines_hold_the_branches_in_their_senses() -> None:
-    figure = draw_campbell("t", SPEEDS, *branches(), orders=(1.0, 2.0), operating_speed=-300.0)
+    figure = draw_campbell("t", diagram(SPEEDS, *branches()), orders=(1.0, 2.0), operating_speed=-300.0)
     (axes,) = figure.axes  # without damping there is no second panel
     lines = [line for line in axes.get_lines() if line.get_label() == "branch"]
     rpm, hertz = (np.array(data) for data in lines[0].get_data())
@@ -45,6 +57,8 @@ def test_campbell_lines_hold_the_branches_in_their_senses() -> None:
     assert np.unique(np.concatenate([line.get_xdata() for line in lines[2:]])) == pytest.approx(RPM * SPEEDS)
     ((_, twice),) = drawn(axes, "2×")
     assert twice[-1] == pytest.approx(2.0 * 400.0 / (2.0 * math.pi))
+    along = draw_campbell("t", diagram(SPEEDS, *branches(), axial=0.95))  # of no whirl at all
+    assert len({line.get_color() for line in along.axes[0].get_lines() if line.get_label() == "branch"}) == 1
     ((at, _),) = drawn(axes, "operation")
     assert at[0] == pytest.approx(300.0 * RPM)
     assert axes.get_xlabel() == "speed of rotation [rpm]"
@@ -53,8 +67,8 @@ def test_campbell_lines_hold_the_branches_in_their_senses() -> None:
 
 def test_campbell_of_a_rotor_that_turns_the_other_way_is_the_same_picture() -> None:
     frequencies, directions, ratios = branches()
-    one = draw_campbell("t", SPEEDS, frequencies, directions, ratios)
-    other = draw_campbell("t", -SPEEDS[::-1], frequencies[::-1], -directions[::-1], ratios[::-1])
+    one = draw_campbell("t", diagram(SPEEDS, frequencies, directions, ratios))
+    other = draw_campbell("t", diagram(-SPEEDS[::-1], frequencies[::-1], -directions[::-1], ratios[::-1]))
     for here, there in zip(one.axes[0].get_lines(), other.axes[0].get_lines(), strict=True):
         assert here.get_color() == there.get_color()
         assert np.array(here.get_data()) == pytest.approx(np.array(there.get_data()))
@@ -62,7 +76,7 @@ def test_campbell_of_a_rotor_that_turns_the_other_way_is_the_same_picture() -> N
 
 def test_campbell_marks_critical_speeds_on_the_line_of_once_per_turn() -> None:
     figure = draw_campbell(
-        "t", SPEEDS, *branches(), critical_speeds=[180.0, 222.0, 900.0], critical_directions=[-1.0, 1.0, 1.0]
+        "t", diagram(SPEEDS, *branches()), critical_speeds=[180.0, 222.0, 900.0], critical_directions=[-1.0, 1.0, 1.0]
     )
     marks = drawn(figure.axes[0], "critical")
     assert np.array(marks)[:, :, 0] == pytest.approx(np.array([[s * RPM, s / (2 * math.pi)] for s in (180.0, 222.0)]))
@@ -72,7 +86,7 @@ def test_campbell_marks_critical_speeds_on_the_line_of_once_per_turn() -> None:
 def test_campbell_shows_the_decrement_and_where_stability_ends() -> None:
     frequencies, directions, _ = branches()
     ratios = np.column_stack([np.full(21, 0.05), 0.03 - 1e-4 * SPEEDS, np.full(21, 0.02)])
-    figure = draw_campbell("t", SPEEDS, frequencies, directions, ratios)
+    figure = draw_campbell("t", diagram(SPEEDS, frequencies, directions, ratios))
     upper, lower = figure.axes
     assert upper.get_xlim() == lower.get_xlim()
     assert lower.get_ylabel() == "log. decrement [1]"
@@ -89,7 +103,7 @@ def test_campbell_leaves_gaps_where_a_branch_is_not_known() -> None:
     frequencies, directions, ratios = branches()
     frequencies[5, 0] = np.nan
     frequencies[:, 2] = np.nan
-    (axes,) = draw_campbell("t", SPEEDS, frequencies, directions, ratios).axes
+    (axes,) = draw_campbell("t", diagram(SPEEDS, frequencies, directions, ratios)).axes
     lines = drawn(axes, "branch")
     assert len(lines) == 2
     assert np.isnan(lines[0][1]).sum() == 1
@@ -98,14 +112,14 @@ def test_campbell_leaves_gaps_where_a_branch_is_not_known() -> None:
 @pytest.mark.parametrize("count", [0, 1])
 def test_campbell_refuses_what_is_no_curve(count: int) -> None:
     with pytest.raises(ValueError, match="two or more speeds"):
-        draw_campbell("t", SPEEDS[:count], *(array[:count] for array in branches()))
+        draw_campbell("t", diagram(SPEEDS[:count], *(array[:count] for array in branches())))
 
 
 def test_forty_branches_and_forty_critical_speeds() -> None:
     values = 50.0 + 10.0 * np.arange(40)
     frequencies = np.tile(values, (21, 1))
     figure = draw_campbell(
-        "t", SPEEDS, frequencies, np.ones((21, 40)), np.zeros((21, 40)),
+        "t", diagram(SPEEDS, frequencies, np.ones((21, 40)), np.zeros((21, 40))),
         critical_speeds=values, critical_directions=np.ones(40), frequency_limit=500.0,
     )  # fmt: skip
     (axes,) = figure.axes

@@ -323,29 +323,30 @@ def _check_match(pair: GearPairGeometry) -> None:
 
 
 def _check_distance(pair: GearPairGeometry) -> None:
-    """Raise `InterferenceError` for a centre distance at which the teeth jam."""
+    """Raise for a centre distance at which the teeth jam, or lose contact, that mesh at another."""
     distance = pair.centre_distance
     if distance is None:
         return
+    close = pair.base_radii_sum / math.cos(pair.backlash_free_pressure_angle)
+    found = f"at a centre distance of {distance * 1e3:.6g} mm; they mesh without backlash at {close * 1e3:.6g} mm"
     if not (math.isfinite(distance) and distance > pair.base_radii_sum):
         raise InterferenceError(
-            f"{pair.label}: the centre distance must exceed the sum of the base radii, "
-            f"{pair.base_radii_sum * 1e3:.6g} mm, got {distance * 1e3:.6g} mm"
+            f"{pair.label}: the gears do not fit {found}, which exceeds the sum of the base radii, "
+            f"{pair.base_radii_sum * 1e3:.6g} mm"
         )
     if pair.normal_backlash < -_ALLOWED_JAM * pair.driver.module:
-        close = pair.base_radii_sum / math.cos(pair.backlash_free_pressure_angle)
-        raise InterferenceError(
-            f"{pair.label}: the teeth jam at a centre distance of {distance * 1e3:.6g} mm; "
-            f"they mesh without backlash at {close * 1e3:.6g} mm"
-        )
+        raise InterferenceError(f"{pair.label}: the teeth jam {found}")
+    if pair.contact_ratio < 1.0:
+        GearPairGeometry(pair.driver, pair.driven)  # raises for teeth that mesh at no distance
+        raise NoContactError(f"{pair.label}: the teeth lose contact {found}")
 
 
 def _check_contact(pair: GearPairGeometry) -> None:
     """Raise where the contact ratio is below one, or a tip reaches below the other gear's flank or into its root."""
     if pair.contact_ratio < 1.0:
         raise NoContactError(
-            f"{pair.label}: the contact ratio is {pair.contact_ratio:.4f}, below 1, at a centre distance of "
-            f"{pair.working_centre_distance * 1e3:.6g} mm; bring the shafts closer or lengthen the teeth"
+            f"{pair.label}: the contact ratio is {pair.contact_ratio:.4f}, below 1, without backlash at a centre "
+            f"distance of {pair.working_centre_distance * 1e3:.6g} mm; lengthen the teeth"
         )
     last = pair.tangent_distance - pair.start_distance - pair.path_length
     for rooted, tip, lowest in ((pair.driver, pair.driven, pair.start_distance), (pair.driven, pair.driver, last)):

@@ -30,6 +30,7 @@ from gearwhine.figures.style import (
     panel,
     sheet,
 )
+from rotors import Campbell
 from rotors.whirl.whirl_modes import MOSTLY_AXIAL
 
 FloatArray = npt.NDArray[np.float64]
@@ -90,12 +91,8 @@ _UNDAMPED = 1e-9  # a damping ratio this small is rounding
 
 def draw_campbell(
     title: str,
-    speeds: npt.ArrayLike,
-    frequencies: npt.ArrayLike,
-    directions: npt.ArrayLike,
-    damping_ratios: npt.ArrayLike,
+    diagram: Campbell,
     *,
-    axial_shares: npt.ArrayLike = 0.0,
     critical_speeds: npt.ArrayLike = (),
     critical_directions: npt.ArrayLike = (),
     critical_orders: npt.ArrayLike = 1.0,
@@ -109,16 +106,8 @@ def draw_campbell(
     ----------
     title
         Of the sheet.
-    speeds
-        (s,): two or more, rad/s, ascending or descending; of one sign.
-    frequencies
-        (s, w): of each branch along the columns, rad/s; NaN where a branch is not known.
-    directions
-        (s, w): about +z, 1 circular counter-clockwise to −1 circular clockwise.
-    damping_ratios
-        (s, w): ζ; negative is unstable.
-    axial_shares
-        (s, w), or one of all: part of the kinetic energy along the axis.
+    diagram
+        Of :func:`rotors.campbell`, at two or more speeds of one sign, ascending or descending.
     critical_speeds, critical_directions
         (c,): rad/s, and 1 forward to −1 backward in the sense of rotation.
     critical_orders
@@ -134,19 +123,14 @@ def draw_campbell(
     Raises
     ------
     ValueError
-        Arrays whose shapes do not fit, or fewer than two speeds.
+        Fewer than two speeds.
     """
-    turning = np.abs(np.asarray(speeds, dtype=np.float64))
-    values, ratios = np.asarray(frequencies, dtype=np.float64), np.asarray(damping_ratios, dtype=np.float64)
-    senses = with_rotation(directions, speeds)
-    if turning.size < 2 or not values.shape == ratios.shape == senses.shape == (turning.size, values.shape[-1]):
-        raise ValueError(
-            f"speeds {turning.shape}, frequencies {values.shape}, directions {senses.shape} and damping ratios "
-            f"{ratios.shape} are not two or more speeds (s,) and three arrays (s, w)"
-        )
-    order = np.argsort(turning)
-    axial = np.broadcast_to(np.asarray(axial_shares, dtype=np.float64), values.shape)[order]
-    turning, values, ratios, senses = turning[order], values[order], ratios[order], senses[order]
+    if diagram.speeds.size < 2:
+        raise ValueError(f"a Campbell diagram at {diagram.speeds.size} speed; expected two or more speeds")
+    order = np.argsort(np.abs(diagram.speeds))
+    turning, values = np.abs(diagram.speeds)[order], diagram.frequencies[order]
+    ratios, axial = diagram.damping_ratios[order], diagram.axial_share[order]
+    senses = with_rotation(diagram.direction, diagram.speeds)[order]
     if turning[0] == 0.0:
         # At rest a whirl has no sense of its own; the shapes of double roots are then any.
         senses[0] = senses[1]

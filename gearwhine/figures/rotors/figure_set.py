@@ -112,15 +112,10 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
     critical, directions = _critical_speeds(one)
     name = f"Rotor {shortened(one.rotor.name, 20)}"
     if one.campbell is not None and one.campbell.eigenvalues.size:
-        eigenvalues = one.campbell.eigenvalues
         crossed, senses, orders = _with_other_orders(one, critical, directions)
         campbell = draw_campbell(
             f"{name}: Campbell diagram",
-            one.campbell.speeds,
-            one.campbell.frequencies,
-            one.campbell.direction,
-            -eigenvalues.real / np.abs(eigenvalues),
-            axial_shares=one.campbell.axial_share,
+            one.campbell,
             critical_speeds=crossed,
             critical_directions=senses,
             critical_orders=orders,
