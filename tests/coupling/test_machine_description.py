@@ -255,3 +255,74 @@ def test_motion_is_labelled_and_carries_the_mean_torque() -> None:
     assert spectrum.frequencies[4 * 20] == pytest.approx(machine.mesh_frequencies[0], rel=1e-9)
     with pytest.raises(CouplingError, match="stands still"):
         two_stages(speed=0.0).simulate(2, 1)
+
+
+def test_a_machine_that_turns_the_other_way_carries_the_same_torques_through_its_teeth() -> None:
+    forwards, backwards = two_stages(), two_stages(speed=-300.0)
+    assert backwards.pair_torques == pytest.approx(forwards.pair_torques, rel=1e-12)
+    mirrored = [-one.value for one in forwards.constant_torques]
+    assert [one.value for one in backwards.constant_torques] == pytest.approx(mirrored, rel=1e-12)
+
+
+def test_stations_count_from_where_a_shaft_begins() -> None:
+    """Gears mesh where they meet in space: a shaft set back by as much as its gears stand further along is the same."""
+    machine = two_stages()
+    set_back = [replace(one, start=-0.05) if one.name == "slow" else one for one in machine.shafts]
+    with pytest.raises(CouplingError, match="50 mm apart along z"):
+        two_stages(shafts=set_back)
+    further = [replace(one, at=one.at + 0.05) if one.shaft == "slow" else one for one in machine.gears]
+    assert two_stages(shafts=set_back, gears=further).speeds == machine.speeds
+
+
+def test_a_disc_at_a_gear_is_part_of_the_inertia_that_its_mesh_damps() -> None:
+    """c = 2 ζ √(k m), 1/m = R₁²/J₁ + R₂²/J₂; what sits elsewhere on the shaft turns on its own."""
+    extra, machine = 0.01, two_stages()
+
+    def damping(station: float) -> float:
+        slow = machine.shaft("slow")
+        carrying = replace(slow, rotor=replace(slow.rotor, discs=[Disc(station, 3.0, extra, 0.5 * extra)]))
+        other = two_stages(shafts=[*machine.shafts[:2], carrying])
+        return other.loaded_pairs()[1].contact.damping
+
+    bare = machine.loaded_pairs()[1].contact.damping
+    driver, driven = (one.gear for one in machine.gears[2:])
+    radii = [MODULE * one.teeth / 2 * math.cos(math.radians(20.0)) for one in (driver, driven)]
+
+    def mass(more: float) -> float:
+        inertias = driver.polar_inertia, driven.polar_inertia + more
+        return 1.0 / sum(radius**2 / inertia for radius, inertia in zip(radii, inertias, strict=True))
+
+    assert damping(0.05) == pytest.approx(bare, rel=1e-12)
+    assert damping(0.16) / bare == pytest.approx(math.sqrt(mass(extra) / mass(0.0)), rel=1e-9)
+
+
+def test_friction_of_a_pair_reaches_its_mesh() -> None:
+    rubbing = [GearPair("a", "b", "iso6336", friction=0.06), two_stages().gear_pairs[1]]
+    assert [mesh.friction for mesh in two_stages(gear_pairs=rubbing).assemble().meshes] == [0.06, 0.0]
+
+
+def test_a_shaft_without_torque_is_in_balance() -> None:
+    outputs = [Output("fast", 40.0), Output("slow", 0.0)]
+    machine = two_stages(gears=[], gear_pairs=[], outputs=outputs)
+    entering, *leaving = machine.constant_torques
+    assert entering.value + sum(one.value for one in leaving if one.rotor == "fast") == pytest.approx(0.0, abs=1e-12)
+
+
+def test_bearings_of_a_shaft_are_those_at_its_own_speed() -> None:
+    """The modes of a shaft stand on the table's stiffness at the speed of that shaft, not of the first one."""
+    machine = two_stages()
+    speeds = np.array([100.0, 350.0])
+    table = np.array([np.diag([1e7, 1e7]), np.diag([9e8, 9e8])])
+
+    def middle(stiffness: Any, at: Any) -> Any:
+        held = [
+            replace(one, bearing=Bearing(one.bearing.name, one.bearing.at, stiffness, np.zeros(stiffness.shape), at))
+            if one.rotor == "middle"
+            else one
+            for one in machine.bearings
+        ]
+        return two_stages(bearings=held).rotor_components()[1].modal.lateral.frequencies
+
+    part = (150.0 - 100.0) / (350.0 - 100.0)
+    own = np.diag([1e7 + part * (9e8 - 1e7)] * 2)
+    assert middle(table, speeds) == pytest.approx(middle(own, None), rel=1e-6)
