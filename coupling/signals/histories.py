@@ -104,7 +104,7 @@ class Histories:
         return replace(self, times=times, **signals)
 
 
-_GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times", "tie_axes"))
+_GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times", "bearing_axes"))
 
 
 @dataclass(frozen=True)
