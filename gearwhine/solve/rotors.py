@@ -59,8 +59,8 @@ from rotors.analyses.torsional_response import Torque, TorsionalDashpot, Torsion
 from rotors.analyses.unbalance import SynchronousResponse
 from rotors.modes.lateral import LateralModes
 from rotors.modes.torsional_and_axial import TorsionalModes
-from rotors.rolling.life import rated_revolutions
 from rotors.rolling_bearings import RollingState
+from rotors.rolling_bearings.life import rated_revolutions
 from rotors.whirl.whirl_modes import MOSTLY_AXIAL
 
 FloatArray = npt.NDArray[np.float64]

@@ -22,7 +22,7 @@ from housing.errors import FactorizationError, HousingError, IncompleteModesErro
 from housing.fem.factorization import Factorization, Factorizer
 from housing.fem.linear_algebra import BlockAlgebra
 from housing.fem.matrices import FreeSystem
-from housing.modes.eigensolver import DEFAULT_SOLVER, TOLERANCE, Solver, arpack_modes, block_lanczos
+from housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
 
 RESIDUAL_BOUND = 1e-8
 OVERLAP_BOUND = 1e-8
@@ -186,12 +186,8 @@ class CertifiedSearch:
         start = time.perf_counter()
         system = self._system
         try:
-            if self._solver == "eigsh":
-                tolerance = _DRAFT if draft else 0.0
-                return arpack_modes(
-                    factor.solve, self._mass, shift, count, above=above, seed=attempt, tolerance=tolerance
-                )
-            return block_lanczos(
+            return nearest_modes(
+                self._solver,
                 factor.solve,
                 self._mass,
                 shift,
@@ -199,7 +195,7 @@ class CertifiedSearch:
                 above=above,
                 seed=attempt,
                 threads=system.threads,
-                tolerance=_DRAFT if draft else TOLERANCE,
+                tolerance=_DRAFT if draft else None,
             )
         except IncompleteModesError:
             if attempt + 1 == _ATTEMPTS:

@@ -265,3 +265,44 @@ def arpack_modes(
         ) from error
     order = np.argsort(values)
     return values[order], np.asfortranarray(vectors[:, order])
+
+
+def nearest_modes(
+    solver: Solver,
+    solve: Callable[[FloatArray], FloatArray],
+    mass: Operator,
+    shift: float,
+    count: int,
+    *,
+    above: bool = False,
+    seed: int = 0,
+    threads: int = 1,
+    tolerance: float | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Find the modes nearest to a shift on one side of it by the eigensolver that is asked for.
+
+    Parameters
+    ----------
+    solver : {"lanczos", "eigsh"}
+        :func:`block_lanczos` or scipy's ``eigsh`` (:func:`arpack_modes`).
+    solve, mass, shift, count, above, seed, threads
+        As :func:`block_lanczos`; ``eigsh`` has one thread beside those of ``solve``.
+    tolerance : float, optional
+        Residual of a Ritz pair as a part of ν; by default the finest that the solver has.
+
+    Returns
+    -------
+    values : ndarray, shape (count,)
+        λ, ascending [rad²/s²].
+    vectors : ndarray, shape (n, count)
+        φ, with φᵀ M φ = 1.
+
+    Raises
+    ------
+    IncompleteModesError
+        Where the modes do not converge.
+    """
+    if solver == "eigsh":
+        return arpack_modes(solve, mass, shift, count, above=above, seed=seed, tolerance=tolerance or 0.0)
+    tolerance = TOLERANCE if tolerance is None else tolerance
+    return block_lanczos(solve, mass, shift, count, above=above, seed=seed, threads=threads, tolerance=tolerance)

@@ -1,6 +1,7 @@
 """What `rotors` writes of shafts with nothing alike, each number held against the physics that it claims to show."""
 
 import json
+import tomllib
 from collections.abc import Iterator
 from math import pi, remainder
 from typing import Any, NamedTuple
@@ -10,8 +11,9 @@ import pytest
 import xarray as xr
 from lopsided_case import AXES, DENSITY, GEARS, HELD_AT, SPEEDS, UNBALANCES, bearing_share, lopsided
 
+from gearwhine.case import parse_case
 from gearwhine.cli import run_command
-from gearwhine.solve.rotors import _largest_over_cycle
+from gearwhine.solve.rotors import _largest_over_cycle, solve_rotors
 
 ANALYSIS = """
 [rotor_analysis]
@@ -261,3 +263,20 @@ def test_critical_speeds_over_stiffness(written: Written) -> None:
         rigid = np.sqrt(2.0 * 2e7 / rotor["mass_kg"]) * 30.0 / pi
         assert told[0, 0] == pytest.approx(rigid, rel=0.3)
         assert (np.diff(told[:, 0]) > 0.0).all()
+
+
+def test_the_torque_s_phase_is_its_own(written: Written) -> None:
+    """As the library's response has it at each probe; somewhere it is far from that of the angle."""
+    apart = 0.0
+    for one in solve_rotors(parse_case(tomllib.loads(lopsided(housing=False, more=ANALYSIS)))):
+        if one.torsion is None:
+            continue
+        for probe in written.rotors[one.rotor.name]["torsional_response"]["probes"]:
+            row = written.data.sel(torsion_probe=f"{one.rotor.name}: {probe['name']}")
+            exact = one.torsion.response.torque([probe["at_m"]])[:, 0]
+            found = row.torsion_torque.values * np.exp(1j * row.torsion_torque_phase.values)
+            np.testing.assert_allclose(found, exact, rtol=1e-6, atol=1e-9 * np.abs(exact).max())
+            size = row.torsion_torque.values > 1e-6
+            angles = (row.torsion_angle_phase - row.torsion_torque_phase).values[size]
+            apart = max(apart, *np.abs(np.sin(angles / 2.0)).tolist(), 0.0)
+    assert apart > 0.5

@@ -6,7 +6,6 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 
-import housing.modes.certificate
 import housing.modes.eigensolver
 from housing import Housing, HousingError, IncompleteModesError, Material, assemble, solve_modes
 from housing.fem.matrices import Matrices
@@ -73,7 +72,7 @@ def test_certificate_catches_eigsh_that_misses_one_of_a_double_mode(
         values, vectors = arpack_modes(*arguments, **options)
         return np.delete(values, pair), np.delete(vectors, pair, axis=1)
 
-    monkeypatch.setattr(housing.modes.certificate, "arpack_modes", missing)
+    monkeypatch.setattr(housing.modes.eigensolver, "arpack_modes", missing)
     with pytest.raises(IncompleteModesError, match=r"modes found below .* Hz where the inertia demands"):
         solve_modes(square_tube, frequency_limit=honest.certificate.limit, solver="eigsh")
 
@@ -110,7 +109,7 @@ def test_a_housing_hands_the_choice_on(
         calls.append(options)
         return arpack_modes(*arguments, **options)
 
-    monkeypatch.setattr(housing.modes.certificate, "arpack_modes", counted)
+    monkeypatch.setattr(housing.modes.eigensolver, "arpack_modes", counted)
     solid = Housing(block((0.10, 0.07, 0.05), (2, 1, 1)), steel)
     own = solid.modes(count=9)
     assert not calls

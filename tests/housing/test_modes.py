@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg, sparse
 
-import housing.modes.certificate
+import housing.modes.eigensolver
 from housing import (
     HousingError,
     IncompleteModesError,
@@ -186,7 +186,7 @@ def test_certificate_catches_a_solver_that_misses_a_mode(
     box_matrices: Matrices, monkeypatch: pytest.MonkeyPatch, asked: dict[str, Any]
 ) -> None:
     spoiled = _solver_that(lambda values, vectors: (np.delete(values, 7), np.delete(vectors, 7, axis=1)))
-    monkeypatch.setattr(housing.modes.certificate, "block_lanczos", spoiled)
+    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", spoiled)
     with pytest.raises(IncompleteModesError, match=r"modes found below .* Hz where the inertia demands"):
         solve_modes(box_matrices, **asked)
 
@@ -198,7 +198,7 @@ def test_certificate_catches_a_solver_that_finds_one_mode_twice_and_misses_anoth
         values[8], vectors[:, 8] = values[7], vectors[:, 7]
         return values, vectors
 
-    monkeypatch.setattr(housing.modes.certificate, "block_lanczos", _solver_that(repeat))
+    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", _solver_that(repeat))
     with pytest.raises(IncompleteModesError, match=r"largest overlap 1\.0e\+00"):
         solve_modes(box_matrices, frequency_limit=2 * np.pi * 6000.0)
 
@@ -208,7 +208,7 @@ def test_certificate_catches_a_mode_that_is_not_one(box_matrices: Matrices, monk
         vectors[:, 8] += 1e-4 * vectors[:, 9]
         return values, vectors
 
-    monkeypatch.setattr(housing.modes.certificate, "block_lanczos", _solver_that(blur))
+    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", _solver_that(blur))
     with pytest.raises(IncompleteModesError, match="largest residual"):
         solve_modes(box_matrices, frequency_limit=2 * np.pi * 6000.0)
 
@@ -222,7 +222,7 @@ def test_a_search_that_succeeds_the_second_time_is_enough(
         calls.append(len(values))
         return (values[:-1], vectors[:, :-1]) if len(calls) == 1 else (values, vectors)
 
-    monkeypatch.setattr(housing.modes.certificate, "block_lanczos", _solver_that(once))
+    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", _solver_that(once))
     modes = solve_modes(box_matrices, frequency_limit=2 * np.pi * 6000.0)
     assert len(calls) == 2
     np.testing.assert_allclose(modes.frequencies, box_modes.frequencies, rtol=1e-10)

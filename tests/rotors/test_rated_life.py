@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from rotors.rolling.life import equivalent_load, rated_revolutions
 from rotors.rolling_bearings import BallRow, RollerRow, RollingBearing, RollingState, paired, rolling_equilibrium
+from rotors.rolling_bearings.life import equivalent_load, rated_revolutions
 
 BALLS = {"count": 9, "ball_diameter": 12.7e-3, "pitch_diameter": 60e-3}
 
