@@ -52,7 +52,7 @@ class Histories:
     mesh_friction : dict of str to ndarray, shape (s, 2)
         Of every contact with friction: its force across the line of action [N], and its power loss from the nominal
         rotation [W]; see :func:`coupling.machine.tooth_friction.friction_of`.
-    tie_axes : dict of str to tuple of int
+    bearing_axes : dict of str to tuple of int
         Axes of the columns of each ``bearing_reaction``: x, y, z and the rotations about x and y, 0 to 4.
     """
 

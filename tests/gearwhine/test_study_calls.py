@@ -90,6 +90,7 @@ def test_objects_of_the_case_keep_the_keys_that_python_cannot_spell() -> None:
         operation={"speed": gw.rpm(3000.0), "torque": 0.0},
         transient=run.transient,
     )
+    assert [bearing.name for bearing in study.case.bearing] == ["left", "right"]
     assert study.case.transient is not None
     assert study.case.transient.run is not None
     assert study.case.transient.run.start == pytest.approx(gw.rpm(1500.0))
