@@ -14,7 +14,7 @@ from coupling.gears import ConstantStiffness, Gear, GearError
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.machine.components import HousingComponent
 from coupling.machine.gear_train import GearedShafts, gear_train
-from rotors import Bearing, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
+from rotors import Bearing, Coupling, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 MODULE, LENGTH = 3e-3, 0.25
@@ -326,3 +326,49 @@ def test_bearings_of_a_shaft_are_those_at_its_own_speed() -> None:
     part = (150.0 - 100.0) / (350.0 - 100.0)
     own = np.diag([1e7 + part * (9e8 - 1e7)] * 2)
     assert middle(table, speeds) == pytest.approx(middle(own, None), rel=1e-6)
+
+
+def test_a_damped_coupling_damps_the_twist_between_its_hubs() -> None:
+    """Two stiff hubs on a soft coupling: ω² = k (1/J + 1/J), ζ about c ω / (2 k)."""
+    stiffness, damping, inertia = 1e4, 0.6, 0.05
+    flexible = Coupling(0.02, 1e9, 1e7, stiffness, 1e9, torsional_damping=damping)
+    parts = [Segment(0.1, 0.04, 0.0, STEEL), flexible, Segment(0.1, 0.04, 0.0, STEEL)]
+    hubs = [Disc(at, 5.0, inertia, inertia) for at in (0.05, 0.17)]
+    held = [
+        MountedBearing(Bearing(str(at), at, 1e8 * np.eye(2), np.zeros((2, 2))), "train", None) for at in (0.0, 0.22)
+    ]
+    train = Shaft(Rotor("train", parts, hubs), (0.0, 0.0), mode_count=6)
+    modes = coupled_modes(Machine([train], held, speed=100.0).assemble().system)
+    # The shafts between coupling and hubs, 50 mm each, twist too: k of all three in a row, of which the coupling's part
+    # is dissipative.
+    row = 1.0 / (1.0 / stiffness + 0.1 / (STEEL.shear_modulus * math.pi / 32.0 * 0.04**4))
+    omega = math.sqrt(2.0 * row / inertia)
+    twist = np.argmin(np.abs(2.0 * math.pi * modes.frequencies_hz - omega))
+    assert 2.0 * math.pi * modes.frequencies_hz[twist] == pytest.approx(omega, rel=5e-3)
+    assert modes.damping_ratios[twist] == pytest.approx(damping * omega * row / (2.0 * stiffness**2), rel=1e-2)
+
+
+def test_material_damping_of_a_shaft_is_that_of_its_free_twist() -> None:
+    train = Shaft(Rotor("train", [Segment(LENGTH, 0.03, 0.0, STEEL)]), (0.0, 0.0), damping_ratio=0.03, mode_count=3)
+    held = [MountedBearing(Bearing("one", 0.0, 1e8 * np.eye(2), np.zeros((2, 2))), "train", None)]
+    modes = coupled_modes(Machine([train], held, speed=0.0).assemble().system)
+    # First free-free torsion of a uniform shaft: f = √(G/ρ) / (2 L).
+    expected = math.sqrt(81.2e9 / 7810.0) / (2.0 * LENGTH)
+    twist = np.argmin(np.abs(modes.frequencies_hz - expected))
+    assert modes.frequencies_hz[twist] == pytest.approx(expected, rel=1e-6)
+    assert modes.damping_ratios[twist] == pytest.approx(0.03, rel=1e-9)
+
+
+def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar() -> None:
+    """1/k of the bearing and a/(E A) of the shaft between it and the gear, however few modes are kept."""
+    at, axial = 0.1, 5e7
+    stiffness = np.diag([1e8, 1e8, axial, 0.0, 0.0])
+    held = [MountedBearing(Bearing("front", 0.0, stiffness, np.zeros((5, 5))), "fast", None)]
+    held.append(MountedBearing(Bearing("back", LENGTH, 1e8 * np.eye(2), np.zeros((2, 2))), "fast", None))
+    helical = ShaftGear(gear("a", 20, helix_angle=0.3), "fast", at)
+    machine = Machine([replace(shaft("fast", 0.0), mode_count=1)], held, [helical], speed=10.0)
+    (component,) = machine.rotor_components()
+    along = component.motions(at)[2]
+    whole = machine.assemble(components=[component]).system.mean_stiffness
+    moved = along @ np.linalg.lstsq(whole, along, rcond=1e-12)[0]
+    assert moved == pytest.approx(1.0 / axial + at / (211e9 * math.pi / 4.0 * 0.03**2), rel=1e-3)
