@@ -7,9 +7,11 @@ worker, stand in a temporary folder with kernels of their own, and the checkout 
     python benchmarks/faults.py                       # all: an hour on two cores
     python benchmarks/faults.py --area figures --area report
     python benchmarks/faults.py --only 12 --only 40   # by number, with the end of the tests' output
+    python benchmarks/faults.py --check               # whether every fault still fits the code; runs no tests
 """
 
 import argparse
+import ast
 import os
 import shutil
 import subprocess
@@ -38,22 +40,32 @@ class Fault:
     before: str
     after: str
 
+    def changed(self, text: str) -> str:
+        """The text of the file with the fault in it.
+
+        Raises
+        ------
+        ValueError
+            Where the piece does not stand in the text exactly once.
+        """
+        if text.count(self.before) != 1:
+            raise ValueError(
+                f"fault {self.number}: {self.before!r} stands {text.count(self.before)} times in {self.file}; "
+                "expected once"
+            )
+        return text.replace(self.before, self.after)
+
     def put_into(self, root: Path) -> str:
         """Change the file below a root, and return its text as it was.
 
         Raises
         ------
         ValueError
-            Where the piece does not stand in the file exactly once.
+            As :meth:`changed`.
         """
         path = root / self.file
         text = path.read_text(encoding="utf-8")
-        if text.count(self.before) != 1:
-            raise ValueError(
-                f"fault {self.number}: {self.before!r} stands {text.count(self.before)} times in {self.file}; "
-                "expected once"
-            )
-        path.write_text(text.replace(self.before, self.after), encoding="utf-8")
+        path.write_text(self.changed(text), encoding="utf-8")
         return text
 
 
@@ -65,6 +77,27 @@ def read_faults() -> tuple[list[Fault], dict[str, list[str]]]:
     if unknown:
         raise ValueError(f"areas without tests: {', '.join(sorted(unknown))}")
     return faults, listed["tests"]
+
+
+def misfits(faults: list[Fault], tests: dict[str, list[str]]) -> list[str]:
+    """Why the list does not fit the code, a sentence each: lost files and tests, pieces that moved, broken syntax."""
+    wrong = [f"area {area}: no test {name}" for area, names in tests.items() for name in names if not exists(name)]
+    texts: dict[str, str] = {}
+    for fault in faults:
+        if not exists(fault.file):
+            wrong.append(f"fault {fault.number}: no file {fault.file}")
+            continue
+        text = texts.setdefault(fault.file, (ROOT / fault.file).read_text(encoding="utf-8"))
+        try:
+            ast.parse(fault.changed(text), fault.file)
+        except (SyntaxError, ValueError) as error:
+            wrong.append(str(error) if isinstance(error, ValueError) else f"fault {fault.number}: {error}")
+    return wrong
+
+
+def exists(name: str) -> bool:
+    """Whether a file or folder of this name stands in the checkout."""
+    return (ROOT / name).exists()
 
 
 def copy_tree(target: Path) -> None:
@@ -101,10 +134,17 @@ def run_tests(root: Path, tests: list[str]) -> tuple[int, str]:
 
 
 def caught(root: Path, fault: Fault, tests: list[str]) -> tuple[bool, str]:
-    """Whether tests fail with a fault in the copy, and the end of what they print."""
+    """Whether tests fail with a fault in the copy, and the end of what they print.
+
+    The files run in the order of the list, quick ones first, until one fails.
+    """
+    code, text = 0, ""
     before = fault.put_into(root)
     try:
-        code, text = run_tests(root, tests)
+        for name in tests:
+            code, text = run_tests(root, [name])
+            if code != 0:
+                break
     finally:
         (root / fault.file).write_text(before, encoding="utf-8")
     if code in _NOTHING_RAN:
@@ -118,8 +158,13 @@ def main() -> None:
     parser.add_argument("--area", action="append", help="only faults of this area; may be repeated")
     parser.add_argument("--only", action="append", type=int, help="only the fault of this number; may be repeated")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--check", action="store_true", help="only tell which faults do not fit the code any more")
     given = parser.parse_args()
     faults, tests = read_faults()
+    if given.check:
+        wrong = misfits(faults, tests)
+        sys.stdout.write("\n".join([*wrong, f"{len(faults)} faults, {len(wrong)} misfits"]) + "\n")
+        raise SystemExit(1 if wrong else 0)
     chosen = [
         fault
         for fault in faults

@@ -187,6 +187,8 @@ class Machine:
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
         """Mean torque that each pair takes off its driver [N m], positive where power flows to the driven gear."""
+        if not self.gear_pairs:
+            return ()
         sense = copysign(1.0, self.speed)
         along = dict.fromkeys(self.train.ratios, 0.0)
         for torque in self.constant_torques:

@@ -15,7 +15,7 @@ from coupling.gears.loaded.gear_pair import GearPair
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
 from coupling.machine.gear_train import GearedShafts, gear_train
-from rotors import Bearing, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
+from rotors import Bearing, Coupling, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 MODULE, LENGTH = 3e-3, 0.25
@@ -283,3 +283,120 @@ def test_the_analyses_of_a_machine_are_its_methods() -> None:
     assert steady.period == pytest.approx(2.0 * math.pi / (300.0 * 2.5), rel=1e-12)  # of 20 and 12.5 a turn
     radii = [MODULE * teeth / 2 * math.cos(math.radians(20.0)) for teeth in (20, 25)]
     assert steady.mean_force[:2] == pytest.approx([40.0 / radii[0], 80.0 / radii[1]], rel=1e-3)
+
+
+def test_a_machine_that_turns_the_other_way_carries_the_same_torques_through_its_teeth() -> None:
+    forwards, backwards = two_stages(), two_stages(speed=-300.0)
+    assert backwards.pair_torques == pytest.approx(forwards.pair_torques, rel=1e-12)
+    mirrored = [-one.value for one in forwards.constant_torques]
+    assert [one.value for one in backwards.constant_torques] == pytest.approx(mirrored, rel=1e-12)
+
+
+def test_stations_count_from_where_a_shaft_begins() -> None:
+    """Gears mesh where they meet in space: a shaft set back by as much as its gears stand further along is the same."""
+    machine = two_stages()
+    set_back = [replace(one, start=-0.05) if one.name == "slow" else one for one in machine.shafts]
+    with pytest.raises(CouplingError, match="50 mm apart along z"):
+        two_stages(shafts=set_back)
+    further = [replace(one, at=one.at + 0.05) if one.shaft == "slow" else one for one in machine.gears]
+    assert two_stages(shafts=set_back, gears=further).speeds == machine.speeds
+
+
+def test_a_disc_at_a_gear_is_part_of_the_inertia_that_its_mesh_damps() -> None:
+    """c = 2 ζ √(k m), 1/m = R₁²/J₁ + R₂²/J₂; what sits elsewhere on the shaft turns on its own."""
+    extra, machine = 0.01, two_stages()
+
+    def damping(station: float) -> float:
+        slow = machine.shaft("slow")
+        carrying = replace(slow, rotor=replace(slow.rotor, discs=[Disc(station, 3.0, extra, 0.5 * extra)]))
+        other = two_stages(shafts=[*machine.shafts[:2], carrying])
+        return other.loaded_pairs()[1].contact.damping
+
+    bare = machine.loaded_pairs()[1].contact.damping
+    driver, driven = (one.gear for one in machine.gears[2:])
+    radii = [MODULE * one.teeth / 2 * math.cos(math.radians(20.0)) for one in (driver, driven)]
+
+    def mass(more: float) -> float:
+        inertias = driver.polar_inertia, driven.polar_inertia + more
+        return 1.0 / sum(radius**2 / inertia for radius, inertia in zip(radii, inertias, strict=True))
+
+    assert damping(0.05) == pytest.approx(bare, rel=1e-12)
+    assert damping(0.16) / bare == pytest.approx(math.sqrt(mass(extra) / mass(0.0)), rel=1e-9)
+
+
+def test_friction_of_a_pair_reaches_its_mesh() -> None:
+    rubbing = [GearPair("a", "b", "iso6336", friction=0.06), two_stages().gear_pairs[1]]
+    assert [mesh.friction for mesh in two_stages(gear_pairs=rubbing).assemble().meshes] == [0.06, 0.0]
+
+
+def test_a_shaft_without_torque_is_in_balance() -> None:
+    outputs = [Output("fast", 40.0), Output("slow", 0.0)]
+    machine = two_stages(gears=[], gear_pairs=[], outputs=outputs)
+    entering, *leaving = machine.constant_torques
+    assert entering.value + sum(one.value for one in leaving if one.rotor == "fast") == pytest.approx(0.0, abs=1e-12)
+
+
+def test_bearings_of_a_shaft_are_those_at_its_own_speed() -> None:
+    """The modes of a shaft stand on the table's stiffness at the speed of that shaft, not of the first one."""
+    machine = two_stages()
+    speeds = np.array([100.0, 350.0])
+    table = np.array([np.diag([1e7, 1e7]), np.diag([9e8, 9e8])])
+
+    def middle(stiffness: Any, at: Any) -> Any:
+        held = [
+            replace(one, bearing=Bearing(one.bearing.name, one.bearing.at, stiffness, np.zeros(stiffness.shape), at))
+            if one.rotor == "middle"
+            else one
+            for one in machine.bearings
+        ]
+        return two_stages(bearings=held).rotor_components()[1].modal.lateral.frequencies
+
+    part = (150.0 - 100.0) / (350.0 - 100.0)
+    own = np.diag([1e7 + part * (9e8 - 1e7)] * 2)
+    assert middle(table, speeds) == pytest.approx(middle(own, None), rel=1e-6)
+
+
+def test_a_damped_coupling_damps_the_twist_between_its_hubs() -> None:
+    """Two stiff hubs on a soft coupling: ω² = k (1/J + 1/J), ζ about c ω / (2 k)."""
+    stiffness, damping, inertia = 1e4, 0.6, 0.05
+    flexible = Coupling(0.02, 1e9, 1e7, stiffness, 1e9, torsional_damping=damping)
+    parts = [Segment(0.1, 0.04, 0.0, STEEL), flexible, Segment(0.1, 0.04, 0.0, STEEL)]
+    hubs = [Disc(at, 5.0, inertia, inertia) for at in (0.05, 0.17)]
+    held = [
+        MountedBearing(Bearing(str(at), at, 1e8 * np.eye(2), np.zeros((2, 2))), "train", None) for at in (0.0, 0.22)
+    ]
+    train = Shaft(Rotor("train", parts, hubs), (0.0, 0.0), mode_count=6)
+    modes = coupled_modes(Machine([train], held, speed=100.0).assemble().system)
+    # The shafts between coupling and hubs, 50 mm each, twist too: k of all three in a row, of which the coupling's part
+    # is dissipative.
+    row = 1.0 / (1.0 / stiffness + 0.1 / (STEEL.shear_modulus * math.pi / 32.0 * 0.04**4))
+    omega = math.sqrt(2.0 * row / inertia)
+    twist = np.argmin(np.abs(2.0 * math.pi * modes.frequencies_hz - omega))
+    assert 2.0 * math.pi * modes.frequencies_hz[twist] == pytest.approx(omega, rel=5e-3)
+    assert modes.damping_ratios[twist] == pytest.approx(damping * omega * row / (2.0 * stiffness**2), rel=1e-2)
+
+
+def test_material_damping_of_a_shaft_is_that_of_its_free_twist() -> None:
+    train = Shaft(Rotor("train", [Segment(LENGTH, 0.03, 0.0, STEEL)]), (0.0, 0.0), damping_ratio=0.03, mode_count=3)
+    held = [MountedBearing(Bearing("one", 0.0, 1e8 * np.eye(2), np.zeros((2, 2))), "train", None)]
+    modes = coupled_modes(Machine([train], held, speed=0.0).assemble().system)
+    # First free-free torsion of a uniform shaft: f = √(G/ρ) / (2 L).
+    expected = math.sqrt(81.2e9 / 7810.0) / (2.0 * LENGTH)
+    twist = np.argmin(np.abs(modes.frequencies_hz - expected))
+    assert modes.frequencies_hz[twist] == pytest.approx(expected, rel=1e-6)
+    assert modes.damping_ratios[twist] == pytest.approx(0.03, rel=1e-9)
+
+
+def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar() -> None:
+    """1/k of the bearing and a/(E A) of the shaft between it and the gear, however few modes are kept."""
+    at, axial = 0.1, 5e7
+    stiffness = np.diag([1e8, 1e8, axial, 0.0, 0.0])
+    held = [MountedBearing(Bearing("front", 0.0, stiffness, np.zeros((5, 5))), "fast", None)]
+    held.append(MountedBearing(Bearing("back", LENGTH, 1e8 * np.eye(2), np.zeros((2, 2))), "fast", None))
+    helical = ShaftGear(gear("a", 20, helix_angle=0.3), "fast", at)
+    machine = Machine([replace(shaft("fast", 0.0), mode_count=1)], held, [helical], speed=10.0)
+    (component,) = machine.rotor_components()
+    along = component.motions(at)[2]
+    whole = machine.assemble(components=[component]).system.mean_stiffness
+    moved = along @ np.linalg.lstsq(whole, along, rcond=1e-12)[0]
+    assert moved == pytest.approx(1.0 / axial + at / (211e9 * math.pi / 4.0 * 0.03**2), rel=1e-3)

@@ -8,8 +8,9 @@ import pytest
 
 from housing import Housing, HousingError, Joint, LumpedMass, Material, Patch, Seat, Sensor, Support
 from housing.model.bushings import Bushing
+from housing.model.housing import bearing_port, cover_joints
 from meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
-from meshes.box import Bore, WallThickness
+from meshes.box import Bore, Cover, CoverBolts, WallThickness
 
 STEEL = Material(207e9, 0.3, 7850.0)
 FOOT = Support("floor", surface="bottom", fixed=(True, True, True))
@@ -101,3 +102,36 @@ def test_lumped_masses_count_once(box: Housing) -> None:
     heavier = replace(box, fixtures=[FOOT, LumpedMass("motor", 5.0, position=(0.0, 0.15, 0.0))])
     assert heavier.matrices().total_mass == pytest.approx(box.matrices().total_mass + 5.0, rel=1e-9)
     assert heavier.modes(count=1).frequencies_hz[0] < box.modes(count=1).frequencies_hz[0]
+
+
+def test_a_bearing_off_the_middle_of_its_seat_moves_with_the_seat_as_a_rigid_body(box: Housing) -> None:
+    arm, turn = 0.012, np.array([0.3, -0.7, 0.0])
+    seat = box.seats[0]
+    field = np.cross(turn, box.mesh.points - seat.center).ravel()
+    moved = bearing_port(box.seat_ports()[seat.name], arm) @ field
+    assert moved == pytest.approx([*np.cross(turn, [0.0, 0.0, arm]), *turn[:2]], abs=1e-9)
+
+
+def test_modes_below_a_limit_are_all_below_it_and_none_is_left_out(box: Housing) -> None:
+    first = box.modes(count=4).frequencies_hz
+    limit = 0.5 * (first[1] + first[2])
+    assert box.modes(below_hz=limit).frequencies_hz == pytest.approx(first[:2], rel=1e-9)
+
+
+def test_rigid_modes_take_part_with_the_whole_mass_and_what_is_fastened_to_it(box: Housing) -> None:
+    """Σ (φᵀ M R)² over the six modes of a free body: its mass along each axis, its inertia about each."""
+    fastened = LumpedMass("motor", 5.0, position=(0.0, 0.15, 0.0))
+    free = replace(box, fixtures=[fastened])
+    captured = (free.modes(count=7).participation[:6] ** 2).sum(axis=0)
+    bare = (replace(box, fixtures=()).modes(count=7).participation[:6] ** 2).sum(axis=0)
+    assert captured[:3] == pytest.approx([free.matrices().total_mass] * 3, rel=1e-6)
+    # m (y² + z²), m (x² + z²), m (x² + y²) of a point near (0, 0.15, 0).
+    assert (captured - bare)[3:] == pytest.approx([5.0 * 0.15**2, 0.0, 5.0 * 0.15**2], rel=0.05, abs=5.0 * 0.02**2)
+
+
+def test_the_clamped_parts_of_a_cover_are_the_housing_s_and_the_bolts_their_own() -> None:
+    """Both springs add; the cone of pressure is wider than the bolt, so that the parts' modulus counts for more."""
+    soft, stiff = Material(70e9, 0.3, 2700.0), Material(210e9, 0.3, 7850.0)
+    box = replace(BOX, cover=Cover("top", bolts=CoverBolts(0.006, (3, 3))))
+    one, other = (cover_joints(box, parts, own)[0].bushing.stiffness for parts, own in ((stiff, soft), (soft, stiff)))
+    assert max(one) > 1.1 * max(other)

@@ -1,0 +1,60 @@
+"""What bounds the steps of a time integration: coarsest step, events, corners of speeds and loads; energy at rest."""
+
+import numpy as np
+import pytest
+
+from coupling import CoupledSystem, SpeedProfile, TransientOutputs, TransientSettings, simulate
+from coupling.machine.components import Component
+from coupling.machine.coupled_system import TimedLoad
+from coupling.time.integration import boundaries, coarsest_step
+
+RUN_UP = SpeedProfile(np.array([0.0, 4.0]), np.array([0.5, 2.0]))
+
+
+def oscillator(stiffness: float = 4.0, damping: float = 0.0, **loads: object) -> CoupledSystem:
+    """x'' + c x' + k x = f of a unit mass."""
+    body = Component("mass", ("torsion",), np.full((1, 1), stiffness), np.full((1, 1), damping), np.zeros((1, 1)))
+    return CoupledSystem((body,), (0.0,), **loads)  # type: ignore[arg-type]
+
+
+def test_a_machine_that_runs_faster_is_stepped_finer() -> None:
+    """The largest step is a part of a turn: at twice the nominal speed a turn takes half the time."""
+    nominal = SpeedProfile(np.array([0.0]), np.array([1.0]))
+    coarse, fine = (coarsest_step(oscillator(), turning, 1e-3) for turning in (nominal, RUN_UP))
+    assert coarse == pytest.approx(1e-3, rel=1e-12)
+    assert fine == pytest.approx(0.5e-3, rel=1e-12)
+    # Six points of the period of 2 rad/s, where nothing finer is asked for.
+    assert coarsest_step(oscillator(), nominal, 100.0) == pytest.approx(np.pi / 6.0, rel=1e-12)
+
+
+def test_no_step_crosses_a_corner_of_a_load() -> None:
+    corners = np.array([0.3137, 1.7771, 2.9])
+    load = TimedLoad(corners, np.array([0.0, 1.0, -1.0]), np.ones(1))
+    bounds = boundaries(oscillator(timed_loads=(load,)), RUN_UP, 0.0, 4.0, 0.05, ())
+    assert np.abs(bounds[:, None] - corners).min(axis=0).max() < 1e-12
+    assert (bounds[0], bounds[-1]) == (0.0, 4.0)
+
+
+@pytest.mark.parametrize("step", [0.02, 0.05])
+def test_the_local_error_is_that_of_the_period(step: float) -> None:
+    """One oscillation of w advances by (w h)²/12 too little for each radian: that is what an error of a step says."""
+    w = 2.0
+    settings = TransientSettings(duration=40.0, record_from=0.0, sample_interval=step, largest_step=step, tolerance=1.0)
+    rows = np.eye(1)
+    found = simulate(
+        oscillator(w**2),
+        settings,
+        TransientOutputs(rows, rows, rows),
+        initial=(np.ones(1), np.zeros(1)),
+    )
+    late = np.interp(0.0, *_last_crossing(found.times, found.displacement[:, 0]))
+    turns = round(float(late) * w / np.pi - 0.5)
+    exact = (turns + 0.5) * np.pi / w
+    assert (late - exact) / exact == pytest.approx((w * step) ** 2 / 12.0, rel=0.15)
+    assert found.error == pytest.approx((w * step) ** 2 / 12.0, rel=0.15)
+
+
+def _last_crossing(times: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Values and times on both sides of the last change from positive to negative, ascending in value."""
+    last = int(np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))[-1])
+    return values[[last + 1, last]], times[[last + 1, last]]

@@ -1,0 +1,56 @@
+"""Results of several commands in one folder: each stands by itself, and the newest is told first."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import gearwhine as gw
+from gearwhine.case import Case
+from gearwhine.output import store
+from gearwhine.output.store import store_results, stored_results
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return gw.load("spur-pair").case
+
+
+def keep(command: str, case: Case, folder: Path, content: str) -> dict[str, Any]:
+    document: dict[str, Any] = {"content": content}
+    store_results(command, document, case, folder, lambda place: _write(place, content))
+    return document
+
+
+def _write(place: Path, content: str) -> None:
+    (place / "own.txt").write_text(content, encoding="utf-8")
+
+
+def test_commands_keep_to_themselves_and_a_run_takes_the_folder(
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    moments = iter(f"2026-01-0{day}T10:00:00+00:00" for day in range(1, 9))
+    monkeypatch.setattr(store, "_now", lambda: next(moments))
+    out = tmp_path / "out"
+    assert set(keep("gears", case, out, "first")["files"]) == {"case.toml", "own.txt", "summary.json"}
+    keep("rotors", case, out, "second")
+    assert (out / "own.txt").read_text(encoding="utf-8") == "first"
+    assert (out / "rotors" / "own.txt").read_text(encoding="utf-8") == "second"
+    keep("run", case, out, "third")
+    texts = {place: (out / place / "own.txt").read_text(encoding="utf-8") for place in ("", "gears", "rotors")}
+    assert texts == {"": "third", "gears": "first", "rotors": "second"}
+    assert [document["command"] for _, document in stored_results(out)] == ["run", "rotors", "gears"]
+    # Once more: it replaces its own alone.
+    keep("gears", case, out, "fourth")
+    assert (out / "gears" / "own.txt").read_text(encoding="utf-8") == "fourth"
+    assert (out / "own.txt").read_text(encoding="utf-8") == "third"
+    assert [document["command"] for _, document in stored_results(out)] == ["gears", "run", "rotors"]
+
+
+def test_the_summary_is_the_document_with_what_it_was_made_of(case: Case, tmp_path: Path) -> None:
+    document = keep("gears", case, tmp_path / "out", "first")
+    kept = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert kept == document
+    assert (kept["command"], kept["content"], kept["folder"]) == ("gears", "first", str(tmp_path / "out"))
+    assert all((tmp_path / "out" / name).is_file() for name in kept["files"])
