@@ -5,6 +5,7 @@ import pytest
 
 from coupling import CoupledSystem, SpeedProfile, TransientOutputs, TransientSettings, simulate
 from coupling.machine.components import Component
+from coupling.machine.connectors import LinearConnector, SpeedTable
 from coupling.machine.coupled_system import TimedLoad
 from coupling.time.integration import boundaries, coarsest_step
 
@@ -33,6 +34,27 @@ def test_no_step_crosses_a_corner_of_a_load() -> None:
     bounds = boundaries(oscillator(timed_loads=(load,)), RUN_UP, 0.0, 4.0, 0.05, ())
     assert np.abs(bounds[:, None] - corners).min(axis=0).max() < 1e-12
     assert (bounds[0], bounds[-1]) == (0.0, 4.0)
+
+
+def test_no_step_crosses_a_corner_of_a_bearing_over_speed() -> None:
+    """From half the nominal speed to twice it in 4 s: 0.8 of it after 0.8 s, 1.4 of it after 2.4 s."""
+    rates = np.array([0.4, 0.8, 1.4, 2.5])
+    stiffness = np.array([1.0, 2.0, 1.5, 3.0])[:, None, None]
+    table = SpeedTable(rates, stiffness, 0.01 * stiffness)
+    bearing = LinearConnector("bearing", np.ones((1, 1)), np.ones((1, 1)), np.zeros((1, 1)), over_speed=table)
+    bounds = boundaries(oscillator(linear=(bearing,)), RUN_UP, 0.0, 4.0, 0.05, ())
+    for corner in (0.8, 2.4):
+        assert np.abs(bounds - corner).min() < 1e-12
+
+
+def test_a_run_up_starts_where_its_acceleration_holds_it() -> None:
+    """The inertia force a l is at the spring from the first moment: x = a l / k, and nothing moves."""
+    system = oscillator(4.0, acceleration_load=np.full(1, 3.0))
+    settings = TransientSettings(duration=1.0, record_from=0.0, sample_interval=0.05, largest_step=0.01)
+    rows = np.eye(1)
+    found = simulate(system, settings, TransientOutputs(rows, rows, rows), turning=RUN_UP)
+    acceleration = (2.0 - 0.5) / 4.0
+    assert found.displacement[:, 0] == pytest.approx(acceleration * 3.0 / 4.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("step", [0.02, 0.05])
