@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
-from gearwhine.from_case import mesh as geometry_stage
 from gearwhine.from_case import mesh_health
+from gearwhine.from_case.mesh import build_mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
 from gearwhine.output.warnings import warning
@@ -15,11 +15,9 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import COMPARISON, comparison_document, responses_document, survey_document
 from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison, write_response_correlation
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
-from gearwhine.solve import comparison as comparison_stage
-from gearwhine.solve import housing_modes as housing_stage
 from gearwhine.solve import survey_plan
-from gearwhine.solve.comparison import ResponseCorrelation, compare_responses_document
-from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.comparison import ResponseCorrelation, compare_responses_document, compare_with_survey
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from housing.correlation.comparison import Comparison
 from meshes import Mesh
 
@@ -48,7 +46,7 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
 
     progress("meshing the housing")
     remarks: list[str] = []
-    made = geometry_stage.build_mesh(case, remarks.append)
+    made = build_mesh(case, remarks.append)
     warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.require_meshable(case, made)
     warnings += mesh_health.resolution_warnings(case, made, case.housing.frequency_limit if case.housing else None)
 
@@ -129,7 +127,7 @@ def compare(
     """
     require(case, "housing", "measured", command="compare")
     solved = _solved(case, "compare", housing, folder, progress, fresh=fresh)
-    comparison, survey = comparison_stage.compare_with_survey(case, solved, progress)
+    comparison, survey = compare_with_survey(case, solved, progress)
     document = comparison_document(comparison, solved)
     likeness = None
     if survey is not None:
@@ -277,7 +275,7 @@ def render(
     solved = _solved(case, "render", housing, folder, progress, fresh=fresh)
     comparison, survey = None, None
     if case.measured is not None and (measured or solved.strengths is not None):
-        comparison, survey = comparison_stage.compare_with_survey(case, solved, progress)
+        comparison, survey = compare_with_survey(case, solved, progress)
     document = origin_document(solved)
 
     def files(place: Path, *, pictures: bool) -> None:
@@ -296,4 +294,4 @@ def _solved(
 ) -> SolvedHousing:
     if housing is not None:
         return housing
-    return housing_stage.solve_housing(case, progress, command=command, folder=folder, fresh=fresh)
+    return solve_housing(case, progress, command=command, folder=folder, fresh=fresh)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, swept_keys
-from gearwhine.from_case import gear_pairs as gear_stage
-from gearwhine.from_case import machine as machine_stage
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import basis_error, solve_machine
 from gearwhine.output.dataset import labelled
 from gearwhine.output.warnings import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
@@ -17,18 +17,13 @@ from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.steady_state import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
-from gearwhine.solve import coupled_system as system_stage
-from gearwhine.solve import gear_pairs as gear_analysis
-from gearwhine.solve import gear_pairs as gear_torques
 from gearwhine.solve import relief_aims
-from gearwhine.solve import rotors as rotor_stage
-from gearwhine.solve import steady_state as steady_stage
-from gearwhine.solve.coupled_system import SolvedSystem
-from gearwhine.solve.gear_pairs import PairAnalysis
+from gearwhine.solve.coupled_system import SolvedSystem, solve_system
+from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.plausibility import add_uncertainty, machine_warnings, unstable_modes_warnings
-from gearwhine.solve.rotors import SolvedRotor
-from gearwhine.solve.steady_state import SolvedSteady
+from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
+from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +48,7 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
     rotors.IncompleteModesError
         Where modes fail their certificate.
     """
-    solved = rotor_stage.solve_rotors(case, progress)
+    solved = solve_rotors(case, progress)
     document = rotors_document(solved)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
@@ -63,7 +58,7 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
 
     def files(place: Path, *, pictures: bool) -> None:
         if write_ross:
-            remarks = rotor_stage.write_ross_files(place, solved)
+            remarks = write_ross_files(place, solved)
             add_warnings(document, [warning("ross", remark) for remark in remarks])
 
     return Result(
@@ -92,9 +87,9 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
     CaseError, coupling.gears.GearError
         Where the case has no gear pairs, or one cannot be solved as it stands.
     """
-    loaded = gear_stage.solve_gears(case, progress)
+    loaded = solve_gears(case, progress)
     aims = relief_aims.relief_aims(case, loaded, progress, folder=folder)
-    pairs = gear_torques.solve_over_torques(gear_analysis.analyse_pairs(case, loaded), progress, aims)
+    pairs = solve_over_torques(analyse_pairs(case, loaded), progress, aims)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_gear_pairs
@@ -143,11 +138,9 @@ def system(
     coupling.ModesError
         Where the modes fail their certificate.
     """
-    solved_housing, pairs, machine = machine_stage.solve_machine(
-        case, progress, housing=housing, folder=folder, fresh=fresh
-    )
+    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, folder=folder, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
-    solved = system_stage.solve_system(
+    solved = solve_system(
         case,
         machine,
         solved_housing,
@@ -158,7 +151,7 @@ def system(
     )
     document = system_document(solved)
     add_warnings(document, unstable_modes_warnings(solved.stability))
-    error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
+    error = basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
@@ -212,10 +205,8 @@ def steady(
     coupling.PeriodicError
         Where no periodic motion is found.
     """
-    solved_housing, pairs, machine = machine_stage.solve_machine(
-        case, progress, housing=housing, folder=folder, fresh=fresh
-    )
-    solved = steady_stage.solve_steady(
+    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, folder=folder, fresh=fresh)
+    solved = solve_steady(
         case,
         machine,
         solved_housing,
@@ -227,7 +218,7 @@ def steady(
     )
     document = steady_document(case.title, solved)
     add_warnings(document, machine_warnings(machine))
-    error = machine_stage.basis_error(case, machine, solved_housing, pairs, progress)
+    error = basis_error(case, machine, solved_housing, pairs, progress)
     add_uncertainty(document, error, document["trusted_below_hz"])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
@@ -285,13 +276,13 @@ def sweep(
     """
     start = time.perf_counter()
     keys = swept_keys(case, over)
-    from gearwhine import sweep as sweeping
+    from gearwhine.sweep import collected_sweep, default_workers, run_sweep, sweep_document, sweep_points
 
-    points = sweeping.sweep_points(*source, keys)
-    count = workers or sweeping.default_workers()
-    swept = sweeping.run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
-    dataset = sweeping.collected_sweep(case, keys, swept)
-    document = {"title": case.title} | sweeping.sweep_document(keys, swept)
+    points = sweep_points(*source, keys)
+    count = workers or default_workers()
+    swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    dataset = collected_sweep(case, keys, swept)
+    document = {"title": case.title} | sweep_document(keys, swept)
     document["workers"] = count if scheduler is None else None
     document["seconds"] = {"total": time.perf_counter() - start}
 

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
-from gearwhine.from_case import gear_pairs as gear_stage
-from gearwhine.from_case import machine as machine_stage
-from gearwhine.from_case.machine import require_machine
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine
 from gearwhine.mode_pictures import draw_modes
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
@@ -27,16 +26,15 @@ from gearwhine.results.housing import HOUSING, modes_document, origin_document, 
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import RUN_SIGNATURE, TRANSIENT, HistoryStream, run_signature_document, transient_document
 from gearwhine.results.system import SYSTEM, system_document
-from gearwhine.solve import comparison as comparison_stage
-from gearwhine.solve import coupled_system as system_stage
-from gearwhine.solve import gear_pairs as gear_analysis
-from gearwhine.solve import housing_modes as housing_stage
-from gearwhine.solve import rotors as rotor_stage
-from gearwhine.solve import run_up as run_up_stage
-from gearwhine.solve import signature as signature_stage
-from gearwhine.solve import transient as transient_stage
-from gearwhine.solve.housing_modes import MODE_CACHE_FILE, write_mode_cache
+from gearwhine.solve.comparison import compare_housing
+from gearwhine.solve.coupled_system import solve_system
+from gearwhine.solve.gear_pairs import analyse_pairs
+from gearwhine.solve.housing_modes import MODE_CACHE_FILE, solve_housing, write_mode_cache
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, unstable_modes_warnings
+from gearwhine.solve.rotors import solve_rotors
+from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
+from gearwhine.solve.signature import solve_signature
+from gearwhine.solve.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.solve.transient_record import stored_record
 
 if TYPE_CHECKING:
@@ -100,13 +98,13 @@ def run(
         seconds[name] = time.perf_counter() - begin
 
     begin = time.perf_counter()
-    rotors = rotor_stage.solve_rotors(case, progress) if case.rotor else ()
-    pairs = gear_stage.solve_gears(case, progress) if case.gear_pair else ()
-    analysed = gear_analysis.analyse_pairs(case, pairs)
+    rotors = solve_rotors(case, progress) if case.rotor else ()
+    pairs = solve_gears(case, progress) if case.gear_pair else ()
+    analysed = analyse_pairs(case, pairs)
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
     if housing is None and case.housing is not None:
-        housing = housing_stage.solve_housing(case, progress, folder=folder, fresh=fresh)
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     timed("housing", begin)
     if rotors:
         document = joined(document, rotors_document(rotors))
@@ -117,16 +115,16 @@ def run(
         document["housing"] = modes_document(housing)
         document = joined(document, origin_document(housing))
         if case.measured is not None:
-            comparison = comparison_stage.compare_housing(case, housing, progress)
+            comparison = compare_housing(case, housing, progress)
             document["compare"] = comparison_document(comparison, housing)
 
     transient, system, signature, run_signature = None, None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
-        part = None if housing is None else machine_stage.reduce_housing(case, housing, progress)
-        machine = machine_stage.build_machine(case, part, pairs, progress)
-        basis = machine_stage.basis_error(case, machine, part, pairs, progress)
-        system = system_stage.solve_system(case, machine, housing, progress)
+        part = None if housing is None else reduce_housing(case, housing, progress)
+        machine = build_machine(case, part, pairs, progress)
+        basis = basis_error(case, machine, part, pairs, progress)
+        system = solve_system(case, machine, housing, progress)
         document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
@@ -141,17 +139,15 @@ def run(
             keep = None
             if folder is not None and until_written is not None:
                 keep = partial(_checkpoints, folder, until_written, fresh=fresh)
-            transient = transient_stage.solve_transient(
-                case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep
-            )
-            if transient_stage.has_traced_lines(case):
+            transient = solve_transient(case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep)
+            if has_traced_lines(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
-                signature = signature_stage.solve_signature(transient, system.modes, frequencies)
+                signature = solve_signature(transient, system.modes, frequencies)
             document = joined(document, transient_document(transient, signature))
-            add_warnings(document, bearing_load_warnings(case, transient_stage.mean_bearing_forces(transient)))
+            add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient)))
             add_uncertainty(document, basis, transient.trusted_limit)
-            run_signature = run_up_stage.solve_run_signature(case, transient)
-            add_warnings(document, run_up_stage.run_signature_warnings(case, transient))
+            run_signature = solve_run_signature(case, transient)
+            add_warnings(document, run_signature_warnings(case, transient))
             if run_signature is not None:
                 document["run_signature"] = run_signature_document(run_signature)
             timed("transient", begin)
