@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
-from coupling import GapLaw
 from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
@@ -34,12 +33,13 @@ from gearwhine.case.fields import (
     wrong,
 )
 from gearwhine.case.units import Dimension
-from rotors import Pedestal as RotorPedestal
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from coupling import GapLaw
+    from rotors import Pedestal as BuiltPedestal
     from rotors.rolling_bearings import BallRow, RollerRow, RollingBearing
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
@@ -300,7 +300,7 @@ class Pedestal(Table):
     stiffness: PedestalStiffness
     damping: PedestalDamping = PedestalDamping()
 
-    def build(self) -> RotorPedestal:
+    def build(self) -> BuiltPedestal:
         """Build the pedestal."""
         from rotors import Pedestal as BuiltPedestal
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from gearwhine.case.box import FACES, Box
 from gearwhine.case.check_machine import millimetres
@@ -15,7 +16,9 @@ from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, did_you_me
 from gearwhine.case.fields import Patch
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Draft
-from meshes import Bore, Boss, BoxGeometry, Cover, CoverBolts, Feet, Fillets, Flange, Rib, WallThickness
+
+if TYPE_CHECKING:
+    from meshes import BoxGeometry
 
 _IN_THE_FILE = {"start": "from", "end": "to"}
 
@@ -28,6 +31,8 @@ def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
     meshes.GeometryError
         Where its parts do not fit each other.
     """
+    from meshes import Bore, Boss, BoxGeometry, Cover, CoverBolts, Feet, Fillets, Flange, Rib, WallThickness
+
     walls, cover = box.walls, box.cover
     bores = []
     for seat in seats:

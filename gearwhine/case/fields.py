@@ -11,7 +11,7 @@ import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     AfterValidator,
@@ -27,7 +27,9 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from gearwhine.case import units
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
-from housing import Patch as HousingPatch
+
+if TYPE_CHECKING:
+    from housing import Patch as BuiltPatch
 
 MOST_ENTRIES = 10_000
 """Most entries a list may hold; beyond it a case is a mistake, not a gearbox."""
@@ -354,7 +356,7 @@ class Patch(Table):
         x, y, z = (float(axis == self.plane.axis) for axis in "xyz")
         return (x * self.plane.at, y * self.plane.at, z * self.plane.at), (x, y, z)
 
-    def build_patch(self) -> HousingPatch:
+    def build_patch(self) -> BuiltPatch:
         """Build the patch of the mesh's surface."""
         from housing import Patch as BuiltPatch
 

@@ -6,7 +6,7 @@ Each table builds its object of `housing`. Attributes are named as the keys of t
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Discriminator, Tag, model_validator
 
@@ -27,10 +27,12 @@ from gearwhine.case.fields import (
     unit_vector,
     wrong,
 )
-from housing import Bushing as HousingBushing
-from housing import Joint as HousingJoint
-from housing import LumpedMass as HousingLumpedMass
-from housing import Mount as HousingMount
+
+if TYPE_CHECKING:
+    from housing import Bushing as BuiltBushing
+    from housing import Joint as BuiltJoint
+    from housing import LumpedMass as BuiltMass
+    from housing import Mount as BuiltMount
 
 TiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, at_least=0.0)]
 TiltDamping = Annotated[float, Quantity(units.TILT_DAMPING, at_least=0.0)]
@@ -149,7 +151,7 @@ class Bushing(Table):
         x, y = map(unit_vector, self.axes)
         return unit_vector(_cross(x, y)), x
 
-    def build_bushing(self) -> HousingBushing:
+    def build_bushing(self) -> BuiltBushing:
         """Build the bushing: springs and dashpots along its axes."""
         from housing import Bushing as BuiltBushing
         from housing.model.bushings import GLOBAL_AXES, Axial, axes_along
@@ -183,7 +185,7 @@ class Mount(Patch, Bushing):
         """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
         return self.stiffness is not None and any(amounts(self.stiffness))
 
-    def build(self) -> HousingMount:
+    def build(self) -> BuiltMount:
         """Build the mount."""
         from housing import Mount as BuiltMount
 
@@ -211,7 +213,7 @@ class Joint(Bushing):
             raise wrong("'center' and 'axis' with it: where the two faces meet, and across them", "diameter")
         return self
 
-    def build(self) -> HousingJoint:
+    def build(self) -> BuiltJoint:
         """Build the joint of two surfaces, or of circles on the faces that look along its axis and against it."""
         from housing import Joint as BuiltJoint
         from housing import Patch as BuiltPatch
@@ -285,7 +287,7 @@ class LumpedMass(Patch):
                 raise wrong("a 'surface', 'box' or 'plane' with it: a single point does not turn a body", key)
         return self
 
-    def build(self) -> HousingLumpedMass:
+    def build(self) -> BuiltMass:
         """Build the lumped mass."""
         from housing import LumpedMass as BuiltMass
         from housing.model.lumped_mass import NO_INERTIA

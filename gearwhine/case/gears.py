@@ -14,9 +14,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
 
-from coupling.gears import Gear as GearGear
-from coupling.gears import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
-from coupling.gears.geometry.gear import Fault as GearFault
 from gearwhine.case import units
 from gearwhine.case.fields import (
     Angle,
@@ -36,6 +33,9 @@ from gearwhine.case.fields import (
 )
 
 if TYPE_CHECKING:
+    from coupling.gears import Gear as BuiltGear
+    from coupling.gears import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
+    from coupling.gears.geometry.gear import Fault as BuiltFault
     from coupling.machine.gear_train import GearTrain
     from gearwhine.case.housing import Material
 
@@ -213,13 +213,13 @@ class Fault(Table):
                 raise wrong("a roll angle beyond start_roll_angle", "end_roll_angle")
         return self
 
-    def build(self) -> GearFault:
+    def build(self) -> BuiltFault:
         """Build the gear fault of this kind."""
         from coupling.gears import MissingTooth, Spall, ToothCrack, Wear
 
         kinds = {"wear": Wear, "spall": Spall, "crack": ToothCrack, "missing-tooth": MissingTooth}
         needed, optional = _KEYS_OF_FAULTS[self.kind]
-        made: GearFault = kinds[self.kind](**{key: getattr(self, key) for key in (*needed, *optional)})
+        made: BuiltFault = kinds[self.kind](**{key: getattr(self, key) for key in (*needed, *optional)})
         return made
 
 
@@ -326,7 +326,7 @@ class Gear(Table):
         # The module is proportional to the base radius.
         return self.tooth_module / module_from_base_radius(1.0, self.teeth, self.pressure_angle, self.helix_angle)
 
-    def build(self, material: Material | None = None) -> GearGear:
+    def build(self, material: Material | None = None) -> BuiltGear:
         """Build the gear, of a material or by default of steel.
 
         A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.

@@ -7,7 +7,7 @@ case file and are in SI; frequencies are in Hz.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator, model_validator
 
@@ -37,9 +37,11 @@ from gearwhine.case.fields import (
 )
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount
 from gearwhine.case.units import QuantityError, parse_quantity
-from housing import Seat as HousingSeat
-from housing import Sensor as HousingSensor
-from housing import Support as HousingSupport
+
+if TYPE_CHECKING:
+    from housing import Seat as BuiltSeat
+    from housing import Sensor as BuiltSensor
+    from housing import Support as BuiltSupport
 
 
 class Region(Table):
@@ -210,7 +212,7 @@ class Seat(Table):
             raise wrong(f"a boss wider than its bore of {self.diameter:g} m", "boss", "diameter")
         return self
 
-    def build(self) -> HousingSeat:
+    def build(self) -> BuiltSeat:
         """Build the bearing seat, by its surface in the mesh."""
         from housing import Seat as BuiltSeat
 
@@ -258,7 +260,7 @@ class Support(Patch):
         """Whether it keeps the housing in its place; a dashpot alone lets it creep away."""
         return self.fixed is not None or self.stiffness is not None
 
-    def build(self) -> HousingSupport:
+    def build(self) -> BuiltSupport:
         """Build the support."""
         from housing import Support as BuiltSupport
 
@@ -286,7 +288,7 @@ class Sensor(Table):
         """The direction as a unit vector; None where it is the surface normal."""
         return None if self.direction is None else unit_vector(self.direction)
 
-    def build(self) -> HousingSensor:
+    def build(self) -> BuiltSensor:
         """Build the sensor."""
         from housing import Sensor as BuiltSensor
 

@@ -8,13 +8,10 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
-from coupling import BaseMotion
-from coupling.machine.loads import TorqueHistory as CoupledTorqueHistory
-from coupling.machine.loads import TorqueRipple as CoupledTorqueRipple
 from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
@@ -30,6 +27,11 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+
+if TYPE_CHECKING:
+    from coupling import BaseMotion
+    from coupling.machine.loads import TorqueHistory as BuiltHistory
+    from coupling.machine.loads import TorqueRipple as BuiltRipple
 
 Time = Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e6)]
 PositiveTime = Annotated[float, Quantity(units.TIME, above=0.0, at_most=1e6)]
@@ -60,7 +62,7 @@ class TorqueHistory(Table):
         _check_table("time", self.time, "torque", self.torque)
         return self
 
-    def build(self, rotor: str, at: float, factor: float) -> CoupledTorqueHistory:
+    def build(self, rotor: str, at: float, factor: float) -> BuiltHistory:
         """Build the torque history, times a factor, on a rotor at a station [m]."""
         from numpy import array
 
@@ -83,7 +85,7 @@ class TorqueRipple(Table):
             raise wrong("either an 'order' of the shaft's rotation or a 'frequency'", "order")
         return self
 
-    def build(self, rotor: str, at: float, sense: float) -> CoupledTorqueRipple:
+    def build(self, rotor: str, at: float, sense: float) -> BuiltRipple:
         """Build the torque ripple on a rotor at a station [m], in the sense of the torque that it is about."""
         from coupling.machine.loads import TorqueRipple as BuiltRipple
 

@@ -47,15 +47,15 @@ from gearwhine.case.fields import (
     wrong,
 )
 from gearwhine.case.operation import Acceleration, Speeds
-from rotors import Coupling as RotorCoupling
-from rotors import Disc as RotorDisc
-from rotors import Rotor as RotorRotor
-from rotors import Segment as RotorSegment
-from rotors import Unbalance as RotorUnbalance
-from rotors.model.loads import Bow as RotorBow
 
 if TYPE_CHECKING:
     from gearwhine.case.housing import Material
+    from rotors import Coupling as BuiltCoupling
+    from rotors import Disc as BuiltDisc
+    from rotors import Rotor as BuiltRotor
+    from rotors import Segment as BuiltSegment
+    from rotors import Unbalance as BuiltUnbalance
+    from rotors.model.loads import Bow as BuiltBow
     from rotors.ross.reading import RossModel
 
 _MOST_SHEAR = 1.5
@@ -117,7 +117,7 @@ class Segment(Table):
             raise wrong(f"a bore smaller than the diameter of {diameter:g} m at the right end", "right_bore")
         return self
 
-    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorSegment:
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltSegment:
         """Build the shaft segment, with its rotor's properties where it has none of its own."""
         from rotors import Segment as BuiltSegment
         from rotors import ShaftMaterial
@@ -161,7 +161,7 @@ class CouplingSegment(Table):
     length: PositiveLength
     coupling: Coupling
 
-    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorCoupling:
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltCoupling:
         """Build the coupling; it takes no property from its rotor."""
         from rotors import Coupling as BuiltCoupling
 
@@ -176,7 +176,7 @@ class Disc(Table):
     polar_inertia: Inertia = 0.0
     diametral_inertia: Inertia = 0.0
 
-    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorDisc:
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltDisc:
         """Build the disc; it takes no property from its rotor."""
         from rotors import Disc as BuiltDisc
 
@@ -201,7 +201,7 @@ class RoundDisc(Table):
             raise wrong("either 'material' or 'density', not both", "density")
         return self
 
-    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> RotorDisc:
+    def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltDisc:
         """Build the disc by its dimensions and density."""
         from rotors import Disc as BuiltDisc
 
@@ -324,7 +324,7 @@ class Rotor(Table):
             return self._saved.rotor.length
         return sum(segment.length for segment in self.segments)
 
-    def build(self, materials: Mapping[str, Material]) -> RotorRotor:
+    def build(self, materials: Mapping[str, Material]) -> BuiltRotor:
         """Build the shaft with its discs, without the gears on it; the discs of the rotor's own file stand first."""
         from rotors import Rotor as BuiltRotor
 
@@ -335,13 +335,13 @@ class Rotor(Table):
         segments = [segment.build(self, materials) for segment in self.segments]
         return BuiltRotor(self.name, segments, discs, self.mass)
 
-    def build_unbalance(self) -> list[RotorUnbalance]:
+    def build_unbalance(self) -> list[BuiltUnbalance]:
         """Build the unbalances."""
         from rotors import Unbalance as BuiltUnbalance
 
         return [BuiltUnbalance(one.at, one.moment, one.phase) for one in self.unbalance]
 
-    def build_bow(self) -> RotorBow | None:
+    def build_bow(self) -> BuiltBow | None:
         """Build the residual bow; None for a straight shaft."""
         if not self.bow:
             return None
