@@ -8,7 +8,7 @@ missing() {
     "$python" - <<'PY'
 import ctypes, sys
 from meshes.errors import MesherUnavailableError
-from meshes.gmsh_session import SYSTEM_PACKAGES, load_gmsh
+from meshes.gmsh_meshing import SYSTEM_PACKAGES, load_gmsh
 packages = []
 try:
     load_gmsh()

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 
 import pytest
 
@@ -57,3 +58,11 @@ def test_gmsh_says_nothing_and_works_again_after_a_failure(capfd: pytest.Capture
     mesh_box(BoxGeometry((0.2, 0.2, 0.2), WallThickness.uniform(0.03)), 0.1)
     captured = capfd.readouterr()
     assert captured.out == captured.err == ""
+
+
+def test_the_script_for_system_libraries_finds_what_it_imports() -> None:
+    """It is the first of ours that runs on a new machine, before any test."""
+    script = (Path(__file__).parents[2] / "scripts" / "system_libraries.sh").read_text(encoding="utf-8")
+    code = script.split("<<'PY'\n")[1].split("\nPY\n")[0]
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
