@@ -358,23 +358,50 @@ def _fields(
     slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Solve the deflection ``w = fixed + compression * rising`` of each pair for given touching slices, (p, n) both."""
-    n = slices.z.size
     flat = np.where(touching, slices.flattening, 0.0)
+    fields = face_yield(slices, base, touching, np.stack([-(flat * gap), flat], axis=2))
+    return fields[:, :, 0], fields[:, :, 1]
+
+
+def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads: FloatArray) -> FloatArray:
+    """Deflections w of p tooth pairs under m fields of load per width, ``(k_b + k_h) w - T w'' = q``.
+
+    Parameters
+    ----------
+    slices : FaceSlices
+    base : ndarray, shape (p, n)
+        k_b of each slice [N/m per m].
+    touching : ndarray of bool, shape (p, n)
+        Slices in contact, where k_h joins.
+    loads : ndarray, shape (p, n, m)
+        q [N/m].
+
+    Returns
+    -------
+    ndarray, shape (p, n, m)
+        [m]
+
+    Raises
+    ------
+    ContactAccuracyError
+        Where the slices yield without bound.
+    """
+    n = slices.z.size
     link = slices.coupling / slices.width**2
     neighbours = np.full(n, 2.0)
     neighbours[0] -= 1.0
     neighbours[-1] -= 1.0
-    diagonal = base + flat + link * neighbours
+    diagonal = base + np.where(touching, slices.flattening, 0.0) + link * neighbours
     beside = np.full(diagonal.shape, -link)
     beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
-    right = np.stack([-(flat * gap), flat])
-    # One symmetric, diagonally dominant tridiagonal matrix of all pairs, with two right-hand sides in LAPACK's order.
+    # One symmetric, diagonally dominant tridiagonal matrix of all pairs; right-hand sides in LAPACK's order.
+    right = np.asfortranarray(loads.reshape(-1, loads.shape[2]))
     _, _, fields, info = dptsv(
-        diagonal.ravel(), beside.ravel()[:-1], right.reshape(2, -1).T, overwrite_d=1, overwrite_e=1, overwrite_b=1
+        diagonal.ravel(), beside.ravel()[:-1], right, overwrite_d=1, overwrite_e=1, overwrite_b=1
     )
     if info != 0:
         raise ContactAccuracyError("the slices of the face yield without bound; check the stiffness of the teeth")
-    return fields[:, 0].reshape(diagonal.shape), fields[:, 1].reshape(diagonal.shape)
+    return np.asarray(fields).reshape(loads.shape)
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:

@@ -1,0 +1,306 @@
+r"""Loaded tooth contact analysis of a pair whose flanks approach unevenly over the face: load, stiffness, mean energy.
+
+Shafts bend and twist under load, so the flanks of a gear pair approach each other differently along the face. The
+approach of a slice at z (from the middle of the face) of a tooth pair whose slice lies xi along the line of action from
+the pitch point is
+
+    a = sum_j N_j(z) y_j - h xi y_t,
+
+y_j the approach at stations of the face along the line of action, N_j Lagrange's polynomials over them, y_t the
+relative tilt of the two shafts in the plane of action [rad], and h the axial part of the tooth force over its
+transverse part. The conjugate loads follow by virtual work, ``f_j = sum q w N_j`` and ``f_t = -h sum q w xi``, with q
+the load per width on slices of the width w (:mod:`coupling.gears.contact.face_slices`).
+
+Over a mesh period the number of pairs in contact changes while the torques, and so the mesh force ``F = sum_j f_j``,
+stay, and so does the shape of the shafts. With the approach split into its mean over the face and its shape,
+``y = g + c delta`` (c is 1 at the stations and 0 for the tilt), static equilibrium at each phase gives delta(p; F, g).
+The mean over a period is again a contact with an energy: with U the energy of the teeth,
+
+    V(F, g) = mean_p (F delta - U),     d = dV/dF = mean delta,     -dV/dg = mean f,
+    Psi(g + c d) = F d - V,             dPsi/dy = mean f.
+
+Psi is convex, as U is. So the mean approach of the flanks over a mesh period carries the mean loads, and the machine's
+equilibrium under mean loads is the minimum of one potential.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.contact.contact_law import ToothContact
+from coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield
+from coupling.gears.errors import ContactAccuracyError, GearError
+from coupling.gears.geometry.pair import GearPairGeometry
+
+FloatArray = npt.NDArray[np.float64]
+
+_PHASES = 48  # of a mesh period in the means
+_CONVERGED = 1e-13  # of the mean deflection, relative to the deflection itself
+_ROUNDS = 60
+_FIRST_STRAIN = 1e-5  # first guess of the deflection over the base pitch
+
+
+@dataclass(frozen=True, eq=False)
+class FaceLoad:
+    """Static equilibrium of a mesh at n phases, under one force and one shape of the approach.
+
+    Attributes
+    ----------
+    force : float
+        Mesh force F along the line of action, transverse [N].
+    phases : ndarray, shape (n,)
+        Mesh periods.
+    deflection : ndarray, shape (n,)
+        Mean approach over the face, delta [m]: the static transmission error of the teeth under load.
+    loads : ndarray, shape (n, m)
+        Conjugate loads: f_j of the stations [N], f_t of the tilt [N m].
+    tangents : ndarray, shape (n, m, m)
+        Derivatives of the loads by the approach, the shared compliance excluded.
+    energy : ndarray, shape (n,)
+        U [J].
+    line_load : ndarray, shape (n, s)
+        Load per width over the face, all pairs together [N/m].
+    peak_line_load : float
+        Largest load per width on any one pair [N/m].
+    """
+
+    force: float
+    phases: FloatArray
+    deflection: FloatArray
+    loads: FloatArray
+    tangents: FloatArray
+    energy: FloatArray
+    line_load: FloatArray
+    peak_line_load: float
+
+
+@dataclass(frozen=True, eq=False)
+class MeanContactState:
+    """Mean contact over a mesh period at an approach y: Psi, its gradient and its Hessian.
+
+    Attributes
+    ----------
+    energy : float
+        Psi [J].
+    loads : ndarray, shape (m,)
+        Mean loads dPsi/dy [N, N m].
+    stiffness : ndarray, shape (m, m)
+        Symmetric, positive semidefinite.
+    force : float
+        Mesh force F [N]; 0 where the flanks are apart.
+    """
+
+    energy: float
+    loads: FloatArray
+    stiffness: FloatArray
+    force: float
+
+
+class FaceContact:
+    """Tooth contact of a gear pair by the approach of its flanks over the face.
+
+    Sound teeth without pitch deviations stand for all: the mean over a mesh period, not over the hunting period.
+
+    Parameters
+    ----------
+    contact : ToothContact
+        With face slices that are not misaligned.
+    geometry : GearPairGeometry
+    stations : ndarray, shape (j,)
+        Stations of the approach from the middle of the face [m], ascending; one station means a rigid gear, whose
+        approach over the face is its tilt's alone.
+    axial : float
+        h, axial part of the tooth force over its transverse part, as the driven gear feels it.
+
+    Raises
+    ------
+    GearError
+        Where the contact has no face slices, or its stations lie outside the face.
+    """
+
+    def __init__(
+        self, contact: ToothContact, geometry: GearPairGeometry, stations: FloatArray, axial: float
+    ) -> None:
+        if contact.faces is None:
+            raise GearError("loaded tooth contact: the contact has no face slices; expected those of `face_slices`")
+        if np.any(np.abs(stations) > 0.5 * geometry.face_width * (1.0 + 1e-9)):
+            raise GearError(f"loaded tooth contact: stations {stations.tolist()} m; expected them within the face")
+        self._contact = contact
+        self._faces = contact.faces
+        self._axial = axial
+        self._to_pitch_point = geometry.pitch_point_position
+        self._base_pitch = geometry.base_pitch
+        z = contact.faces.z
+        self.stations = stations
+        """From the middle of the face [m], shape (j,)."""
+        self.over_face = lagrange(stations, z) if stations.size > 1 else np.ones((z.size, 1))
+        """N_j at the slices, shape (s, j)."""
+        self._last: tuple[float, float] | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of components of the approach, m: the stations and the tilt."""
+        return self.stations.size + 1
+
+    @property
+    def uniform(self) -> FloatArray:
+        """c, the approach that is 1 all over the face, shape (m,)."""
+        return np.append(np.ones(self.stations.size), 0.0)
+
+    @cached_property
+    def face_mean(self) -> FloatArray:
+        """Mean over the face of an approach, as a row over its components, shape (m,)."""
+        return np.append(self.over_face.mean(axis=0), 0.0)
+
+    def under_force(self, force: float, shape: FloatArray, phases: FloatArray | None = None) -> FaceLoad:
+        """Solve static equilibrium under a force, at the phases of a mesh period.
+
+        Parameters
+        ----------
+        force : float
+            Above 0 [N].
+        shape : ndarray, shape (m,)
+            g, the approach but for its mean over the face.
+        phases : ndarray, shape (n,), optional
+            Mesh periods; by default equally spaced ones over a period.
+
+        Raises
+        ------
+        ContactAccuracyError
+            Where the touching slices do not converge.
+        """
+        prepared = self._mean_phases if phases is None else _Prepared(self, phases)
+        gap = prepared.gap - np.einsum("pnm,m->pn", prepared.basis, shape)
+        n = prepared.phases.size
+        compression, loads = face_equilibrium(
+            self._faces, prepared.base, gap, prepared.meeting, prepared.owner, np.full(n, force)
+        )
+        touching = loads.line_tangent > 0.0
+        deformation = np.where(touching, compression[prepared.owner, None] - gap, 0.0)
+        width, shared = self._faces.width, self._contact.shared_compliance
+        energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
+        each = width * np.einsum("pnm,pn->pm", prepared.basis, loads.line_load)
+        line = np.add.reduceat(loads.line_load, prepared.first, axis=0)
+        return FaceLoad(
+            force=force,
+            phases=prepared.phases,
+            deflection=compression + shared * force,
+            loads=np.add.reduceat(each, prepared.first, axis=0),
+            tangents=self._tangents(prepared, touching),
+            energy=energy + 0.5 * shared * force**2,
+            line_load=line,
+            peak_line_load=float(loads.line_load.max(initial=0.0)),
+        )
+
+    def at(self, approach: FloatArray) -> MeanContactState:
+        """Mean contact at an approach of the flanks, shape (m,).
+
+        Raises
+        ------
+        ContactAccuracyError
+            Where the mean deflection finds no force.
+        """
+        size, target = self.size, float(self.face_mean @ approach)
+        shape = approach - self.uniform * target
+        first = self._mean_phases.first_touch(shape)
+        if target <= first:
+            return MeanContactState(0.0, np.zeros(size), np.zeros((size, size)), 0.0)
+        force = self._guess(target - first)
+        low, high = 0.0, np.inf
+        for _ in range(_ROUNDS):
+            load = self.under_force(force, shape)
+            reached = float(load.deflection.mean())
+            slope = float(np.mean(1.0 / self._uniform_stiffness(load))) + self._contact.shared_compliance
+            if abs(reached - target) <= _CONVERGED * abs(target) + 1e-22:
+                break
+            low, high = (force, high) if reached < target else (low, force)
+            step = force + (target - reached) / slope
+            if abs(step - force) <= 4.0 * np.finfo(np.float64).eps * force:
+                break
+            force = step if low < step < high else 0.5 * (low + min(high, 4.0 * force + step))
+        else:
+            raise ContactAccuracyError(
+                f"loaded tooth contact: no mesh force for a mean approach of {target:.6g} m; expected one"
+            )
+        self._last = (force, target - first)
+        return self._state(load, force, target)
+
+    def _state(self, load: FaceLoad, force: float, target: float) -> MeanContactState:
+        shared, mean, uniform = self._contact.shared_compliance, self.face_mean, self.uniform
+        pull = load.tangents @ uniform
+        kappa = pull @ uniform
+        by_force = (pull / kappa[:, None]).mean(axis=0)
+        compliance = float(np.mean(1.0 / kappa)) + shared
+        by_shape = (load.tangents - pull[:, :, None] * pull[:, None, :] / kappa[:, None, None]).mean(axis=0)
+        # d = D_F dF + D_g dg and dg = (1 - c l) dy give dF/dy; D_g = -by_force.
+        shape_of = np.eye(self.size) - np.outer(uniform, mean)
+        force_of = (mean + by_force @ shape_of) / compliance
+        stiffness = np.outer(by_force, force_of) + by_shape @ shape_of
+        complementary = float(np.mean(force * load.deflection - load.energy))
+        return MeanContactState(
+            energy=force * target - complementary,
+            loads=load.loads.mean(axis=0),
+            stiffness=0.5 * (stiffness + stiffness.T),
+            force=force,
+        )
+
+    def _guess(self, beyond: float) -> float:
+        if self._last is not None:
+            force, deep = self._last
+            return force * beyond / deep
+        return self._contact.mean_mesh_stiffness * beyond
+
+    def _uniform_stiffness(self, load: FaceLoad) -> FloatArray:
+        return np.asarray(load.tangents @ self.uniform @ self.uniform)
+
+    def _tangents(self, prepared: _Prepared, touching: npt.NDArray[np.bool_]) -> FloatArray:
+        """A = sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m)."""
+        flat = np.where(touching, self._faces.flattening, 0.0)
+        pushed = flat[:, :, None] * prepared.basis
+        yielding = face_yield(self._faces, prepared.base, touching, pushed)
+        each = self._faces.width * np.einsum("pnk,pnm->pkm", pushed, prepared.basis - yielding)
+        return np.add.reduceat(each, prepared.first, axis=0)
+
+    @cached_property
+    def _mean_phases(self) -> _Prepared:
+        return _Prepared(self, (np.arange(_PHASES) + 0.5) / _PHASES)
+
+
+class _Prepared:
+    """Slices of the pairs at n phases, with the approach of each by the components, (p, s, m)."""
+
+    def __init__(self, mesh: FaceContact, phases: FloatArray) -> None:
+        contact, faces = mesh._contact, mesh._faces
+        states = contact.pairs(phases)
+        assert states.faces is not None
+        self.phases = phases
+        self.owner, columns = np.nonzero(states.present)
+        self.first = np.searchsorted(self.owner, np.arange(phases.size))
+        self.base, self.meeting = states.faces.base, states.faces.meeting
+        self.gap = states.faces.gap
+        position = states.position[self.owner, columns][:, None] + faces.shift
+        along = (position - mesh._to_pitch_point) * mesh._base_pitch
+        basis = np.empty((*position.shape, mesh.size))
+        basis[:, :, :-1] = mesh.over_face
+        basis[:, :, -1] = -mesh._axial * along
+        if mesh.stations.size == 1:
+            basis[:, :, -1] += faces.z
+        self.basis = basis
+
+    def first_touch(self, shape: FloatArray) -> float:
+        """Mean over the phases of the approach at which the first slice touches [m]."""
+        gap = np.where(self.meeting, self.gap - np.einsum("pnm,m->pn", self.basis, shape), np.inf).min(axis=1)
+        return float(np.minimum.reduceat(gap, self.first).mean())
+
+
+def lagrange(stations: FloatArray, z: FloatArray) -> FloatArray:
+    """Lagrange's polynomials over j stations at places z (s,), shape (s, j)."""
+    found = np.ones((z.size, stations.size))
+    for j, own in enumerate(stations):
+        for other in np.delete(stations, j):
+            found[:, j] *= (z - other) / (own - other)
+    return found

@@ -1,0 +1,754 @@
+r"""Operating point: static equilibrium of the whole machine under its torques, weight and preloads.
+
+Shafts are exact Timoshenko beams between the stations of bearings, gears and torques
+(:mod:`rotors.analyses.static_stiffness`), the housing is its modes with the residual ones, whose static compliance at
+the seats is exact, rolling bearings act by each of their elements, and gear pairs by slices of their faces, averaged
+over a mesh period (:mod:`coupling.gears.loaded.face_load`). With x the motions of all stations and the housing's
+coordinates, K their linear stiffness, f the loads, and connectors of deflections z = Eᵀ x and energies phi(z), the
+equilibrium is the minimum of
+
+    Pi(x) = 1/2 xᵀ K x - fᵀ x + sum phi(Eᵀ x),
+
+which is convex. Each connector is given a nominal stiffness k0, so that K0 = K + E k0 Eᵀ holds every motion; then
+x = K0⁻¹ (f + E mu), and only the few components of mu are sought, by a trust region and, from there, Newton's method
+with the connectors' own, perhaps unsymmetric, tangents. With C = Eᵀ K0⁻¹ E = L Lᵀ and nu = Lᵀ mu,
+
+    z = z_f + L nu,      Pi(nu) = 1/2 nuᵀ nu + sum (phi(z) - 1/2 zᵀ k0 z).
+
+Rigid motions that nothing holds, such as the rotation of the train, must carry no load; they stay at zero.
+
+From the equilibrium follow bearing loads and tangent stiffness, deflections, and for each gear pair the misalignment of
+its flanks with its causes, the load over the face and its factor K_Hβ (ISO 6336-1), and the transmission error.
+Friction of the teeth and the change of the load with the mesh phase are left out: the means over a mesh period act.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from coupling.errors import CouplingError, EquilibriumNotFoundError
+from coupling.gears import GearPairGeometry
+from coupling.gears.loaded.face_load import FaceContact, FaceLoad
+from coupling.machine.components import HousingComponent
+from coupling.machine.connectors import GapLaw, MountedBearing
+from coupling.machine.loads import Torque
+from rotors.analyses.static_stiffness import StaticShaft
+from rotors.numerics.trust_region import Local, minimise
+from rotors.rolling_bearings import RollingState
+
+if TYPE_CHECKING:
+    from rotors.rolling_bearings import RollingElements
+
+FloatArray = npt.NDArray[np.float64]
+
+RESIDUAL_BAR = 1e-9
+"""Largest force out of balance, relative to the largest load, that is accepted."""
+
+_TOLERANCE = 1e-12
+_NEWTON_STEPS = 30
+_FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
+_CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
+_TE_PHASES = 200
+
+
+class ConnectorLaw(Protocol):
+    """Energy, force and tangent of a connector by its deflections."""
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Energy [J], force (d,) [N, N m] and tangent (d, d) at deflections (d,) [m, rad]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class LinearLaw:
+    """Constant stiffness, (5, 5), perhaps unsymmetric; the energy is that of its symmetric part."""
+
+    stiffness: FloatArray
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Energy, force and tangent."""
+        force = self.stiffness @ deflection
+        return 0.5 * float(deflection @ force), force, self.stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class RollingElementLaw:
+    """A rolling bearing by its elements, its spring preload included."""
+
+    elements: "RollingElements"
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Energy, force and tangent."""
+        here = self.elements.at(deflection)
+        return here.value, here.gradient, here.hessian
+
+
+@dataclass(frozen=True, eq=False)
+class RadialGapLaw:
+    """A ring around the shaft that it touches beyond a gap, see :class:`coupling.machine.connectors.GapLaw`."""
+
+    law: GapLaw
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Energy, force and tangent."""
+        law, radial = self.law, deflection[:2]
+        force, tangent = np.zeros(5), np.zeros((5, 5))
+        reach = float(np.hypot(*radial))
+        beyond = (reach - law.gap) / law.depth
+        if beyond <= 0.0:
+            return 0.0, force, tangent
+        push, away = law.force * beyond**law.exponent, radial / reach
+        along = np.outer(away, away)
+        force[:2] = push * away
+        rise = law.exponent * push / (beyond * law.depth)
+        tangent[:2, :2] = rise * along + push / reach * (np.eye(2) - along)
+        return push * beyond * law.depth / (law.exponent + 1.0), force, tangent
+
+
+@dataclass(frozen=True, eq=False)
+class FaceContactLaw:
+    """Mean tooth contact of a gear pair over a mesh period, by the approach of its flanks over the face."""
+
+    contact: FaceContact
+    clearance: float = 0.0
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Energy, force and tangent."""
+        state = self.contact.at(deflection - self.clearance * self.contact.uniform)
+        return state.energy, state.loads, state.stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class StaticBearing:
+    """A bearing in the static model: its law, and the nominal stiffness (5, 5) that the search starts from."""
+
+    mounted: MountedBearing
+    law: ConnectorLaw
+    nominal: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class StaticShaftPart:
+    """A shaft in the static model: its name, axis (x, y) [m], z of its left end [m] and its exact stiffness."""
+
+    name: str
+    axis: tuple[float, float]
+    start: float
+    shaft: StaticShaft
+
+
+@dataclass(frozen=True, eq=False)
+class StaticGear:
+    """A gear of a pair in the static model.
+
+    Attributes
+    ----------
+    name, shaft : str
+    at : float
+        Middle of the face from the shaft's left end [m].
+    stations : ndarray, shape (j,), or None
+        Stations of the face on the shaft, from its left end [m]; None for a gear whose face reaches beyond the end of
+        the shaft, which is rigid on the section at ``at``.
+    """
+
+    name: str
+    shaft: str
+    at: float
+    stations: FloatArray | None
+
+
+@dataclass(frozen=True, eq=False)
+class StaticPair:
+    """A gear pair in the static model.
+
+    Attributes
+    ----------
+    label : str
+    driver, driven : StaticGear
+    geometry : GearPairGeometry
+    contact : FaceContact
+        Of the loaded flanks.
+    clearance : float
+        Their gap without load [m]: 0, or the backlash where the back flanks carry.
+    push : tuple of float
+        Unit vector e in the x-y plane along which the driver pushes the driven gear.
+    axial : float
+        h, axial part of the force over its transverse part.
+    sense : int
+        Of the rotation by which the driver closes these flanks.
+    towards : tuple of float
+        Unit vector from the driver's centre to the driven gear's.
+    nominal : float
+        Mean mesh stiffness for the search [N/m].
+    nominal_offset : float
+        Deflection at which the nominal stiffness has no force [m].
+    """
+
+    label: str
+    driver: StaticGear
+    driven: StaticGear
+    geometry: GearPairGeometry
+    contact: FaceContact
+    clearance: float
+    push: tuple[float, float]
+    axial: float
+    sense: int
+    towards: tuple[float, float]
+    nominal: float
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftDeflection:
+    """Deflection of a shaft at the operating point.
+
+    Attributes
+    ----------
+    part : StaticShaftPart
+    displacement : ndarray, shape (6 N,)
+        Of the nodes: along and about x, y, z [m, rad].
+    gravity : tuple of float or None
+        Under which it stands [m/s²].
+    """
+
+    part: StaticShaftPart
+    displacement: FloatArray
+    gravity: tuple[float, ...] | None
+
+    @property
+    def name(self) -> str:
+        """Name of the shaft."""
+        return self.part.name
+
+    def motions(self, z: npt.ArrayLike) -> FloatArray:
+        """Motion of sections at positions from the left end (m,) [m]: along and about x, y, z, shape (6, m)."""
+        return self.part.shaft.motions(self.displacement, z, self.gravity)
+
+
+@dataclass(frozen=True, eq=False)
+class BearingLoad:
+    """Load of a bearing at the operating point, over x, y, z and the rotations about x and y.
+
+    Attributes
+    ----------
+    mounted : MountedBearing
+    force : ndarray, shape (5,)
+        Of the shaft on the seat [N, N m].
+    deflection : ndarray, shape (5,)
+        Of the shaft against the seat [m, rad].
+    seat_motion : ndarray, shape (5,)
+        Of the seat [m, rad]; zero on the ground.
+    stiffness : ndarray, shape (5, 5)
+        Tangent [N/m, N/rad, N m/rad].
+    rolling : RollingState or None
+        Of a rolling bearing: loads, angles and pressures of its elements.
+    """
+
+    mounted: MountedBearing
+    force: FloatArray
+    deflection: FloatArray
+    seat_motion: FloatArray
+    stiffness: FloatArray
+    rolling: RollingState | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the bearing."""
+        return self.mounted.bearing.name
+
+
+CAUSES = ("shafts", "bearings", "housing", "bodies")
+"""Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, and the twist of
+shaft and gear body over the face."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairLoad:
+    """A gear pair at the operating point.
+
+    Attributes
+    ----------
+    pair : StaticPair
+    force : float
+        Mean mesh force along the line of action, transverse [N].
+    approach : ndarray, shape (m,)
+        Mean approach of the flanks over the components of the pair's contact [m, rad].
+    misalignment : float
+        Angle between the flanks in the plane of action, open towards +z [rad]: minus the slope of the approach's best
+        straight line over the face.
+    misalignment_by_cause : dict of str to float
+        Its parts by `CAUSES`, whose sum it is [rad].
+    mean : FaceLoad
+        Over the phases of a mesh period.
+    fine : FaceLoad
+        At more phases, for the transmission error.
+    """
+
+    pair: StaticPair
+    force: float
+    approach: FloatArray
+    misalignment: float
+    misalignment_by_cause: dict[str, float]
+    mean: FaceLoad
+    fine: FaceLoad
+
+    @property
+    def z(self) -> FloatArray:
+        """Slices of the face, from its middle [m], shape (s,)."""
+        return self.pair.contact.z
+
+    @property
+    def gap(self) -> FloatArray:
+        """Gap of the flanks over the face by the machine's deflection, its mean taken off [m], shape (s,)."""
+        over = self.pair.contact.over_face @ self.approach[:-1]
+        return np.asarray(over.mean() - over)
+
+    @property
+    def line_load(self) -> FloatArray:
+        """Load per width over the face, all tooth pairs together, mean over the mesh period [N/m], shape (s,)."""
+        return np.asarray(self.fine.line_load.mean(axis=0))
+
+    @property
+    def k_h_beta(self) -> float:
+        """Face load factor K_Hβ (ISO 6336-1): the largest mean load per width over its mean over the face."""
+        load = self.line_load
+        return float(load.max() / load.mean())
+
+    @property
+    def transmission_error(self) -> FloatArray:
+        """Static transmission error under load at ``fine.phases`` [m]: deflection of the teeth, without the shafts'."""
+        return self.fine.deflection
+
+    @property
+    def mean_stiffness(self) -> float:
+        """Mean mesh stiffness under load over the mesh period [N/m]."""
+        return float(self.pair.contact.stiffness_of(self.fine).mean())
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingPoint:
+    """Static equilibrium of a machine under its mean load.
+
+    Attributes
+    ----------
+    shafts : tuple of ShaftDeflection
+    bearings : tuple of BearingLoad
+    pairs : tuple of PairLoad
+    housing : ndarray, shape (h,), or None
+        The housing's modal coordinates.
+    residual : float
+        Largest force out of balance over the largest load; moments over that load times the longest shaft.
+    iterations : int
+        Of the trust region and Newton's method.
+    free : tuple of str
+        Motions that nothing holds and no load drives, in words.
+    """
+
+    shafts: tuple[ShaftDeflection, ...]
+    bearings: tuple[BearingLoad, ...]
+    pairs: tuple[PairLoad, ...]
+    housing: FloatArray | None
+    residual: float
+    iterations: int
+    free: tuple[str, ...]
+
+    def shaft(self, name: str) -> ShaftDeflection:
+        """Return the deflection of the shaft of this name."""
+        return next(one for one in self.shafts if one.name == name)
+
+    def bearing(self, name: str) -> BearingLoad:
+        """Return the load of the bearing of this name."""
+        return next(one for one in self.bearings if one.name == name)
+
+
+def solve_operating_point(
+    shafts: Sequence[StaticShaftPart],
+    bearings: Sequence[StaticBearing],
+    pairs: Sequence[StaticPair],
+    housing: HousingComponent | None,
+    torques: Sequence[Torque],
+    gravity: Sequence[float] | None = None,
+) -> OperatingPoint:
+    """Find the static equilibrium of a machine.
+
+    Parameters
+    ----------
+    shafts, bearings, pairs
+        The static model; :meth:`coupling.Machine.operating_point` makes it.
+    housing : HousingComponent or None
+        With its residual modes.
+    torques : sequence of Torque
+        Constant ones.
+    gravity : sequence of float, optional
+        Acceleration of free fall along x, y, z [m/s²].
+
+    Raises
+    ------
+    CouplingError
+        Where a load drives a motion that nothing holds, such as a shaft without axial location.
+    EquilibriumNotFoundError
+        Where no equilibrium is found, or the forces do not balance to `RESIDUAL_BAR`.
+    """
+    model = _StaticModel(shafts, bearings, pairs, housing, torques, gravity)
+    return model.solve()
+
+
+class _StaticModel:
+    """Coordinates, stiffness, loads and connectors of the static machine."""
+
+    def __init__(
+        self,
+        shafts: Sequence[StaticShaftPart],
+        bearings: Sequence[StaticBearing],
+        pairs: Sequence[StaticPair],
+        housing: HousingComponent | None,
+        torques: Sequence[Torque],
+        gravity: Sequence[float] | None,
+    ) -> None:
+        self.shafts, self.bearings, self.pairs, self.housing = shafts, bearings, pairs, housing
+        self.gravity = None if gravity is None else tuple(gravity)
+        self.first: dict[str, int] = {}
+        size = 0
+        for part in shafts:
+            self.first[part.name] = size
+            size += 6 * part.shaft.places.size
+        self.housing_first = size
+        size += 0 if housing is None else housing.size
+        pedestals = [one.mounted.bearing for one in bearings if one.mounted.bearing.pedestal is not None]
+        self.pedestal_first = {bearing.name: size + 2 * n for n, bearing in enumerate(pedestals)}
+        self.size = size + 2 * len(pedestals)
+        self.stiffness = self._linear_stiffness(pedestals)
+        self.load = self._loads(torques)
+        self.directions = [self._bearing_rows(one.mounted) for one in bearings]
+        self.directions += [self._pair_rows(pair) for pair in pairs]
+        self.laws: list[ConnectorLaw] = [one.law for one in bearings]
+        self.laws += [FaceContactLaw(pair.contact, pair.clearance) for pair in pairs]
+        self.nominal = [one.nominal for one in bearings]
+        self.nominal += [_uniform_stiffness(pair) for pair in pairs]
+        self.all_directions = np.concatenate(self.directions, axis=1)
+        ends = np.cumsum([rows.shape[1] for rows in self.directions])
+        self.parts = [slice(end - rows.shape[1], end) for end, rows in zip(ends.tolist(), self.directions, strict=True)]
+
+    def _linear_stiffness(self, pedestals: Sequence[object]) -> FloatArray:
+        whole = np.zeros((self.size, self.size))
+        for part in self.shafts:
+            own = self._own(part.name)
+            whole[own, own] = part.shaft.stiffness
+        if self.housing is not None:
+            own = slice(self.housing_first, self.housing_first + self.housing.size)
+            whole[own, own] = self.housing.stiffness
+        for one in self.bearings:
+            pedestal = one.mounted.bearing.pedestal
+            if pedestal is not None:
+                first = self.pedestal_first[one.mounted.bearing.name]
+                whole[first : first + 2, first : first + 2] = pedestal.stiffness
+        return whole
+
+    def _loads(self, torques: Sequence[Torque]) -> FloatArray:
+        load = np.zeros(self.size)
+        for torque in torques:
+            part = self._part(torque.rotor)
+            load[self.first[part.name] + 6 * part.shaft.node(torque.at) + 5] += torque.value
+        if self.gravity is None:
+            return load
+        for part in self.shafts:
+            load[self._own(part.name)] += part.shaft.weight(self.gravity)
+        if self.housing is not None:
+            if self.housing.participation is None:
+                raise CouplingError(f"{self.housing.name}: expected its participation in rigid motions, for its weight")
+            own = slice(self.housing_first, self.housing_first + self.housing.size)
+            load[own] += self.housing.participation[:, :3] @ np.array(self.gravity)
+        return load
+
+    def _part(self, shaft: str) -> StaticShaftPart:
+        return next(part for part in self.shafts if part.name == shaft)
+
+    def _own(self, shaft: str) -> slice:
+        first = self.first[shaft]
+        return slice(first, first + 6 * self._part(shaft).shaft.places.size)
+
+    def _section(self, shaft: str, at: float) -> FloatArray:
+        """Motion of a station along and about x, y, z by all coordinates, (6, n)."""
+        rows = np.zeros((6, self.size))
+        first = self.first[shaft] + 6 * self._part(shaft).shaft.node(at)
+        rows[:, first : first + 6] = np.eye(6)
+        return rows
+
+    def seat_rows(self, mounted: MountedBearing) -> FloatArray:
+        """Motion of a bearing's seat, (5, n): x, y, z and the rotations about x and y."""
+        rows = np.zeros((5, self.size))
+        if mounted.seat is not None:
+            assert self.housing is not None
+            z = self._part(mounted.rotor).start + mounted.bearing.at
+            own = slice(self.housing_first, self.housing_first + self.housing.size)
+            rows[:, own] = self.housing.seat_motions(mounted.seat, z)
+        elif mounted.bearing.pedestal is not None:
+            first = self.pedestal_first[mounted.bearing.name]
+            rows[0, first] = rows[1, first + 1] = 1.0
+        return rows
+
+    def _bearing_rows(self, mounted: MountedBearing) -> FloatArray:
+        return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_rows(mounted)).T)
+
+    def _pair_rows(self, pair: StaticPair) -> FloatArray:
+        """Approach of the flanks at the stations of the face, and relative tilt, by all coordinates, (n, j + 1)."""
+        stations = pair.contact.stations
+        rows = np.zeros((stations.size + 1, self.size))
+        radii = pair.geometry.working_pitch_radii
+        gears = ((pair.driver, pair.geometry.driver, 1.0), (pair.driven, pair.geometry.driven, -1.0))
+        for (gear, made, side), radius in zip(gears, radii, strict=True):
+            x, y = (side * radius * part for part in pair.towards)
+            middle = self._section(gear.shaft, gear.at)
+            tilt = side * (pair.push[0] * middle[4] - pair.push[1] * middle[3])
+            axial = side * pair.axial * (middle[2] + y * middle[3] - x * middle[4])
+            for number, z in enumerate(stations.tolist()):
+                section = middle if gear.stations is None else self._section(gear.shaft, float(gear.stations[number]))
+                across = side * (pair.push[0] * section[0] + pair.push[1] * section[1])
+                if gear.stations is None:
+                    across = across + z * tilt
+                rows[number] += across + pair.sense * made.base_radius * section[5] + axial
+            rows[-1] += tilt
+        return np.asarray(rows.T)
+
+    def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:
+        """Stiffness that holds the motions which nothing else does, (n, n), and these motions in words.
+
+        Every motion without elastic energy is a rigid one of the shafts, or one of the housing's modes at rest.
+        """
+        motions, words = self._rigid_motions()
+        nominal = linalg.block_diag(*self.nominal)
+        held = motions.T @ self.all_directions
+        whole = held @ nominal @ held.T
+        whole = 0.5 * (whole + whole.T)
+        values, vectors = np.linalg.eigh(whole)
+        # Without any connector, every rigid motion is free.
+        stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
+        found: list[str] = []
+        extra = np.zeros((self.size, self.size))
+        for value, vector in zip(values, vectors.T, strict=True):
+            if value > _FREE * stiff:
+                continue
+            motion = motions @ vector
+            work, scale = float(motion @ self.load), float(np.abs(motion) @ np.abs(self.load))
+            word = words[int(np.argmax(np.abs(vector)))]
+            if abs(work) > _CARRIED * scale:
+                raise CouplingError(
+                    f"nothing holds {word}, and the loads drive it; expected a bearing that holds it, such as one with "
+                    "axial stiffness on every shaft that helical gears or its weight push along its axis, and torques "
+                    "that balance"
+                )
+            found.append(word)
+            extra += stiff * np.outer(motion, motion) / float(motion @ motion) ** 2
+        return extra, tuple(found)
+
+    def _rigid_motions(self) -> tuple[FloatArray, list[str]]:
+        """Motions without elastic energy by all coordinates, (n, r), of about a metre at most, and their names."""
+        columns, words = [], []
+        names = ("motion along x", "motion along y", "axial motion", "tilt about x", "tilt about y", "rotation")
+        for part in self.shafts:
+            places = part.shaft.places - part.shaft.places.mean()
+            length = max(float(np.ptp(part.shaft.places)), 1e-3)
+            rigid = np.zeros((places.size, 6, 6))
+            rigid[:, np.arange(6), np.arange(6)] = np.array([1.0, 1.0, 1.0, 1 / length, 1 / length, 1 / length])
+            # A rotation about x moves what lies at larger z along -y, one about y along +x.
+            rigid[:, 1, 3] = -places / length
+            rigid[:, 0, 4] = places / length
+            for number, name in enumerate(names):
+                column = np.zeros(self.size)
+                column[self._own(part.name)] = rigid[:, :, number].ravel()
+                columns.append(column)
+                words.append(f"the {name} of shaft {part.name!r}")
+        if self.housing is not None:
+            diagonal = np.diag(self.housing.stiffness)
+            for number in np.flatnonzero(diagonal <= 1e-12 * diagonal.max(initial=0.0)):
+                column = np.zeros(self.size)
+                column[self.housing_first + number] = 1.0
+                columns.append(column)
+                words.append("the motion of the housing as a whole")
+        return np.array(columns).T, words
+
+    def solve(self) -> OperatingPoint:
+        """Minimise the potential, polish by Newton's method, and prove the balance of forces."""
+        extra, free = self._hold_free_motions()
+        stiffness = self.stiffness + extra
+        directions, nominal = self.all_directions, linalg.block_diag(*self.nominal)
+        held = linalg.lu_factor(stiffness + directions @ nominal @ directions.T)
+        offset = linalg.block_diag(*self.nominal) @ np.concatenate([self._offset(n) for n in range(len(self.laws))])
+        # The nominal law k0 (z - z0) starts the search near closed flanks.
+        unloaded = linalg.lu_solve(held, self.load + directions @ offset)
+        answers = linalg.lu_solve(held, directions)
+        start = directions.T @ unloaded
+        compliance = directions.T @ answers
+        values, vectors = np.linalg.eigh(0.5 * (compliance + compliance.T))
+        kept = values > 1e-13 * values[-1]
+        spread = vectors[:, kept] * np.sqrt(values[kept])
+        shift = offset
+
+        def remainder(z: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+            """Energy, force and tangent of the laws beyond their nominal ones."""
+            energy, force, tangent = 0.0, np.zeros(z.size), np.zeros((z.size, z.size))
+            for part, law in zip(self.parts, self.laws, strict=True):
+                stored, own, slope = law.at(z[part])
+                energy, force[part], tangent[part, part] = energy + stored, own, slope
+            linear = nominal @ z - shift
+            return energy - 0.5 * float(z @ (nominal @ z)) + float(shift @ z), force - linear, tangent - nominal
+
+        noise = float(np.abs(self.load) @ np.abs(unloaded)) + 1e-12
+
+        def potential(nu: FloatArray) -> Local:
+            energy, force, tangent = remainder(start + spread @ nu)
+            tangent = 0.5 * (tangent + tangent.T)
+            gradient = nu + spread.T @ force
+            return Local(
+                value=0.5 * float(nu @ nu) + energy,
+                gradient=gradient,
+                hessian=np.eye(nu.size) + spread.T @ tangent @ spread,
+                noise=noise + abs(energy),
+                force=float(np.abs(nu).max(initial=0.0)) + float(np.abs(spread.T @ force).max(initial=0.0)) + 1e-300,
+            )
+
+        radius = max(float(np.sqrt(abs(self.load @ unloaded))), 1e-9)
+        found = minimise(potential, np.zeros(spread.shape[1]), radius, _TOLERANCE)
+        nu, steps = found.place, 0
+        best, best_residual = nu, np.inf
+        for steps in range(_NEWTON_STEPS):
+            _, force, tangent = remainder(start + spread @ nu)
+            gradient = nu + spread.T @ force
+            residual = float(np.abs(gradient).max(initial=0.0))
+            if residual < best_residual:
+                best, best_residual = nu, residual
+            elif steps > 3:
+                break
+            nu = nu - np.linalg.solve(np.eye(nu.size) + spread.T @ tangent @ spread, gradient)
+        _, force, _ = remainder(start + spread @ best)
+        x = unloaded - answers @ force
+        return self._result(x, extra, free, found.iterations + steps)
+
+    def _offset(self, number: int) -> FloatArray:
+        """Deflection z0 at which the nominal law of a connector has no force: flanks just touch at their clearance."""
+        pairs = number - len(self.bearings)
+        if pairs < 0:
+            return np.zeros(5)
+        pair = self.pairs[pairs]
+        return (pair.clearance + pair.contact.touch) * pair.contact.uniform
+
+    def _result(self, x: FloatArray, extra: FloatArray, free: tuple[str, ...], iterations: int) -> OperatingPoint:
+        deflections = [rows.T @ x for rows in self.directions]
+        states = [law.at(z) for law, z in zip(self.laws, deflections, strict=True)]
+        residual = self.load - (self.stiffness + extra) @ x
+        for rows, (_, force, _) in zip(self.directions, states, strict=True):
+            residual = residual - rows @ force
+        relative = self._relative(residual, [force for _, force, _ in states])
+        if not relative <= RESIDUAL_BAR:
+            raise EquilibriumNotFoundError(
+                f"no static equilibrium of the machine: {relative:.3g} of the largest load is out of balance after "
+                f"{iterations} steps; expected at most {RESIDUAL_BAR:g}. The load may be more than bearings or teeth "
+                "can carry, or play may leave a shaft loose"
+            )
+        bearings = tuple(
+            BearingLoad(
+                one.mounted,
+                force,
+                deflection,
+                self.seat_rows(one.mounted) @ x,
+                tangent,
+                one.law.elements.state(deflection) if isinstance(one.law, RollingElementLaw) else None,
+            )
+            for one, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
+        )
+        causes = self._causes(x, bearings)
+        count = len(self.bearings)
+        pairs = tuple(
+            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()})
+            for pair, approach, rows in zip(self.pairs, deflections[count:], self.directions[count:], strict=True)
+        )
+        shafts = tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts)
+        housing = None
+        if self.housing is not None:
+            housing = x[self.housing_first : self.housing_first + self.housing.size]
+        return OperatingPoint(shafts, bearings, pairs, housing, relative, iterations, free)
+
+    def _relative(self, residual: FloatArray, forces: Sequence[FloatArray]) -> float:
+        """Largest force out of balance over the largest load, moments over that load times the longest shaft."""
+        longest = max(float(np.ptp(part.shaft.places)) for part in self.shafts) or 1.0
+        largest = 1e-300
+        for part in self.shafts:
+            load = self.load[self._own(part.name)].reshape(-1, 6)
+            largest = max(largest, float(np.abs(load[:, :3]).max()), float(np.abs(load[:, 3:]).max()) / longest)
+        for rows, force in zip(self.directions, forces, strict=True):
+            for part in self.shafts:
+                on_shaft = (rows @ force)[self._own(part.name)].reshape(-1, 6)
+                largest = max(largest, float(np.abs(on_shaft[:, :3]).max()))
+        worst = 0.0
+        for part in self.shafts:
+            left = residual[self._own(part.name)].reshape(-1, 6)
+            worst = max(worst, float(np.abs(left[:, :3]).max()), float(np.abs(left[:, 3:]).max()) / longest)
+        if self.housing is not None:
+            own = slice(self.housing_first, self.housing_first + self.housing.size)
+            # A modal force is one of a shape of the size of its largest seat motion.
+            size = max(float(np.abs(rows[own]).max()) for rows in self.directions) or 1.0
+            worst = max(worst, float(np.abs(residual[own]).max(initial=0.0)) / size)
+        for first in self.pedestal_first.values():
+            worst = max(worst, float(np.abs(residual[first : first + 2]).max()))
+        return worst / largest
+
+    def _causes(self, x: FloatArray, bearings: Sequence[BearingLoad]) -> dict[str, FloatArray]:
+        """Parts of the shafts' motion by `CAUSES`, (n,) each; their sum is that of all stations.
+
+        The rigid motion of a shaft is the one that fits the motion at its bearings, with their tangent stiffness as
+        weights; it is linear in the motions of the seats and the deflections of the bearings. What is left is elastic.
+        The twist is told apart by `_pair`.
+        """
+        parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing")}
+        for part in self.shafts:
+            own = self._own(part.name)
+            places = part.shaft.places
+            here = [one for one in bearings if one.mounted.rotor == part.name]
+            rigid_by = {"bearings": np.zeros(5), "housing": np.zeros(5)}
+            matrix = np.zeros((5, 5))
+            for one in here:
+                moved = _rigid_rows(one.mounted.bearing.at)
+                metric = 0.5 * (one.stiffness + one.stiffness.T)
+                matrix += moved.T @ metric @ moved
+                rigid_by["bearings"] += moved.T @ metric @ one.deflection
+                rigid_by["housing"] += moved.T @ metric @ one.seat_motion
+            whole = np.zeros((places.size, 6))
+            for cause, side in rigid_by.items():
+                rigid = np.linalg.lstsq(matrix, side, rcond=1e-12)[0]
+                moved = np.array([_rigid_rows(at) @ rigid for at in places.tolist()])
+                parts[cause][own] = np.pad(moved, ((0, 0), (0, 1))).ravel()
+                whole[:, :5] += moved
+            parts["shafts"][own] = x[own] - whole.ravel()
+        return parts
+
+    def _pair(self, pair: StaticPair, approach: FloatArray, causes: Mapping[str, FloatArray]) -> PairLoad:
+        contact = pair.contact
+        slope = -contact.face_slope
+        by_cause = {cause: float(slope @ part) for cause, part in causes.items()}
+        twist = float(slope @ self._twist[pair.label])
+        by_cause["shafts"] -= twist
+        by_cause["bodies"] = twist
+        touched = approach - pair.clearance * contact.uniform
+        force = contact.at(touched).force
+        shape = touched - contact.uniform * float(contact.face_mean @ touched)
+        mean = contact.under_force(force, shape)
+        fine = contact.under_force(force, shape, np.arange(_TE_PHASES) / _TE_PHASES)
+        return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)
+
+
+def _rigid_rows(at: float) -> FloatArray:
+    """Motion x, y, z and rotations about x and y at a place by the rigid motion of the left end, (5, 5)."""
+    rows = np.eye(5)
+    rows[0, 4], rows[1, 3] = at, -at
+    return rows
+
+
+def _uniform_stiffness(pair: StaticPair) -> FloatArray:
+    """Nominal stiffness over the components of the approach: spread evenly over the face, (m, m)."""
+    over = pair.contact.over_face
+    whole = np.zeros((pair.contact.size, pair.contact.size))
+    whole[:-1, :-1] = pair.nominal * over.T @ over / over.shape[0]
+    return whole
