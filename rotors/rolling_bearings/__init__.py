@@ -5,20 +5,23 @@
     bearing = linearised_bearing(state, "drive end", at=0.02)
 
 A state carries the displacement, the 5×5 tangent stiffness, each element's load, contact angles and pressures, and the
-residual of its equilibrium. `catalogue_row` estimates a row from bore, outer diameter and width; `paired` sets two
-against each other. Coordinates are x, y, z and the rotations about x and y of the inner ring against the outer.
+residual of its equilibrium. `RollingElements` is the energy of the elements at any displacement, with reaction and
+tangent, for the equilibrium of a whole machine; `rolling_state` is the state at a displacement found so.
+`catalogue_row` estimates a row from bore, outer diameter and width; `paired` sets two against each other. Coordinates
+are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
 from rotors.rolling_bearings.element_contacts import ElementLoads
 from rotors.rolling_bearings.equilibrium import (
     COORDINATES,
     LARGEST_APPROACH,
+    RollingElements,
     RollingState,
     kramer_ball_stiffness,
     kramer_roller_stiffness,
     linearised_bearing,
     rolling_equilibrium,
-    rolling_reaction,
+    rolling_state,
 )
 from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, point_contact
 from rotors.rolling_bearings.rolling_bearing import RollingBearing, catalogue_row, paired, preload_offset, static_rating
@@ -34,6 +37,7 @@ __all__ = [
     "PointContact",
     "RollerRow",
     "RollingBearing",
+    "RollingElements",
     "RollingState",
     "catalogue_row",
     "kramer_ball_stiffness",
@@ -43,6 +47,6 @@ __all__ = [
     "point_contact",
     "preload_offset",
     "rolling_equilibrium",
-    "rolling_reaction",
+    "rolling_state",
     "static_rating",
 ]

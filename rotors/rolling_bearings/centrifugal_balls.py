@@ -40,6 +40,9 @@ FloatArray = npt.NDArray[np.float64]
 # The latter also limits the force error, relative to the larger of the static and the centrifugal force.
 _CLOSED = 1e-15
 _OPEN = 1e-12
+# Newton's method on all balls at once: a ball with an error below this has converged.
+_ROUNDED = 1e-14
+_NEWTON_STEPS, _HALVINGS = 12, 6
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,7 @@ class CentrifugalBalls:
     def energy(self, q: FloatArray) -> RowEnergy:
         """Energy and its derivatives over q, every ball where its forces balance."""
         v, motion = self._vectors(q)
-        force = np.array([self._inner_force(one) for one in v])
+        force = self._inner_forces(v)
         inner_value, _, inner_hessian = _reach(self.row.inner_contact, self._inner_arm, force)
         outer_value, _, outer_hessian = _reach(self.row.outer_contact, self._outer_arm, force + self._outwards)
         value = (force * v).sum(axis=1) - inner_value - outer_value
@@ -66,7 +69,7 @@ class CentrifugalBalls:
     def loads(self, q: FloatArray) -> ElementLoads:
         """Return the loads of every ball at both rings."""
         v, _ = self._vectors(q)
-        inner = np.array([self._inner_force(one) for one in v])
+        inner = self._inner_forces(v)
         outer = inner + self._outwards
         inside, outside = np.linalg.norm(inner, axis=1), np.linalg.norm(outer, axis=1)
         approach = (inside / self.row.inner_contact.stiffness) ** (2.0 / 3.0)
@@ -74,8 +77,58 @@ class CentrifugalBalls:
         lines = np.where((inside > 0.0)[:, None], inner, v)
         return ball_loads(self.row, self.azimuths, (inside, outside), (lines, outer), approach)
 
+    def _inner_forces(self, v: FloatArray) -> FloatArray:
+        """Find the inner contacts' forces on the balls' grooves, (n, 2), N, by Newton's method on all balls at once.
+
+        |∂ψ/∂f − v| falls along the Newton step of a convex ψ, so a step is halved until it does. The trust region takes
+        the balls that this leaves open: those about to lose a contact, where ψ has a corner.
+        """
+        row, start = self.row, self._first_forces(v)
+        force, (error, gradient, hessian) = start, self._closure(start, v)
+        for _ in range(_NEWTON_STEPS):
+            if (error <= _ROUNDED).all():
+                break
+            step, share = np.linalg.solve(hessian, gradient[:, :, None])[:, :, 0], np.ones((row.count, 1))
+            for _ in range(_HALVINGS):
+                trial = force - share * step
+                new_error, new_gradient, new_hessian = self._closure(trial, v)
+                better = new_error < error
+                if better[error > _ROUNDED].all():
+                    break
+                share[~better] *= 0.5
+            force = np.where(better[:, None], trial, force)
+            error = np.where(better, new_error, error)
+            gradient = np.where(better[:, None], new_gradient, gradient)
+            hessian = np.where(better[:, None, None], new_hessian, hessian)
+        for ball in np.flatnonzero(~(error <= _ROUNDED) | ~start.any(axis=1)):
+            force[ball] = self._inner_force(v[ball])
+        return force
+
+    def _first_forces(self, v: FloatArray) -> FloatArray:
+        """First estimate of the inner contacts' forces, (n, 2), N; zero of a ball that the outer groove alone holds.
+
+        Balls pressed by more than F_c have the static force. Others lean on the outer groove's A_o/F_c across and on
+        the slope of its approach along the radius.
+        """
+        row, approach = self.row, (self.thrown / self.row.outer_contact.stiffness) ** (2.0 / 3.0)
+        distance, gap = np.linalg.norm(v, axis=1), v - np.array([self._outer_arm + approach, 0.0])
+        static = row.stiffness * np.maximum(distance - row.groove_distance, 0.0) ** 1.5
+        open_by = np.linalg.norm(gap, axis=1)
+        lean = gap / np.where(open_by > 0.0, open_by, 1.0)[:, None]
+        soft = (self._outer_arm * lean[:, 1] ** 2 + approach * lean[:, 0] ** 2 / 1.5) / self.thrown
+        light = np.clip((open_by - self._inner_arm) / soft, 0.0, self.thrown)[:, None] * lean
+        pressed = static > self.thrown
+        return np.where(pressed[:, None], (static / np.maximum(distance, self._inner_arm))[:, None] * v, light)
+
+    def _closure(self, force: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """∂ψ/∂f − v by its size over the distance of the grooves' centres, (n,), itself and its slope ∂²ψ/∂f²."""
+        _, into, soft = _reach(self.row.inner_contact, self._inner_arm, force)
+        _, out, softer = _reach(self.row.outer_contact, self._outer_arm, force + self._outwards)
+        gradient = into + out - v
+        return np.linalg.norm(gradient, axis=1) / self.row.groove_distance, gradient, soft + softer
+
     def _inner_force(self, v: FloatArray) -> FloatArray:
-        """Force of the inner contact on a ball's groove, (2,), N."""
+        """Force of the inner contact on one ball's groove, (2,), N."""
         row, radial = self.row, np.array([1.0, 0.0])
         alone = self._outer_arm + (self.thrown / row.outer_contact.stiffness) ** (2.0 / 3.0)
         gap = v - alone * radial

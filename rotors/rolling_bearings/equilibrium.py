@@ -7,12 +7,15 @@ With the energy φ(q) of all elements and the load f, the potential
 is convex (`rotors.rolling_bearings.element_contacts`, `rotors.rolling_bearings.centrifugal_balls`) and grows faster
 than linearly in every direction that the bearing holds. So it has a minimum for every load along those, which is the
 equilibrium, and a trust region finds it from any start. The tangent stiffness is the Hessian of φ there; with it
-`linearised_bearing` makes the linear bearing of a rotor. Krämer's formulas give a first estimate of the stiffness.
+`linearised_bearing` makes the linear bearing of a rotor. `RollingElements` gives φ and its derivatives at any
+displacement, so that a machine can minimise the energy of its shafts and all its bearings together. Krämer's formulas
+give a first estimate of the stiffness.
 """
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +24,7 @@ from rotors.errors import EquilibriumError, RotorError, require, require_count, 
 from rotors.model.bearing import Bearing
 from rotors.numerics.trust_region import Local, minimise
 from rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
-from rotors.rolling_bearings.element_contacts import ElementLoads, RollerSlices, RowContacts, RowEnergy, StaticBalls
+from rotors.rolling_bearings.element_contacts import ElementLoads, RollerSlices, RowContacts, StaticBalls
 from rotors.rolling_bearings.rolling_bearing import RollingBearing, Row
 from rotors.rolling_bearings.rows import BallRow
 
@@ -107,6 +110,76 @@ _ACCEPTED = 1e-10
 _LEAST_FORCE = 1e-9
 
 
+@dataclass(frozen=True)
+class RollingElements:
+    """Elements of a bearing between its rings: their energy over the inner ring's displacement, prepared once.
+
+    Parameters
+    ----------
+    bearing
+        By its geometry.
+    speed
+        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on balls.
+    cage_angle
+        Azimuth of the first element of every row, rad.
+
+    Raises
+    ------
+    RotorError
+        A speed or angle that is not finite.
+    """
+
+    bearing: RollingBearing
+    speed: float = 0.0
+    cage_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check that speed and cage angle are finite."""
+        require_finite("speed", self.speed)
+        require_finite("cage angle", self.cage_angle)
+
+    def at(self, displacement: FloatArray) -> Local:
+        """Energy of elements and preload spring with the inner ring displaced, convex in the displacement.
+
+        Parameters
+        ----------
+        displacement
+            (5,): over `COORDINATES`, m and rad.
+
+        Returns
+        -------
+        Local
+            Energy φ(q) − P z (J) with the spring's force P; its gradient, the force (5,) of the shaft on the inner ring
+            (N and N·m); its Hessian, the tangent stiffness (5, 5); ``noise`` (J) and ``force`` (N), the scales of the
+            rounding of energy and forces.
+        """
+        q = np.asarray(displacement, dtype=np.float64)
+        rows = [row.energy(q) for row in self.contacts]
+        value, load = sum(row.value for row in rows), sum(row.force for row in rows)
+        preload = self.bearing.axial_preload
+        gradient = np.sum([row.gradient for row in rows], axis=0)
+        gradient[2] -= preload
+        work = preload * float(q[2])
+        hessian = np.sum([row.hessian for row in rows], axis=0)
+        return Local(
+            value=value - work,
+            gradient=gradient,
+            hessian=0.5 * (hessian + hessian.T),
+            # Contacts are as deep as the rounded difference of two lengths of a tenth of an element or less.
+            noise=value + abs(work) + 0.1 * load * self.bearing.largest_element,
+            force=load + abs(preload) + _LEAST_FORCE * self.bearing.force_scale,
+        )
+
+    def loads(self, displacement: FloatArray) -> tuple[ElementLoads, ...]:
+        """Element loads of each row with the inner ring displaced, (5,)."""
+        return tuple(row.loads(np.asarray(displacement, dtype=np.float64)) for row in self.contacts)
+
+    @cached_property
+    def contacts(self) -> tuple[RowContacts, ...]:
+        """Contacts of each row."""
+        return tuple(_contacts(row, self.speed, self.cage_angle) for row in self.bearing.rows)
+
+
 def rolling_equilibrium(
     bearing: RollingBearing,
     load: Sequence[float] | FloatArray,
@@ -151,8 +224,7 @@ def rolling_equilibrium(
     for name, value in fixed.items():
         require(name in COORDINATES, f"held coordinate of {bearing.name}", name, f"one of {', '.join(COORDINATES)}")
         require_finite(f"displacement {name} of {bearing.name}", value)
-    require_finite("speed", speed)
-    require_finite("cage angle", cage_angle)
+    elements = RollingElements(bearing, speed, cage_angle)
     pushed = applied[2] != 0.0 and "z" not in fixed and not bearing.has_axial_stiffness
     require(
         not pushed,
@@ -161,14 +233,10 @@ def rolling_equilibrium(
         "none, or z held: cylindrical rollers carry none",
     )
 
-    contacts = [_contacts(row, speed, cage_angle) for row in bearing.rows]
     # Rotations as displacements of the pitch circle, so that all five are lengths.
     size = np.array([1.0, 1.0, 1.0, bearing.reach, bearing.reach])
-    force = applied + bearing.axial_preload * np.eye(5)[2]
     free = np.array([name not in fixed for name in COORDINATES])
     start = np.array([fixed.get(name, 0.0) for name in COORDINATES])
-
-    largest = max(row.element_diameter for row in bearing.rows)
 
     def displaced(lengths: FloatArray) -> FloatArray:
         q = start.copy()
@@ -177,43 +245,43 @@ def rolling_equilibrium(
 
     def potential(lengths: FloatArray) -> Local:
         q = displaced(lengths)
-        energy = _total([part.energy(q) for part in contacts])
-        work = float(force[free] @ q[free])
+        local = elements.at(q)
+        work = float(applied[free] @ q[free])
         return Local(
-            value=energy.value - work,
-            gradient=((energy.gradient - force) / size)[free],
-            hessian=(energy.hessian / np.outer(size, size))[np.ix_(free, free)],
-            # Contacts are as deep as the rounded difference of two lengths of a tenth of an element or less.
-            noise=energy.value + abs(work) + 0.1 * energy.force * largest,
-            force=energy.force + float(np.abs(force / size).sum()) + _LEAST_FORCE * bearing.force_scale,
+            value=local.value - work,
+            gradient=((local.gradient - applied) / size)[free],
+            hessian=(local.hessian / np.outer(size, size))[np.ix_(free, free)],
+            noise=local.noise + abs(work),
+            force=local.force + float(np.abs(applied / size).sum()),
         )
 
-    found = minimise(potential, np.zeros(int(free.sum())), 1e-3 * largest, _TOLERANCE)
+    found = minimise(potential, np.zeros(int(free.sum())), 1e-3 * bearing.largest_element, _TOLERANCE)
     q = displaced(found.place)
-    energy = _total([part.energy(q) for part in contacts])
-    state = RollingState(
-        bearing=bearing,
-        displacement=q,
-        load=np.where(free, applied, energy.gradient - force + applied),
-        reaction=energy.gradient,
-        stiffness=0.5 * (energy.hessian + energy.hessian.T),
-        rows=tuple(part.loads(q) for part in contacts),
-        speed=speed,
-        residual=found.residual,
-        iterations=found.iterations,
-    )
-    _require_proof(state)
-    return state
+    return _state(elements, q, np.where(free, applied, elements.at(q).gradient), found.residual, found.iterations)
 
 
-def rolling_reaction(
+def rolling_state(
     bearing: RollingBearing,
     displacement: Sequence[float] | FloatArray,
     *,
     speed: float = 0.0,
     cage_angle: float = 0.0,
 ) -> RollingState:
-    """State of the bearing with its inner ring displaced by five given amounts (m and rad).
+    """State of the bearing with its inner ring at a given displacement, as a machine's equilibrium finds it.
+
+    Parameters
+    ----------
+    bearing
+        By its geometry.
+    displacement
+        (5,): over `COORDINATES`, m and rad.
+    speed, cage_angle
+        As of `rolling_equilibrium`.
+
+    Returns
+    -------
+    RollingState
+        Its load is the one that holds the ring there; its residual is zero.
 
     Raises
     ------
@@ -221,9 +289,29 @@ def rolling_reaction(
         As `rolling_equilibrium`.
     """
     given = np.array(displacement, dtype=np.float64)
-    require(given.shape == (5,), f"displacement of {bearing.name}", given.tolist(), "five numbers: x, y, z, rx, ry")
-    held = dict(zip(COORDINATES, given.tolist(), strict=True))
-    return rolling_equilibrium(bearing, np.zeros(5), held=held, speed=speed, cage_angle=cage_angle)
+    finite = given.shape == (5,) and bool(np.isfinite(given).all())
+    require(finite, f"displacement of {bearing.name}", given.tolist(), "five finite numbers: x, y, z, rx, ry")
+    elements = RollingElements(bearing, speed, cage_angle)
+    return _state(elements, given, elements.at(given).gradient, residual=0.0, iterations=0)
+
+
+def _state(
+    elements: RollingElements, displacement: FloatArray, load: FloatArray, residual: float, iterations: int
+) -> RollingState:
+    local, bearing = elements.at(displacement), elements.bearing
+    state = RollingState(
+        bearing=bearing,
+        displacement=displacement,
+        load=load,
+        reaction=local.gradient + bearing.axial_preload * np.eye(5)[2],
+        stiffness=local.hessian,
+        rows=elements.loads(displacement),
+        speed=elements.speed,
+        residual=residual,
+        iterations=iterations,
+    )
+    _require_proof(state)
+    return state
 
 
 def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:
@@ -234,16 +322,6 @@ def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:
     if speed != 0.0:
         raise RotorError(f"speed is {speed!r}; expected 0 for rollers, whose centrifugal forces are left out")
     return RollerSlices(row, azimuths)
-
-
-def _total(rows: Sequence[RowEnergy]) -> RowEnergy:
-    """Energy of rows that share their rings."""
-    return RowEnergy(
-        value=math.fsum(row.value for row in rows),
-        gradient=np.sum([row.gradient for row in rows], axis=0),
-        hessian=np.sum([row.hessian for row in rows], axis=0),
-        force=math.fsum(row.force for row in rows),
-    )
 
 
 def _require_proof(state: RollingState) -> None:

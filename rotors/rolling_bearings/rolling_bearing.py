@@ -69,6 +69,11 @@ class RollingBearing:
         return min(row.elasticity.contact_modulus * row.element_diameter**2 for row in self.rows)
 
     @property
+    def largest_element(self) -> float:
+        """Largest diameter of an element, m."""
+        return max(row.element_diameter for row in self.rows)
+
+    @property
     def has_axial_stiffness(self) -> bool:
         """Whether any row carries an axial load."""
         return any(isinstance(row, BallRow) for row in self.rows)

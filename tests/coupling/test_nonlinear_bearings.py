@@ -37,7 +37,7 @@ from rotors.rolling_bearings import (
     linearised_bearing,
     paired,
     rolling_equilibrium,
-    rolling_reaction,
+    rolling_state,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -81,7 +81,7 @@ def test_the_compiled_law_is_that_of_the_room_of_rotors(bearing: RollingBearing)
     from coupling.time.bearing_kernels import bearing_force
 
     q = np.array([8e-6, -12e-6, 3e-6 if bearing.has_axial_stiffness else 0.0, 2e-4, -1e-4])
-    state = rolling_reaction(bearing, q, cage_angle=0.3)
+    state = rolling_state(bearing, q, cage_angle=0.3)
     law = RollingLaw(state, cage_angle=0.3)
     arrays = bearing_arrays([NonlinearConnector("b", FREE, np.arange(5), law, state.stiffness, 100.0)])
     force, tangent = np.zeros(5), np.zeros((5, 5))
@@ -132,7 +132,7 @@ def test_energy_is_kept(bearing: RollingBearing) -> None:
     energies = []
     for q, v in zip(result.displacement[::16], result.velocity[::16], strict=True):
         moved = q / math.sqrt(mass)
-        force = rolling_reaction(bearing, moved)
+        force = rolling_state(bearing, moved)
         elastic = 0.0
         for row, loads in zip(bearing.rows, force.rows, strict=True):
             if isinstance(row, BallRow):
@@ -281,7 +281,7 @@ def test_play_gives_under_the_weight() -> None:
         tilted.update(
             {("x", "y", "z", "rx", "ry")[axis]: float(v) for axis, v in zip(connector.axes, found, strict=True)}
         )
-        exact = rolling_reaction(DEEP, [tilted[name] for name in ("x", "y", "z", "rx", "ry")])
+        exact = rolling_state(DEEP, [tilted[name] for name in ("x", "y", "z", "rx", "ry")])
         assert exact.reaction[1] == pytest.approx(-weight / 2, rel=1e-6)
 
 

@@ -16,7 +16,7 @@ from rotors.rolling_bearings import (
     RollerRow,
     RollingBearing,
     rolling_equilibrium,
-    rolling_reaction,
+    rolling_state,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -121,7 +121,7 @@ def test_stiffness_is_the_derivative_of_the_reaction(row: BallRow, angle: float,
     place = np.array([(shift + push) * math.cos(angle), (shift + push) * math.sin(angle), shift, 0.0, 0.0])
     place[3:] = 0.2 * shift / bearing.reach
     try:
-        state = rolling_reaction(bearing, place, speed=speed)
+        state = rolling_state(bearing, place, speed=speed)
     except EquilibriumError:
         assume(False)
     elements = state.rows[0]
@@ -134,7 +134,7 @@ def test_stiffness_is_the_derivative_of_the_reaction(row: BallRow, angle: float,
         change[i] = step / (1.0 if i < 3 else bearing.reach)
         # Fourth order, so that the step can stay well above rounding.
         shares = [
-            weight * rolling_reaction(bearing, place + times * change, speed=speed).reaction
+            weight * rolling_state(bearing, place + times * change, speed=speed).reaction
             for times, weight in ((2, -1), (1, 8), (-1, -8), (-2, 1))
         ]
         tangent[:, i] = np.sum(shares, axis=0) / (12.0 * change[i])
@@ -183,7 +183,7 @@ def test_the_work_of_a_closed_path_is_none(row: BallRow, angle: float, size: flo
     for begin, end in zip(corners, corners[1:] + corners[:1], strict=True):
         for point, weight in zip(points, weights, strict=True):
             try:
-                reaction = rolling_reaction(bearing, begin + 0.5 * (point + 1.0) * (end - begin)).reaction
+                reaction = rolling_state(bearing, begin + 0.5 * (point + 1.0) * (end - begin)).reaction
             except EquilibriumError:
                 assume(False)
             part = 0.5 * weight * float(reaction @ (end - begin))

@@ -18,7 +18,7 @@ from rotors.rolling_bearings import (
     point_contact,
     preload_offset,
     rolling_equilibrium,
-    rolling_reaction,
+    rolling_state,
 )
 
 DEEP = BallRow(7, 11.5e-3, 43.5e-3)
@@ -65,7 +65,7 @@ def test_many_balls_without_clearance_have_sjoevalls_integral() -> None:
     integral = integrate.quad(lambda psi: math.cos(psi) ** 2.5, -0.5 * math.pi, 0.5 * math.pi)[0] / (2.0 * math.pi)
     assert integral == pytest.approx(0.2288, abs=1e-4)  # the table's value for ε = 1/2
     row = BallRow(300, 1e-3, 0.2)
-    state = rolling_reaction(RollingBearing([row]), [2e-6, 0.0, 0.0, 0.0, 0.0])
+    state = rolling_state(RollingBearing([row]), [2e-6, 0.0, 0.0, 0.0, 0.0])
     assert state.reaction[0] == pytest.approx(300 * row.stiffness * (2e-6) ** 1.5 * integral, rel=1e-5)
 
 
@@ -108,7 +108,7 @@ def test_preloaded_pair_has_the_closed_form_of_its_stiffness(arrangement: str, d
 def test_straight_rollers_in_line_have_the_closed_form() -> None:
     """Q = 35 948 L^{8/9} δ^{10/9} (N, mm) summed over the loaded rollers by hand."""
     shift, clearance = 12e-6, 6e-6
-    state = rolling_reaction(RollingBearing([replace(ROLLERS, clearance=clearance)]), [shift, 0.0, 0.0, 0.0, 0.0])
+    state = rolling_state(RollingBearing([replace(ROLLERS, clearance=clearance)]), [shift, 0.0, 0.0, 0.0, 0.0])
     azimuths = 2.0 * np.pi * np.arange(14) / 14
     deep = np.maximum(shift * np.cos(azimuths) - 0.5 * clearance, 0.0)
     loads = 35948.0 * 11.0 ** (8.0 / 9.0) * (1e3 * deep) ** (10.0 / 9.0)
@@ -121,7 +121,7 @@ def test_tilted_straight_roller_is_the_integral_along_its_length() -> None:
     """Finer slices converge to ∫ (c/L) (x cos ψ + z θ)^{10/9} dz of the fully loaded roller."""
     shift, tilt = 20e-6, 1e-3
     fine = RollingBearing([replace(ROLLERS, slices=400)])
-    state = rolling_reaction(fine, [shift, 0.0, 0.0, 0.0, tilt])
+    state = rolling_state(fine, [shift, 0.0, 0.0, 0.0, tilt])
     load = integrate.quad(lambda z: (shift + z * tilt) ** (10.0 / 9.0), -5.5e-3, 5.5e-3)[0] * ROLLERS.stiffness / 11e-3
     moment = integrate.quad(lambda z: z * (shift + z * tilt) ** (10.0 / 9.0), -5.5e-3, 5.5e-3)[0]
     loads = state.rows[0].slice_loads
