@@ -19,3 +19,7 @@ class ModesError(RuntimeError):
 
 class PeriodicError(RuntimeError):
     """A periodic motion that was not found, or fails its proof; the message says what to try."""
+
+
+class EquilibriumNotFoundError(RuntimeError):
+    """A static equilibrium of the machine that was not found, or whose forces do not balance."""

@@ -34,7 +34,7 @@ from coupling.gears import GearPairGeometry, ToothContact
 from coupling.gears.contact.sliding_friction import SlidingFriction
 from coupling.machine.components import RotorComponent
 from rotors import Bearing
-from rotors.rolling_bearings import RollingState
+from rotors.rolling_bearings import RollingBearing, RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -124,13 +124,28 @@ BearingLaw = RollingLaw | GapLaw
 class MountedBearing:
     """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
 
-    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take.
+    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take. With
+    ``rolling``, the machine's static equilibrium goes by the bearing's elements; one whose ``bearing`` has no stiffness
+    gets it from there.
     """
 
     bearing: Bearing
     rotor: str
     seat: str | None
     law: BearingLaw | None = None
+    rolling: RollingBearing | None = None
+
+    @property
+    def elements(self) -> RollingBearing | None:
+        """The rolling bearing by its elements; None for a bearing that is described by its stiffness."""
+        if self.rolling is None and isinstance(self.law, RollingLaw):
+            return self.law.state.bearing
+        return self.rolling
+
+    @property
+    def needs_load(self) -> bool:
+        """Whether its stiffness has still to follow from its load at the operating point."""
+        return self.rolling is not None and not np.any(self.bearing.stiffness)
 
 
 @dataclass(frozen=True)

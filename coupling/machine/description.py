@@ -7,7 +7,7 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import copysign
@@ -49,11 +49,21 @@ from coupling.machine.parts import (
 from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
+from coupling.statics.operating_point import (
+    OperatingPoint,
+    StaticGear,
+    StaticShaftPart,
+    face_stations,
+    solve_operating_point,
+    static_bearing,
+    static_pair,
+)
 from coupling.signals.histories import histories, transient_outputs
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
 from rotors import Coupling, Disc, Rotor, modal_rotor
+from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
@@ -281,6 +291,40 @@ class Machine:
             dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
         )
 
+    def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:
+        """Static equilibrium under the mean torques: bearing loads, deflections, misalignment, load over the faces.
+
+        Parameters
+        ----------
+        gravity : sequence of float, optional
+            Acceleration of free fall along x, y, z [m/s²].
+
+        Raises
+        ------
+        CouplingError
+            Where a load drives a motion that nothing holds, or no torque acts on gears.
+        EquilibriumNotFoundError
+            Where no equilibrium is found, or the forces do not balance.
+        rotors.EquilibriumError
+            Where a rolling bearing is loaded beyond its theory.
+        """
+        gears = {one.name: self._static_gear(one) for one in self._meshing_gears}
+        sense = 1 if self.speed >= 0.0 else -1
+        pairs = []
+        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+            driver, driven = self._gears_of(pair)
+            axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
+            rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
+            pairs.append(static_pair(pair, geometry, (gears[driver.name], gears[driven.name]), axes, rotation, torque))
+        return solve_operating_point(
+            [self._static_shaft(shaft, gears) for shaft in self.shafts],
+            [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
+            pairs,
+            self.housing_component,
+            self.constant_torques,
+            gravity,
+        )
+
     @cached_property
     def assembled(self) -> CoupledMachine:
         """The coupled equations of motion under constant torques, as :meth:`assemble` makes them; assembled once."""
@@ -486,6 +530,38 @@ class Machine:
             thrusts_at=pushed_at,
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
+
+    @property
+    def _meshing_gears(self) -> tuple[ShaftGear, ...]:
+        """Gears that are in a pair."""
+        return tuple({one.name: one for pair in self.gear_pairs for one in self._gears_of(pair)}.values())
+
+    def _static_gear(self, gear: ShaftGear) -> StaticGear:
+        """A gear with the stations of its face on its shaft; the face is the narrowest of its pairs."""
+        width = min(
+            geometry.face_width
+            for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True)
+            if gear.name in (pair.driver, pair.driven)
+        )
+        stations = gear.at + face_stations(width)
+        length = self.shaft(gear.shaft).rotor.length
+        within = stations[0] >= 0.0 and stations[-1] <= length
+        return StaticGear(gear.name, gear.shaft, gear.at, stations if within else None)
+
+    def _static_shaft(self, shaft: Shaft, gears: Mapping[str, StaticGear]) -> StaticShaftPart:
+        places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
+        places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
+        bodies = []
+        for gear in self._meshing_gears:
+            static = gears[gear.name]
+            if gear.shaft != shaft.name:
+                continue
+            places.append(gear.at)
+            if static.stations is not None:
+                places += static.stations.tolist()
+                bodies.append((float(static.stations[0]), float(static.stations[-1]), 2 * gear.gear.root_circle_radius))
+        exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
+        return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 
     def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
         """Driver and driven gear of a pair."""

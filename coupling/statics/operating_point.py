@@ -23,25 +23,32 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
 from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import GearPairGeometry
+from coupling.gears import GearPairGeometry, tooth_contact
+from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.face_load import FaceContact, FaceLoad
+from coupling.gears.loaded.gear_pair import GearPair
+from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import GapLaw, MountedBearing
 from coupling.machine.loads import Torque
 from rotors.analyses.static_stiffness import StaticShaft
 from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings import RollingState
-
-if TYPE_CHECKING:
-    from rotors.rolling_bearings import RollingElements
+from rotors.rolling_bearings import (
+    RollingBearing,
+    RollingElements,
+    RollingState,
+    rolling_equilibrium,
+    rolling_state,
+    static_rating,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,6 +60,7 @@ _NEWTON_STEPS = 30
 _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
 _TE_PHASES = 200
+_IDLE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
 
 
 class ConnectorLaw(Protocol):
@@ -79,7 +87,7 @@ class LinearLaw:
 class RollingElementLaw:
     """A rolling bearing by its elements, its spring preload included."""
 
-    elements: "RollingElements"
+    elements: RollingElements
 
     def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Energy, force and tangent."""
@@ -129,6 +137,32 @@ class StaticBearing:
     mounted: MountedBearing
     law: ConnectorLaw
     nominal: FloatArray
+
+
+_TRIAL_LOAD = 0.05  # of the static rating, at which a rolling bearing has its nominal stiffness
+
+
+def static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
+    """A bearing in the static model: by its elements, its gap, or its stiffness at a speed [rad/s]."""
+    rolling = mounted.elements
+    if rolling is not None:
+        return StaticBearing(mounted, RollingElementLaw(RollingElements(rolling)), _nominal_rolling(rolling))
+    if isinstance(mounted.law, GapLaw):
+        return StaticBearing(mounted, RadialGapLaw(mounted.law), np.zeros((5, 5)))
+    stiffness = mounted.bearing.at_speed(speed).spatial_stiffness
+    values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+    return StaticBearing(mounted, LinearLaw(stiffness), (vectors * np.maximum(values, 0.0)) @ vectors.T)
+
+
+def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
+    """Stiffness of a rolling bearing under a trial load, alike in x and y, (5, 5)."""
+    trial = _TRIAL_LOAD * min(static_rating(row) for row in rolling.rows)
+    load = np.array([trial, 0.0, 0.0, 0.0, 0.0])
+    free_axially = {} if rolling.has_axial_stiffness else {"z": 0.0}
+    state = rolling_equilibrium(rolling, load, held={"rx": 0.0, "ry": 0.0, **free_axially})
+    own = np.diag(state.stiffness)
+    radial, tilt = max(own[0], own[1]), max(own[3], own[4])
+    return np.diag([radial, radial, own[2], tilt, tilt])
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,8 +218,6 @@ class StaticPair:
         Unit vector from the driver's centre to the driven gear's.
     nominal : float
         Mean mesh stiffness for the search [N/m].
-    nominal_offset : float
-        Deflection at which the nominal stiffness has no force [m].
     """
 
     label: str
@@ -199,6 +231,71 @@ class StaticPair:
     sense: int
     towards: tuple[float, float]
     nominal: float
+
+
+FACE_STATIONS = 5
+"""Stations over the face of a gear at which it follows its shaft."""
+
+
+def face_stations(width: float) -> FloatArray:
+    """Stations from the middle of a face of some width [m], at Chebyshev's points, both ends among them, (j,)."""
+    steps = np.arange(FACE_STATIONS)[::-1] / (FACE_STATIONS - 1)
+    return np.asarray(0.5 * width * np.cos(np.pi * steps))
+
+
+def static_pair(
+    pair: GearPair,
+    geometry: GearPairGeometry,
+    gears: tuple[StaticGear, StaticGear],
+    axes: tuple[tuple[float, float], tuple[float, float]],
+    rotation: int,
+    torque: float,
+) -> StaticPair:
+    """A gear pair in the static model, on the flanks that its mean torque loads.
+
+    Parameters
+    ----------
+    pair : GearPair
+    geometry : GearPairGeometry
+    gears : two of StaticGear
+        Driver and driven.
+    axes : two of (x, y)
+        Of their shafts [m].
+    rotation : int
+        Sense of rotation of the driver about z: 1 or -1.
+    torque : float
+        That the pair takes off its driver [N m], positive where power flows to the driven gear.
+    """
+    force = abs(torque) / geometry.driver.base_radius
+    given = pair.stiffness
+    model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
+    faces = face_slices(geometry, sense=rotation)
+    if not pair.has_single_teeth:
+        # The spring of a whole mesh, spread evenly over the face, with no coupling of its slices.
+        stiffness = float(model.pair_stiffness(geometry).mean)
+        faces = replace(faces, flattening=2.0 * stiffness / geometry.face_width, coupling=0.0)
+    contact = tooth_contact(geometry, model, corner_contact=pair.has_corner_contact, faces=faces)
+    backwards = torque < 0.0
+    sense = -rotation if backwards else rotation
+    backlash = pair.backlash_of(geometry)
+    line = np.subtract(axes[1], axes[0])
+    angle = geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
+    axial = -sense * float(np.tan(geometry.driver.base_helix_angle))
+    contact = replace(contact, pitch_gaps=np.zeros(0), back_pitch_gaps=np.zeros(0))
+    own = contact.back_flanks if backwards else contact
+    return StaticPair(
+        label=f"gear pair {pair.driver!r} -> {pair.driven!r}",
+        driver=gears[0],
+        driven=gears[1],
+        geometry=geometry,
+        contact=FaceContact(own, geometry, face_stations(geometry.face_width), axial),
+        clearance=(backlash or 0.0) if backwards else 0.0,
+        push=(float(np.cos(angle)), float(np.sin(angle))),
+        axial=axial,
+        sense=sense,
+        towards=(float(line[0] / np.hypot(*line)), float(line[1] / np.hypot(*line))) if np.any(line) else (0.0, 0.0),
+        nominal=own.mean_mesh_stiffness,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -423,7 +520,9 @@ class _StaticModel:
         self.stiffness = self._linear_stiffness(pedestals)
         self.load = self._loads(torques)
         self.directions = [self._bearing_rows(one.mounted) for one in bearings]
-        self.directions += [self._pair_rows(pair) for pair in pairs]
+        approaches = [self._pair_rows(pair) for pair in pairs]
+        self.directions += [rows for rows, _ in approaches]
+        self.twists = [twist for _, twist in approaches]
         self.laws: list[ConnectorLaw] = [one.law for one in bearings]
         self.laws += [FaceContactLaw(pair.contact, pair.clearance) for pair in pairs]
         self.nominal = [one.nominal for one in bearings]
@@ -493,10 +592,13 @@ class _StaticModel:
     def _bearing_rows(self, mounted: MountedBearing) -> FloatArray:
         return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_rows(mounted)).T)
 
-    def _pair_rows(self, pair: StaticPair) -> FloatArray:
-        """Approach of the flanks at the stations of the face, and relative tilt, by all coordinates, (n, j + 1)."""
+    def _pair_rows(self, pair: StaticPair) -> tuple[FloatArray, FloatArray]:
+        """Approach of the flanks at the stations of the face, and relative tilt, by all coordinates, (n, j + 1).
+
+        And the part of it that is the twist of shafts and gear bodies over the face, of the same shape.
+        """
         stations = pair.contact.stations
-        rows = np.zeros((stations.size + 1, self.size))
+        rows, twist = np.zeros((stations.size + 1, self.size)), np.zeros((stations.size + 1, self.size))
         radii = pair.geometry.working_pitch_radii
         gears = ((pair.driver, pair.geometry.driver, 1.0), (pair.driven, pair.geometry.driven, -1.0))
         for (gear, made, side), radius in zip(gears, radii, strict=True):
@@ -509,9 +611,11 @@ class _StaticModel:
                 across = side * (pair.push[0] * section[0] + pair.push[1] * section[1])
                 if gear.stations is None:
                     across = across + z * tilt
-                rows[number] += across + pair.sense * made.base_radius * section[5] + axial
+                turned = pair.sense * made.base_radius
+                rows[number] += across + turned * section[5] + axial
+                twist[number] += turned * (section[5] - middle[5])
             rows[-1] += tilt
-        return np.asarray(rows.T)
+        return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:
         """Stiffness that holds the motions which nothing else does, (n, n), and these motions in words.
@@ -655,15 +759,20 @@ class _StaticModel:
                 deflection,
                 self.seat_rows(one.mounted) @ x,
                 tangent,
-                one.law.elements.state(deflection) if isinstance(one.law, RollingElementLaw) else None,
+                _rolling_state(one.law, deflection),
             )
             for one, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
         )
         causes = self._causes(x, bearings)
         count = len(self.bearings)
+        least = _IDLE * max((float(np.abs(force).sum()) for _, force, _ in states[count:]), default=0.0)
+        if self.pairs and least == 0.0:
+            raise CouplingError("no gear pair carries a load; expected a torque")
         pairs = tuple(
-            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()})
-            for pair, approach, rows in zip(self.pairs, deflections[count:], self.directions[count:], strict=True)
+            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, least)
+            for pair, approach, rows, twist in zip(
+                self.pairs, deflections[count:], self.directions[count:], self.twists, strict=True
+            )
         )
         shafts = tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts)
         housing = None
@@ -724,19 +833,34 @@ class _StaticModel:
             parts["shafts"][own] = x[own] - whole.ravel()
         return parts
 
-    def _pair(self, pair: StaticPair, approach: FloatArray, causes: Mapping[str, FloatArray]) -> PairLoad:
+    def _pair(
+        self,
+        pair: StaticPair,
+        approach: FloatArray,
+        causes: Mapping[str, FloatArray],
+        twisted: FloatArray,
+        least: float,
+    ) -> PairLoad:
         contact = pair.contact
         slope = -contact.face_slope
         by_cause = {cause: float(slope @ part) for cause, part in causes.items()}
-        twist = float(slope @ self._twist[pair.label])
+        twist = float(slope @ twisted)
         by_cause["shafts"] -= twist
         by_cause["bodies"] = twist
         touched = approach - pair.clearance * contact.uniform
         force = contact.at(touched).force
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
-        mean = contact.under_force(force, shape)
-        fine = contact.under_force(force, shape, np.arange(_TE_PHASES) / _TE_PHASES)
+        # An idle pair is looked at under a force that bends nothing.
+        loading = max(force, least)
+        mean = contact.under_force(loading, shape)
+        fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)
+
+
+def _rolling_state(law: ConnectorLaw, deflection: FloatArray) -> RollingState | None:
+    if not isinstance(law, RollingElementLaw):
+        return None
+    return rolling_state(law.elements.bearing, deflection, speed=law.elements.speed)
 
 
 def _rigid_rows(at: float) -> FloatArray:

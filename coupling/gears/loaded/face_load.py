@@ -32,7 +32,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.contact.contact_law import ToothContact
-from coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield
+from coupling.gears.contact.face_slices import face_equilibrium, face_yield
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.geometry.pair import GearPairGeometry
 
@@ -41,7 +41,6 @@ FloatArray = npt.NDArray[np.float64]
 _PHASES = 48  # of a mesh period in the means
 _CONVERGED = 1e-13  # of the mean deflection, relative to the deflection itself
 _ROUNDS = 60
-_FIRST_STRAIN = 1e-5  # first guess of the deflection over the base pitch
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +110,7 @@ class FaceContact:
         With face slices that are not misaligned.
     geometry : GearPairGeometry
     stations : ndarray, shape (j,)
-        Stations of the approach from the middle of the face [m], ascending; one station means a rigid gear, whose
-        approach over the face is its tilt's alone.
+        Stations of the approach from the middle of the face [m], two or more, ascending.
     axial : float
         h, axial part of the tooth force over its transverse part, as the driven gear feels it.
 
@@ -122,22 +120,23 @@ class FaceContact:
         Where the contact has no face slices, or its stations lie outside the face.
     """
 
-    def __init__(
-        self, contact: ToothContact, geometry: GearPairGeometry, stations: FloatArray, axial: float
-    ) -> None:
+    def __init__(self, contact: ToothContact, geometry: GearPairGeometry, stations: FloatArray, axial: float) -> None:
         if contact.faces is None:
             raise GearError("loaded tooth contact: the contact has no face slices; expected those of `face_slices`")
-        if np.any(np.abs(stations) > 0.5 * geometry.face_width * (1.0 + 1e-9)):
-            raise GearError(f"loaded tooth contact: stations {stations.tolist()} m; expected them within the face")
+        if stations.size < 2 or np.any(np.abs(stations) > 0.5 * geometry.face_width * (1.0 + 1e-9)):
+            raise GearError(
+                f"loaded tooth contact: stations {stations.tolist()} m; expected two or more within the face"
+            )
         self._contact = contact
         self._faces = contact.faces
         self._axial = axial
         self._to_pitch_point = geometry.pitch_point_position
         self._base_pitch = geometry.base_pitch
-        z = contact.faces.z
+        self.z = contact.faces.z
+        """Slices of the face, from its middle [m], shape (s,)."""
         self.stations = stations
         """From the middle of the face [m], shape (j,)."""
-        self.over_face = lagrange(stations, z) if stations.size > 1 else np.ones((z.size, 1))
+        self.over_face = lagrange(stations, self.z)
         """N_j at the slices, shape (s, j)."""
         self._last: tuple[float, float] | None = None
 
@@ -155,6 +154,20 @@ class FaceContact:
     def face_mean(self) -> FloatArray:
         """Mean over the face of an approach, as a row over its components, shape (m,)."""
         return np.append(self.over_face.mean(axis=0), 0.0)
+
+    @cached_property
+    def face_slope(self) -> FloatArray:
+        """Slope of the best straight line through an approach over the face, as a row over its components, (m,)."""
+        return np.append(self.z @ self.over_face / float(self.z @ self.z), 0.0)
+
+    @cached_property
+    def touch(self) -> float:
+        """Mean over the mesh period of the approach at which even flanks first touch [m]."""
+        return self._mean_phases.first_touch(np.zeros(self.size))
+
+    def stiffness_of(self, load: FaceLoad) -> FloatArray:
+        """Mesh stiffness at the phases of a load, all slices approaching alike, shared compliance included [N/m]."""
+        return np.asarray(1.0 / (1.0 / self._uniform_stiffness(load) + self._contact.shared_compliance))
 
     def under_force(self, force: float, shape: FloatArray, phases: FloatArray | None = None) -> FaceLoad:
         """Solve static equilibrium under a force, at the phases of a mesh period.
@@ -287,8 +300,6 @@ class _Prepared:
         basis = np.empty((*position.shape, mesh.size))
         basis[:, :, :-1] = mesh.over_face
         basis[:, :, -1] = -mesh._axial * along
-        if mesh.stations.size == 1:
-            basis[:, :, -1] += faces.z
         self.basis = basis
 
     def first_touch(self, shape: FloatArray) -> float:

@@ -113,8 +113,11 @@ class GearPair:
     @property
     def has_corner_contact(self) -> bool:
         """Whether teeth touch beyond their path of contact."""
-        if self.corner_contact is not None:
-            return self.corner_contact
+        return self.has_single_teeth if self.corner_contact is None else self.corner_contact
+
+    @property
+    def has_single_teeth(self) -> bool:
+        """Whether the stiffness model describes pairs of teeth, not the mesh as one spring."""
         return not isinstance(self.stiffness, _MESH_SPRINGS)
 
     def backlash_of(self, geometry: GearPairGeometry) -> float | None:
