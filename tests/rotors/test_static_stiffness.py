@@ -54,7 +54,7 @@ def assert_alike(found: FloatArray, expected: FloatArray, tolerance: float) -> N
 
 
 def own_element(part: Segment, length: float) -> FloatArray:
-    """Stiffness (12, 12) of a uniform Timoshenko element (Przemieniecki 1968, chapter 5), x, y, z, turns at both ends."""
+    """Stiffness (12, 12) of a uniform Timoshenko element (Przemieniecki 1968, chapter 5) over both ends."""
     outer, inner = part.outer_diameter, part.inner_diameter
     area, second = math.pi / 4 * (outer**2 - inner**2), math.pi / 64 * (outer**4 - inner**4)
     E, G = part.material.youngs_modulus, part.material.shear_modulus
@@ -392,7 +392,7 @@ def test_a_tight_wire_is_refused_between_far_stations_and_taken_between_near_one
     wire = Rotor("wire", [Segment(1.0, 1e-3, 0.0, STEEL, axial_force=500.0)])
     rope = Rotor("wire", [Segment(9.0, 1e-3, 0.0, STEEL, axial_force=500.0)])
     for rotor in (wire, rope):
-        with pytest.raises(RotorError, match="rotor 'wire': its axial forces leave .* more stations"):
+        with pytest.raises(RotorError, match=r"rotor 'wire': its axial forces leave .* more stations"):
             static_shaft(rotor, [0.0, rotor.length])
     shaft = static_shaft(wire, np.linspace(0.0, 1.0, 101).tolist())
     loads = np.zeros(606)
