@@ -1,0 +1,430 @@
+"""Static shaft between stations, against closed forms, an independent beam, the static deflection and quadrature."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from rotors import Bearing, Coupling, Disc, Rotor, RotorError, Segment, ShaftMaterial, static_deflection
+from rotors.analyses.static_stiffness import StaticShaft, static_shaft
+from rotors.analyses.statics import StaticForce
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+STEEL = ShaftMaterial(2.1e11, 8.0e10, 7850.0)
+BRASS = ShaftMaterial(1.0e11, 3.7e10, 8500.0)
+GRAVITY = (3.0, -9.81, 1.5)
+UNIFORM = Segment(0.4, 0.03, 0.01, STEEL, 0.85)
+STEPS = [UNIFORM, Segment(0.12, 0.05, 0.0, BRASS, 0.9), Segment(0.2, 0.04, 0.02, STEEL, 0.8)]
+MASSES = {0.0: 1.5, 0.25: 4.0, 0.52: 2.0, 0.72: 0.7}
+CONE = Segment(0.15, 0.03, 0.0, STEEL, "cowper", right_outer_diameter=0.06, right_inner_diameter=0.02)
+JAW = Coupling(0.05, 2e7, 4e4, 9e3, 5e7, mass=1.2, polar_inertia=1e-3, diametral_inertia=8e-4)
+
+
+def rigid_motions(places: FloatArray) -> FloatArray:
+    """Six rigid motions of nodes on the z axis, (6, 6N): a rotation about x moves y by −z, one about y x by +z."""
+    motions = np.zeros((6, places.size, 6))
+    motions[range(6), :, range(6)] = 1.0
+    motions[3, :, 1], motions[4, :, 0] = -places, places
+    return motions.reshape(6, -1)
+
+
+def solve(stiffness: FloatArray, loads: FloatArray, held: Sequence[int] | IntArray = ()) -> FloatArray:
+    """Displacements under loads (..., k), some held; scaled, because forces and moments have units of their own."""
+    free = np.setdiff1d(np.arange(stiffness.shape[0]), held)
+    scale = 1.0 / np.sqrt(np.diag(stiffness)[free])
+    inner = scale[:, None] * stiffness[np.ix_(free, free)] * scale
+    displacement = np.zeros(loads.shape)
+    displacement[..., free] = scale * np.linalg.solve(inner, (scale * loads[..., free]).T).T
+    return displacement
+
+
+def assert_alike(found: FloatArray, expected: FloatArray, tolerance: float) -> None:
+    """Stiffnesses or loads of nodes agree, with a decimetre between forces and moments, to a part of the largest."""
+    unit = np.tile([1.0, 1.0, 1.0, 0.1, 0.1, 0.1], found.shape[0] // 6)
+    scale = np.outer(unit, unit) if found.ndim == 2 else unit
+    assert np.abs((found - expected) / scale).max() <= tolerance * np.abs(expected / scale).max()
+
+
+def own_element(part: Segment, length: float) -> FloatArray:
+    """Stiffness (12, 12) of a uniform Timoshenko element (Przemieniecki 1968, chapter 5) over both ends."""
+    outer, inner = part.outer_diameter, part.inner_diameter
+    area, second = math.pi / 4 * (outer**2 - inner**2), math.pi / 64 * (outer**4 - inner**4)
+    E, G = part.material.youngs_modulus, part.material.shear_modulus
+    assert isinstance(part.shear_coefficient, float)
+    shear = 12 * E * second / (part.shear_coefficient * G * area * length**2)
+    matrix = np.zeros((12, 12))
+    for index, stiffness in ((2, E * area), (5, 2 * G * second)):
+        matrix[np.ix_([index, index + 6], [index, index + 6])] = stiffness / length * np.array([[1, -1], [-1, 1]])
+    near, far = (4 + shear) * length**2, (2 - shear) * length**2
+    arm = 6 * length
+    bent = np.array([[12, arm, -12, arm], [arm, near, -arm, far], [-12, -arm, 12, -arm], [arm, far, -arm, near]])
+    for displacements, sign in (([0, 4, 6, 10], 1.0), ([1, 3, 7, 9], -1.0)):
+        turn = np.array([1.0, sign, 1.0, sign])
+        matrix[np.ix_(displacements, displacements)] += (
+            E * second / (1 + shear) / length**3 * bent * np.outer(turn, turn)
+        )
+    return matrix
+
+
+def own_weight(part: Segment, length: float) -> FloatArray:
+    """Loads (2, 6, 3) of an element's weight per acceleration over x, y, z, on clamped ends: q h / 2 and q h² / 12."""
+    mass = part.material.density * math.pi / 4 * (part.outer_diameter**2 - part.inner_diameter**2) * length
+    weight = np.zeros((2, 6, 3))
+    weight[:, [0, 1, 2], [0, 1, 2]] = mass / 2
+    # Moments turn the slope, which is the rotation about y in the plane of x, and minus that about x in that of y.
+    weight[:, 4, 0] = mass * length / 12 * np.array([1.0, -1.0])
+    weight[:, 3, 1] = -weight[:, 4, 0]
+    return weight
+
+
+@dataclass(frozen=True)
+class OwnShaft:
+    """A finite-element shaft: the part of each element, places, stiffness, and weight under `GRAVITY`, (6n,)."""
+
+    parts: Sequence[Segment]
+    places: FloatArray
+    stiffness: FloatArray
+    weight: FloatArray
+
+    @classmethod
+    def of(cls, parts: Sequence[Segment], cuts: Sequence[float], masses: Mapping[float, float]) -> "OwnShaft":
+        joints = np.cumsum([0.0, *(part.length for part in parts)])
+        places = np.unique(np.round(np.concatenate([joints, cuts, list(masses)]), 12))
+        stiffness, weight = np.zeros((6 * places.size, 6 * places.size)), np.zeros((places.size, 6, 3))
+        own = [parts[index] for index in np.searchsorted(joints, 0.5 * (places[1:] + places[:-1])) - 1]
+        for k, (part, length) in enumerate(zip(own, np.diff(places).tolist(), strict=True)):
+            stiffness[6 * k : 6 * k + 12, 6 * k : 6 * k + 12] += own_element(part, length)
+            weight[k : k + 2] += own_weight(part, length)
+        for at, mass in masses.items():
+            weight[int(np.abs(places - at).argmin()), [0, 1, 2], [0, 1, 2]] += mass
+        return cls(own, places, stiffness, (weight @ GRAVITY).ravel())
+
+    def numbers(self, stations: FloatArray) -> IntArray:
+        """Indices of the displacements of some places."""
+        nodes = np.abs(self.places - stations[:, None]).argmin(axis=1)
+        return (6 * nodes[:, None] + np.arange(6)).ravel()
+
+    def condensed(self, kept: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and weight left on some displacements when all others are free."""
+        loads = np.column_stack([self.stiffness[:, kept], self.weight])
+        moved = solve(self.stiffness, loads.T, kept).T
+        left = (loads - self.stiffness @ moved)[kept]
+        return left[:, :-1], left[:, -1]
+
+
+def test_a_cantilever_bends_twists_and_stretches_as_in_closed_form() -> None:
+    shaft = static_shaft(Rotor("shaft", [UNIFORM]), [0.4, 0.0])
+    section, L = UNIFORM.section(0.0), 0.4
+    loads = np.concatenate([np.zeros(6), [2.0, -3.0, 5.0, 0.7, -0.4, 0.9]])
+    tip = solve(shaft.stiffness, loads, range(6))[6:]
+    EI, S = section.bending_stiffness, section.shear_stiffness
+    # Force and moment in the plane of x act with the rotation about y; in that of y, with minus that about x.
+    for shift, turn, force, moment in ((tip[0], tip[4], 2.0, -0.4), (tip[1], -tip[3], -3.0, -0.7)):
+        assert shift == pytest.approx(force * (L**3 / (3 * EI) + L / S) + moment * L**2 / (2 * EI), rel=1e-12)
+        assert turn == pytest.approx(force * L**2 / (2 * EI) + moment * L / EI, rel=1e-12)
+    assert tip[2] == pytest.approx(5.0 * L / section.axial_stiffness, rel=1e-12)
+    assert tip[5] == pytest.approx(0.9 * L / section.torsional_stiffness, rel=1e-12)
+    # Everywhere the part to the right puts the tip's loads on the part to the left, the moments with their arms.
+    forces = shaft.internal_forces(np.concatenate([np.zeros(6), tip]), [0.1])[:, 0]
+    expected = [2.0, -3.0, 5.0, 0.7 - 0.3 * -3.0, -0.4 + 0.3 * 2.0, 0.9]
+    np.testing.assert_allclose(forces, expected, rtol=1e-10)
+
+
+def test_a_simply_supported_beam_sags_by_bending_and_shear_under_its_weight() -> None:
+    shaft, gravity, L = static_shaft(Rotor("shaft", [UNIFORM]), [0.0, 0.4]), (0.0, -9.81, 0.0), 0.4
+    displacement = solve(shaft.stiffness, shaft.weight(gravity), [0, 1, 2, 5, 6, 7])
+    section = UNIFORM.section(0.0)
+    q = section.mass_per_length * 9.81
+    sag = 5 * q * L**4 / (384 * section.bending_stiffness) + q * L**2 / (8 * section.shear_stiffness)
+    middle = shaft.motions(displacement, [0.2], gravity)[:, 0]
+    np.testing.assert_allclose(middle, [0.0, -sag, 0.0, 0.0, 0.0, 0.0], atol=1e-12 * sag)
+    # The part to the right of the middle lifts no shear; EI β' in the plane of y is minus the moment about x.
+    forces = shaft.internal_forces(displacement, [0.0, 0.2, 0.4], gravity)
+    np.testing.assert_allclose(forces[1] / (q * L), [-0.5, 0.0, 0.5], atol=1e-12)
+    np.testing.assert_allclose(-forces[3] / (q * L**2 / 8), [0.0, 1.0, 0.0], atol=1e-11)
+
+
+def test_the_weight_of_overhangs_acts_at_their_station_as_force_and_moment() -> None:
+    shaft = static_shaft(Rotor("shaft", [UNIFORM], [Disc(0.05, 2.0), Disc(0.4, 3.0)]), [0.1])
+    assert not shaft.stiffness.any()
+    section, length = UNIFORM.section(0.0), 0.3
+    line = section.mass_per_length
+    mass, moment = 0.4 * line + 5.0, 0.4 * line * 0.1 + 2.0 * -0.05 + 3.0 * 0.3
+    expected = np.array([*(mass * np.array(GRAVITY)), -moment * GRAVITY[1], moment * GRAVITY[0], 0.0])
+    np.testing.assert_allclose(shaft.weight(GRAVITY), expected, rtol=1e-13)
+    # The right overhang bends and stretches under itself and the disc at its tip; the left one likewise.
+    EI, S = section.bending_stiffness, section.shear_stiffness
+    tips = shaft.motions(np.zeros(6), [0.0, 0.4], GRAVITY)
+    right = line * (length**4 / (8 * EI) + length**2 / (2 * S)) + 3.0 * (length**3 / (3 * EI) + length / S)
+    left = line * (0.1**4 / (8 * EI) + 0.1**2 / (2 * S))
+    left += 2.0 * (0.05**3 / (3 * EI) + 0.05**2 / (2 * EI) * 0.05 + 0.05 / S)
+    np.testing.assert_allclose(tips[:2], np.outer(GRAVITY[:2], [left, right]), rtol=1e-12)
+    stretch = (line * length**2 / 2 + 3.0 * length) / section.axial_stiffness
+    assert tips[2, 1] == pytest.approx(stretch * GRAVITY[2], rel=1e-12)
+
+
+@pytest.mark.parametrize("stations", [[0.0, 0.72], [0.1, 0.25, 0.3, 0.52, 0.7], [0.6, 0.05], [0.3], [0.0, 0.4, 0.72]])
+def test_a_stepped_shaft_agrees_with_an_own_finite_element_shaft(stations: list[float]) -> None:
+    shaft = static_shaft(Rotor("shaft", STEPS, [Disc(at, mass, 0.1, 0.05) for at, mass in MASSES.items()]), stations)
+    own = OwnShaft.of(STEPS, stations, MASSES)
+    kept = own.numbers(shaft.places)
+    stiffness, weight = own.condensed(kept)
+    if len(stations) > 1:
+        assert_alike(shaft.stiffness, stiffness, 1e-10)
+    assert_alike(shaft.weight(GRAVITY), weight, 1e-10)
+    # The field between them, under displacements that balance nothing in particular.
+    moved = np.zeros(own.weight.size)
+    moved[kept] = np.random.default_rng(3).normal(size=kept.size) * 1e-5
+    moved += solve(own.stiffness, own.weight - own.stiffness @ moved, kept)
+    found = shaft.motions(moved[kept], own.places, GRAVITY)
+    np.testing.assert_allclose(found.T, moved.reshape(-1, 6), atol=1e-9 * np.abs(moved).max())
+    forces = shaft.internal_forces(moved[kept], own.places[:-1], GRAVITY)
+    for k, (part, length) in enumerate(zip(own.parts, np.diff(own.places).tolist(), strict=True)):
+        ends = own_element(part, length) @ moved[6 * k : 6 * k + 12] - (own_weight(part, length) @ GRAVITY).ravel()
+        assert_alike(forces[:, k], -ends[:6], 1e-7)
+
+
+def test_shape_functions_superpose() -> None:
+    shaft = static_shaft(Rotor("shaft", STEPS), [0.1, 0.3, 0.5])
+    moved, z = np.linspace(-1.0, 1.0, 18) ** 3, np.linspace(0.0, 0.72, 7)
+    shapes = shaft.motions(np.eye(18), z)
+    assert shapes.shape == (18, 6, 7)
+    np.testing.assert_allclose(np.tensordot(moved, shapes, 1), shaft.motions(moved, z), atol=1e-12)
+    np.testing.assert_allclose(shaft.motions(moved, shaft.places).T.ravel(), moved, atol=1e-13)
+
+
+def test_spans_of_a_micrometre_keep_their_digits() -> None:
+    cone = Segment(0.3, 0.04, 0.0, STEEL, 0.9, right_outer_diameter=0.06)
+    stations = [0.0, 0.2, 0.2 + 1e-6, 0.5, 0.5 + 1e-6, 0.7, 0.7 - 1e-11, 0.2 - 1e-11]
+    shaft = static_shaft(Rotor("shaft", [UNIFORM, cone]), stations)
+    assert shaft.places.size == 6
+    for node, part, tolerance in ((1, UNIFORM, 1e-11), (3, replace(UNIFORM, outer_diameter=0.04 + 0.2 / 30), 2e-4)):
+        part = replace(part, inner_diameter=0.0, shear_coefficient=0.9) if node == 3 else part
+        expected = own_element(part, float(shaft.places[node + 1] - shaft.places[node]))[6:, :6]
+        found = shaft.stiffness[6 * node + 6 : 6 * node + 12, 6 * node : 6 * node + 6]
+        np.testing.assert_allclose(found[expected != 0.0], expected[expected != 0.0], rtol=tolerance)
+
+
+@pytest.mark.parametrize("mass_model", ["distributed", "lumped"])
+@pytest.mark.parametrize("force", [0.0, 4e5, -2e4])
+def test_on_bearings_it_deflects_like_the_static_deflection(mass_model: str, force: float) -> None:
+    cone, *pulled = [replace(part, axial_force=force) for part in (CONE, *STEPS)]
+    parts = [cone, pulled[0], JAW, pulled[1], pulled[2], cone, pulled[0]]
+    rotor = Rotor("shaft", parts, [Disc(0.1, 3.0), Disc(0.4, 5.0, 0.1, 0.06)], mass_model)  # type: ignore[arg-type]
+    matrix = np.diag([3e8, 2e8, 5e7, 2e4, 3e4])
+    matrix[0, 1] = matrix[1, 0] = 4e7
+    matrix[0, 4] = matrix[4, 0] = 1e6
+    bearings = [Bearing(name, at, matrix, np.zeros((5, 5))) for name, at in (("left", 0.08), ("right", 0.9))]
+    load = StaticForce(0.5, 300.0, -200.0, 150.0, 4.0, -7.0)
+    reference = static_deflection(rotor, bearings, [load], gravity=GRAVITY)
+
+    shaft = static_shaft(rotor, [0.9, 0.5, 0.08])
+    stiffness, loads = shaft.stiffness.copy(), shaft.weight(GRAVITY)
+    for at in (0.08, 0.9):
+        own = slice(6 * shaft.node(at), 6 * shaft.node(at) + 5)
+        stiffness[own, own] += matrix
+    loads[6 : 6 + 5] += [300.0, -200.0, 150.0, 4.0, -7.0]
+    # The torsion is free and unloaded.
+    displacement = solve(stiffness, loads, [5])
+    for at, expected in zip((0.08, 0.9), reference.bearing_loads, strict=True):
+        moved = displacement[6 * shaft.node(at) :][:5]
+        np.testing.assert_allclose(matrix @ moved, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+    z = np.linspace(0.0, rotor.length, 23)
+    motions, forces = shaft.motions(displacement, z, GRAVITY), shaft.internal_forces(displacement, z, GRAVITY)
+    size = float(np.abs(reference.evaluate(z)).max())
+    np.testing.assert_allclose(motions[:3], reference.evaluate(z), atol=1e-9 * size)
+    np.testing.assert_allclose([motions[4], -motions[3]], reference.slopes(z), atol=1e-8 * size)
+    np.testing.assert_allclose(forces[:2], reference.shear_forces(z), atol=1e-7 * float(np.abs(forces[:2]).max()))
+    moments = reference.bending_moments(z)
+    np.testing.assert_allclose([forces[4], -forces[3]], moments, atol=1e-7 * float(np.abs(moments).max()))
+
+
+def test_a_coupling_is_a_spring_in_the_shaft() -> None:
+    halves = [replace(UNIFORM, length=0.2), JAW, replace(UNIFORM, length=0.1)]
+    shaft = static_shaft(Rotor("shaft", halves), [0.0, 0.35])
+    section = UNIFORM.section(0.0)
+    tip = solve(shaft.stiffness, np.repeat([0.0, 1.0], 6), range(6))[6:]
+    assert tip[5] == pytest.approx(0.3 / section.torsional_stiffness + 1 / JAW.torsional_stiffness, rel=1e-12)
+    assert tip[2] == pytest.approx(0.3 / section.axial_stiffness + 1 / JAW.axial_stiffness, rel=1e-12)
+    # The moment along the shaft of a unit force at the tip, and of a unit moment, times the compliances 1/EI.
+    bend = [(0.0, 0.2, 1 / section.bending_stiffness), (0.2, 0.25, 1 / (JAW.tilt_stiffness * JAW.length))]
+    bend.append((0.25, 0.35, 1 / section.bending_stiffness))
+    turn = sum(c * ((0.35 - a) ** 2 - (0.35 - b) ** 2) / 2 + c * (b - a) for a, b, c in bend)
+    assert tip[4] == pytest.approx(turn, rel=1e-12)
+    assert shaft.weight([0.0, 1.0, 0.0])[[1, 7]].sum() == pytest.approx(0.3 * section.mass_per_length + JAW.mass)
+
+
+def test_a_cone_stretches_twists_and_bends_as_its_compliance_integrates() -> None:
+    shaft = static_shaft(Rotor("shaft", [CONE]), [0.0, CONE.length])
+    L = CONE.length
+    tip = solve(shaft.stiffness, np.repeat([0.0, 1.0], 6), range(6))[6:]
+
+    def integral(what: str, arm: int) -> float:
+        return quad(lambda z: (L - z) ** arm / getattr(CONE.section(z / L), what), 0.0, L, epsrel=1e-13)[0]
+
+    assert tip[2] == pytest.approx(integral("axial_stiffness", 0), rel=1e-11)
+    assert tip[5] == pytest.approx(integral("torsional_stiffness", 0), rel=1e-11)
+    bent = [integral("bending_stiffness", arm) for arm in range(3)]
+    assert tip[4] == pytest.approx(bent[0] + bent[1], rel=1e-11)
+    assert tip[0] == pytest.approx(bent[1] + bent[2] + integral("shear_stiffness", 0), rel=1e-11)
+
+
+def test_a_stiffened_interval_is_the_shaft_written_out_by_hand() -> None:
+    stations, discs = [0.05, 0.3, 0.5, 0.7], [Disc(0.41, 2.0)]
+    intervals = [(0.3, 0.45, 0.045), (0.35, 0.5, 0.042), (0.6, 0.65, 0.02)]
+    shaft = static_shaft(Rotor("shaft", STEPS, discs), stations, stiffened=intervals)
+
+    def piece(part: Segment, length: float, outer: float) -> Segment:
+        thick = replace(part, length=length, outer_diameter=outer)
+        # Lighter, so that its weight is that of the thinner part.
+        density = part.material.density * part.section(0.0).area / thick.section(0.0).area
+        return replace(thick, material=replace(part.material, density=density))
+
+    by_hand = [replace(UNIFORM, length=0.3), piece(UNIFORM, 0.1, 0.045), STEPS[1], STEPS[2]]
+    expected = static_shaft(Rotor("shaft", by_hand, discs), stations)
+    assert_alike(shaft.stiffness, expected.stiffness, 1e-12)
+    assert_alike(shaft.weight(GRAVITY), expected.weight(GRAVITY), 1e-12)
+    moved, z = np.linspace(-1e-5, 1e-5, 24), np.linspace(0.0, 0.72, 30)
+    np.testing.assert_allclose(shaft.motions(moved, z, GRAVITY), expected.motions(moved, z, GRAVITY), atol=1e-15)
+
+
+def test_a_cone_is_stiffened_up_to_the_given_diameter_and_keeps_its_mass() -> None:
+    # From 30 to 60 mm: it is 40 mm thick at a third, 45 mm at the half.
+    rotor, L = Rotor("shaft", [JAW, CONE]), CONE.length
+    ends = [JAW.length, JAW.length + L]
+    shaft = static_shaft(rotor, ends, stiffened=[(0.02, 0.2, 0.040), (JAW.length + L / 6, 0.2, 0.045)])
+    bores = [CONE.section(fraction).inner_diameter for fraction in (0.0, 1 / 6, 1 / 2)]
+    by_hand = [
+        JAW,
+        replace(CONE, length=L / 6, outer_diameter=0.04, right_outer_diameter=0.04, right_inner_diameter=bores[1]),
+        replace(CONE, length=L / 3, outer_diameter=0.045, right_outer_diameter=0.045, inner_diameter=bores[1],
+                right_inner_diameter=bores[2]),
+        replace(CONE, length=L / 2, outer_diameter=0.045, inner_diameter=bores[2]),
+    ]  # fmt: skip
+    expected = static_shaft(Rotor("shaft", by_hand), ends)
+    assert_alike(shaft.stiffness, expected.stiffness, 1e-12)
+    total = shaft.weight([1.0, 0.0, 0.0]) @ rigid_motions(shaft.places)[[0, 4]].T
+    np.testing.assert_allclose(total, rotor.mass * np.array([1.0, rotor.centre_of_mass]), rtol=1e-12)
+
+    # Clamped at its left end, the tip sinks by the double integral of the moment of the cone's own weight.
+    thick = [part for part in by_hand if isinstance(part, Segment)]
+    tip = solve(shaft.stiffness, shaft.weight([1.0, 0.0, 0.0]), range(6))[6]
+    rule, weights = np.polynomial.legendre.leggauss(40)
+
+    def carried(z: float, arm: int) -> float:
+        at = z + (L - z) * (rule + 1) / 2
+        line = [CONE.section(place / L).mass_per_length * (place - z) ** arm for place in at]
+        return float((L - z) / 2 * weights @ np.array(line))
+
+    sunk, start = 0.0, 0.0
+    for part in thick:
+        for node, weight in zip(rule, weights, strict=True):
+            fraction = (node + 1) / 2
+            section, z = part.section(fraction), start + fraction * part.length
+            share = carried(z, 1) * (L - z) / section.bending_stiffness + carried(z, 0) / section.shear_stiffness
+            sunk += weight * part.length / 2 * share
+        start += part.length
+    assert tip == pytest.approx(sunk, rel=1e-10)
+
+
+segments = st.builds(
+    lambda length, outer, bore, right, material: Segment(
+        length, outer, bore * min(outer, right or outer), material, "cowper", right_outer_diameter=right
+    ),
+    st.floats(0.005, 0.3),
+    st.floats(0.01, 0.1),
+    st.floats(0.0, 0.8),
+    st.none() | st.floats(0.01, 0.1),
+    st.sampled_from([STEEL, BRASS]),
+)
+
+
+@given(
+    parts=st.lists(segments | st.just(JAW), min_size=1, max_size=6).filter(lambda parts: any(p != JAW for p in parts)),
+    fractions=st.lists(st.floats(0.0, 1.0), min_size=2, max_size=6),
+    disc=st.floats(0.0, 1.0),
+)
+def test_any_shaft_resists_all_but_rigid_motions_and_keeps_its_weight(
+    parts: list[Segment | Coupling], fractions: list[float], disc: float
+) -> None:
+    length = sum(part.length for part in parts)
+    rotor = Rotor("shaft", parts, [Disc(disc * length, 3.0)])
+    shaft = static_shaft(rotor, [fraction * rotor.length for fraction in fractions])
+    rigid = rigid_motions(shaft.places)
+    np.testing.assert_array_equal(shaft.stiffness, shaft.stiffness.T)
+    scale = np.sqrt(np.maximum(np.diag(shaft.stiffness), 1e-300))
+    assert np.abs((shaft.stiffness @ rigid.T) / scale[:, None]).max() <= 1e-11 * scale.max()
+    if shaft.places.size > 1:
+        values = np.linalg.eigvalsh(shaft.stiffness / np.outer(scale, scale))
+        assert values[0] > -1e-11
+    total, centre = rotor.mass, rotor.centre_of_mass * rotor.mass
+    along = rigid @ shaft.weight(GRAVITY)
+    gx, gy, gz = GRAVITY
+    expected = [total * gx, total * gy, total * gz, -centre * gy, centre * gx, 0.0]
+    np.testing.assert_allclose(along, expected, rtol=1e-10, atol=1e-10 * total)
+    # Fewer stations are the same shaft with the others free.
+    if shaft.places.size > 2 and np.diff(shaft.places).min() > 1e-3:
+        fewer = static_shaft(rotor, shaft.places[[0, -1]].tolist())
+        ends = np.r_[0:6, shaft.stiffness.shape[0] - 6 : shaft.stiffness.shape[0]]
+        moved = solve(shaft.stiffness, -shaft.stiffness[ends] + 0.0, ends)
+        left = shaft.stiffness[np.ix_(ends, ends)] + moved @ shaft.stiffness[:, ends]
+        assert_alike(left, fewer.stiffness, 1e-8)
+
+
+def test_axial_forces_leave_only_the_tilt_stiff() -> None:
+    tension = Rotor("shaft", [replace(UNIFORM, axial_force=5e4), replace(UNIFORM, axial_force=5e4)])
+    shaft = static_shaft(tension, [0.0, 0.8])
+    rigid = rigid_motions(shaft.places)
+    work = rigid @ shaft.stiffness @ rigid.T
+    # A tilt φ takes the moment P L φ of the ends' forces, which stay along z: it is the rigid body's work P L φ² / 2.
+    np.testing.assert_allclose(work, np.diag([0.0, 0.0, 0.0, 4e4, 4e4, 0.0]), atol=1e-5)
+
+
+def test_a_tight_wire_is_refused_between_far_stations_and_taken_between_near_ones() -> None:
+    wire = Rotor("wire", [Segment(1.0, 1e-3, 0.0, STEEL, axial_force=500.0)])
+    rope = Rotor("wire", [Segment(9.0, 1e-3, 0.0, STEEL, axial_force=500.0)])
+    for rotor in (wire, rope):
+        with pytest.raises(RotorError, match=r"rotor 'wire': its axial forces leave .* more stations"):
+            static_shaft(rotor, [0.0, rotor.length])
+    shaft = static_shaft(wire, np.linspace(0.0, 1.0, 101).tolist())
+    loads = np.zeros(606)
+    loads[6 * 50] = 2.0
+    sag = solve(shaft.stiffness, loads, [0, 1, 2, 5, 600, 601])[6 * 50]
+    # A string under a force at its middle, F L / 4 P, less the stiffness of its bend, (F / 2 P) (EI / P)^½.
+    bend = math.sqrt(wire.segments[0].section(0.0).bending_stiffness / 500.0)  # type: ignore[union-attr]
+    assert sag == pytest.approx(2.0 / (4 * 500.0) - 2.0 / (2 * 500.0) * bend, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("stations", "stiffened", "message"),
+    [
+        ([], [], "no stations"),
+        ([0.1, 0.8], [], r"station position is 0\.8; expected a place on the shaft"),
+        ([math.nan], [], "station position is nan"),
+        ([0.1], [(0.3, 0.9, 0.05)], r"stiffened interval position is 0\.9"),
+        ([0.1], [(0.3, 0.2, 0.05)], "left end before its right end"),
+        ([0.1], [(0.2, 0.3, -0.05)], "stiffened outer diameter is -0.05; expected a positive number"),
+    ],
+)
+def test_bad_input_is_refused(stations: list[float], stiffened: list[tuple[float, float, float]], message: str) -> None:
+    with pytest.raises(RotorError, match=message):
+        static_shaft(Rotor("shaft", STEPS), stations, stiffened=stiffened)
+
+
+def test_a_place_that_is_no_node_and_a_wrong_gravity_are_refused() -> None:
+    shaft: StaticShaft = static_shaft(Rotor("shaft", STEPS), [0.3, 0.1])
+    assert (shaft.node(0.1), shaft.node(0.3 + 1e-11)) == (0, 1)
+    with pytest.raises(RotorError, match=r"node position is 0\.2; expected one of \[0\.1, 0\.3\] m"):
+        shaft.node(0.2)
+    with pytest.raises(RotorError, match="gravity"):
+        shaft.weight([0.0, -9.81])
+    with pytest.raises(RotorError, match="on the shaft"):
+        shaft.motions(np.zeros(12), [0.8])
