@@ -49,16 +49,9 @@ from coupling.machine.parts import (
 from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
-from coupling.statics.operating_point import (
-    OperatingPoint,
-    StaticGear,
-    StaticShaftPart,
-    face_stations,
-    solve_operating_point,
-    static_bearing,
-    static_pair,
-)
 from coupling.signals.histories import histories, transient_outputs
+from coupling.statics.operating_point import OperatingPoint, solve_operating_point
+from coupling.statics.static_model import StaticGear, StaticShaftPart, face_stations, static_bearing, static_pair
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
@@ -292,7 +285,7 @@ class Machine:
         )
 
     def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:
-        """Static equilibrium under the mean torques: bearing loads, deflections, misalignment, load over the faces.
+        """Solve static equilibrium under the mean torques: loads, deflections, misalignment, load over the faces.
 
         Parameters
         ----------
@@ -537,7 +530,7 @@ class Machine:
         return tuple({one.name: one for pair in self.gear_pairs for one in self._gears_of(pair)}.values())
 
     def _static_gear(self, gear: ShaftGear) -> StaticGear:
-        """A gear with the stations of its face on its shaft; the face is the narrowest of its pairs."""
+        """Place a gear with the stations of its face on its shaft; the face is the narrowest of its pairs."""
         width = min(
             geometry.face_width
             for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True)

@@ -23,32 +23,27 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
 from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import GearPairGeometry, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.face_load import FaceContact, FaceLoad
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.models import stiffness_under_load
+from coupling.gears.loaded.face_load import FaceLoad
 from coupling.machine.components import HousingComponent
-from coupling.machine.connectors import GapLaw, MountedBearing
+from coupling.machine.connectors import MountedBearing
 from coupling.machine.loads import Torque
-from rotors.analyses.static_stiffness import StaticShaft
-from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings import (
-    RollingBearing,
-    RollingElements,
-    RollingState,
-    rolling_equilibrium,
-    rolling_state,
-    static_rating,
+from coupling.statics.static_model import (
+    ConnectorLaw,
+    FaceContactLaw,
+    RollingElementLaw,
+    StaticBearing,
+    StaticPair,
+    StaticShaftPart,
 )
+from rotors.numerics.trust_region import Local, minimise
+from rotors.rolling_bearings import RollingState, rolling_state
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -61,241 +56,6 @@ _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which not
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
 _TE_PHASES = 200
 _IDLE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
-
-
-class ConnectorLaw(Protocol):
-    """Energy, force and tangent of a connector by its deflections."""
-
-    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        """Energy [J], force (d,) [N, N m] and tangent (d, d) at deflections (d,) [m, rad]."""
-        ...
-
-
-@dataclass(frozen=True, eq=False)
-class LinearLaw:
-    """Constant stiffness, (5, 5), perhaps unsymmetric; the energy is that of its symmetric part."""
-
-    stiffness: FloatArray
-
-    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        """Energy, force and tangent."""
-        force = self.stiffness @ deflection
-        return 0.5 * float(deflection @ force), force, self.stiffness
-
-
-@dataclass(frozen=True, eq=False)
-class RollingElementLaw:
-    """A rolling bearing by its elements, its spring preload included."""
-
-    elements: RollingElements
-
-    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        """Energy, force and tangent."""
-        here = self.elements.at(deflection)
-        return here.value, here.gradient, here.hessian
-
-
-@dataclass(frozen=True, eq=False)
-class RadialGapLaw:
-    """A ring around the shaft that it touches beyond a gap, see :class:`coupling.machine.connectors.GapLaw`."""
-
-    law: GapLaw
-
-    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        """Energy, force and tangent."""
-        law, radial = self.law, deflection[:2]
-        force, tangent = np.zeros(5), np.zeros((5, 5))
-        reach = float(np.hypot(*radial))
-        beyond = (reach - law.gap) / law.depth
-        if beyond <= 0.0:
-            return 0.0, force, tangent
-        push, away = law.force * beyond**law.exponent, radial / reach
-        along = np.outer(away, away)
-        force[:2] = push * away
-        rise = law.exponent * push / (beyond * law.depth)
-        tangent[:2, :2] = rise * along + push / reach * (np.eye(2) - along)
-        return push * beyond * law.depth / (law.exponent + 1.0), force, tangent
-
-
-@dataclass(frozen=True, eq=False)
-class FaceContactLaw:
-    """Mean tooth contact of a gear pair over a mesh period, by the approach of its flanks over the face."""
-
-    contact: FaceContact
-    clearance: float = 0.0
-
-    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        """Energy, force and tangent."""
-        state = self.contact.at(deflection - self.clearance * self.contact.uniform)
-        return state.energy, state.loads, state.stiffness
-
-
-@dataclass(frozen=True, eq=False)
-class StaticBearing:
-    """A bearing in the static model: its law, and the nominal stiffness (5, 5) that the search starts from."""
-
-    mounted: MountedBearing
-    law: ConnectorLaw
-    nominal: FloatArray
-
-
-_TRIAL_LOAD = 0.05  # of the static rating, at which a rolling bearing has its nominal stiffness
-
-
-def static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
-    """A bearing in the static model: by its elements, its gap, or its stiffness at a speed [rad/s]."""
-    rolling = mounted.elements
-    if rolling is not None:
-        return StaticBearing(mounted, RollingElementLaw(RollingElements(rolling)), _nominal_rolling(rolling))
-    if isinstance(mounted.law, GapLaw):
-        return StaticBearing(mounted, RadialGapLaw(mounted.law), np.zeros((5, 5)))
-    stiffness = mounted.bearing.at_speed(speed).spatial_stiffness
-    values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
-    return StaticBearing(mounted, LinearLaw(stiffness), (vectors * np.maximum(values, 0.0)) @ vectors.T)
-
-
-def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
-    """Stiffness of a rolling bearing under a trial load, alike in x and y, (5, 5)."""
-    trial = _TRIAL_LOAD * min(static_rating(row) for row in rolling.rows)
-    load = np.array([trial, 0.0, 0.0, 0.0, 0.0])
-    free_axially = {} if rolling.has_axial_stiffness else {"z": 0.0}
-    state = rolling_equilibrium(rolling, load, held={"rx": 0.0, "ry": 0.0, **free_axially})
-    own = np.diag(state.stiffness)
-    radial, tilt = max(own[0], own[1]), max(own[3], own[4])
-    return np.diag([radial, radial, own[2], tilt, tilt])
-
-
-@dataclass(frozen=True, eq=False)
-class StaticShaftPart:
-    """A shaft in the static model: its name, axis (x, y) [m], z of its left end [m] and its exact stiffness."""
-
-    name: str
-    axis: tuple[float, float]
-    start: float
-    shaft: StaticShaft
-
-
-@dataclass(frozen=True, eq=False)
-class StaticGear:
-    """A gear of a pair in the static model.
-
-    Attributes
-    ----------
-    name, shaft : str
-    at : float
-        Middle of the face from the shaft's left end [m].
-    stations : ndarray, shape (j,), or None
-        Stations of the face on the shaft, from its left end [m]; None for a gear whose face reaches beyond the end of
-        the shaft, which is rigid on the section at ``at``.
-    """
-
-    name: str
-    shaft: str
-    at: float
-    stations: FloatArray | None
-
-
-@dataclass(frozen=True, eq=False)
-class StaticPair:
-    """A gear pair in the static model.
-
-    Attributes
-    ----------
-    label : str
-    driver, driven : StaticGear
-    geometry : GearPairGeometry
-    contact : FaceContact
-        Of the loaded flanks.
-    clearance : float
-        Their gap without load [m]: 0, or the backlash where the back flanks carry.
-    push : tuple of float
-        Unit vector e in the x-y plane along which the driver pushes the driven gear.
-    axial : float
-        h, axial part of the force over its transverse part.
-    sense : int
-        Of the rotation by which the driver closes these flanks.
-    towards : tuple of float
-        Unit vector from the driver's centre to the driven gear's.
-    nominal : float
-        Mean mesh stiffness for the search [N/m].
-    """
-
-    label: str
-    driver: StaticGear
-    driven: StaticGear
-    geometry: GearPairGeometry
-    contact: FaceContact
-    clearance: float
-    push: tuple[float, float]
-    axial: float
-    sense: int
-    towards: tuple[float, float]
-    nominal: float
-
-
-FACE_STATIONS = 5
-"""Stations over the face of a gear at which it follows its shaft."""
-
-
-def face_stations(width: float) -> FloatArray:
-    """Stations from the middle of a face of some width [m], at Chebyshev's points, both ends among them, (j,)."""
-    steps = np.arange(FACE_STATIONS)[::-1] / (FACE_STATIONS - 1)
-    return np.asarray(0.5 * width * np.cos(np.pi * steps))
-
-
-def static_pair(
-    pair: GearPair,
-    geometry: GearPairGeometry,
-    gears: tuple[StaticGear, StaticGear],
-    axes: tuple[tuple[float, float], tuple[float, float]],
-    rotation: int,
-    torque: float,
-) -> StaticPair:
-    """A gear pair in the static model, on the flanks that its mean torque loads.
-
-    Parameters
-    ----------
-    pair : GearPair
-    geometry : GearPairGeometry
-    gears : two of StaticGear
-        Driver and driven.
-    axes : two of (x, y)
-        Of their shafts [m].
-    rotation : int
-        Sense of rotation of the driver about z: 1 or -1.
-    torque : float
-        That the pair takes off its driver [N m], positive where power flows to the driven gear.
-    """
-    force = abs(torque) / geometry.driver.base_radius
-    given = pair.stiffness
-    model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
-    faces = face_slices(geometry, sense=rotation)
-    if not pair.has_single_teeth:
-        # The spring of a whole mesh, spread evenly over the face, with no coupling of its slices.
-        stiffness = float(model.pair_stiffness(geometry).mean)
-        faces = replace(faces, flattening=2.0 * stiffness / geometry.face_width, coupling=0.0)
-    contact = tooth_contact(geometry, model, corner_contact=pair.has_corner_contact, faces=faces)
-    backwards = torque < 0.0
-    sense = -rotation if backwards else rotation
-    backlash = pair.backlash_of(geometry)
-    line = np.subtract(axes[1], axes[0])
-    angle = geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
-    axial = -sense * float(np.tan(geometry.driver.base_helix_angle))
-    contact = replace(contact, pitch_gaps=np.zeros(0), back_pitch_gaps=np.zeros(0))
-    own = contact.back_flanks if backwards else contact
-    return StaticPair(
-        label=f"gear pair {pair.driver!r} -> {pair.driven!r}",
-        driver=gears[0],
-        driven=gears[1],
-        geometry=geometry,
-        contact=FaceContact(own, geometry, face_stations(geometry.face_width), axial),
-        clearance=(backlash or 0.0) if backwards else 0.0,
-        push=(float(np.cos(angle)), float(np.sin(angle))),
-        axial=axial,
-        sense=sense,
-        towards=(float(line[0] / np.hypot(*line)), float(line[1] / np.hypot(*line))) if np.any(line) else (0.0, 0.0),
-        nominal=own.mean_mesh_stiffness,
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -514,10 +274,10 @@ class _StaticModel:
             size += 6 * part.shaft.places.size
         self.housing_first = size
         size += 0 if housing is None else housing.size
-        pedestals = [one.mounted.bearing for one in bearings if one.mounted.bearing.pedestal is not None]
-        self.pedestal_first = {bearing.name: size + 2 * n for n, bearing in enumerate(pedestals)}
-        self.size = size + 2 * len(pedestals)
-        self.stiffness = self._linear_stiffness(pedestals)
+        on_pedestals = [one.mounted.bearing.name for one in bearings if one.mounted.bearing.pedestal is not None]
+        self.pedestal_first = {name: size + 2 * n for n, name in enumerate(on_pedestals)}
+        self.size = size + 2 * len(on_pedestals)
+        self.stiffness = self._linear_stiffness()
         self.load = self._loads(torques)
         self.directions = [self._bearing_rows(one.mounted) for one in bearings]
         approaches = [self._pair_rows(pair) for pair in pairs]
@@ -531,7 +291,7 @@ class _StaticModel:
         ends = np.cumsum([rows.shape[1] for rows in self.directions])
         self.parts = [slice(end - rows.shape[1], end) for end, rows in zip(ends.tolist(), self.directions, strict=True)]
 
-    def _linear_stiffness(self, pedestals: Sequence[object]) -> FloatArray:
+    def _linear_stiffness(self) -> FloatArray:
         whole = np.zeros((self.size, self.size))
         for part in self.shafts:
             own = self._own(part.name)
@@ -667,9 +427,9 @@ class _StaticModel:
                 words.append(f"the {name} of shaft {part.name!r}")
         if self.housing is not None:
             diagonal = np.diag(self.housing.stiffness)
-            for number in np.flatnonzero(diagonal <= 1e-12 * diagonal.max(initial=0.0)):
+            for mode in np.flatnonzero(diagonal <= 1e-12 * diagonal.max(initial=0.0)).tolist():
                 column = np.zeros(self.size)
-                column[self.housing_first + number] = 1.0
+                column[self.housing_first + mode] = 1.0
                 columns.append(column)
                 words.append("the motion of the housing as a whole")
         return np.array(columns).T, words

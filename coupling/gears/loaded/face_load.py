@@ -204,7 +204,7 @@ class FaceContact:
             deflection=compression + shared * force,
             loads=np.add.reduceat(each, prepared.first, axis=0),
             tangents=self._tangents(prepared, touching),
-            energy=energy + 0.5 * shared * force**2,
+            energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
             line_load=line,
             peak_line_load=float(loads.line_load.max(initial=0.0)),
         )
@@ -271,7 +271,7 @@ class FaceContact:
         return np.asarray(load.tangents @ self.uniform @ self.uniform)
 
     def _tangents(self, prepared: _Prepared, touching: npt.NDArray[np.bool_]) -> FloatArray:
-        """A = sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m)."""
+        """Sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m)."""
         flat = np.where(touching, self._faces.flattening, 0.0)
         pushed = flat[:, :, None] * prepared.basis
         yielding = face_yield(self._faces, prepared.base, touching, pushed)
