@@ -248,6 +248,9 @@ def assemble_machine(
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
     loads = _loads(coordinates, bearings, unbalances, bows, torques, base, gravity)
+    for linear, _ in held:
+        if linear.offset is not None:
+            loads.constant -= linear.directions @ linear.offset
     system = CoupledSystem(
         components=components,
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
@@ -323,7 +326,10 @@ def _bearing(
     among = np.ix_(held, held)
     stiffness, damping = law.spatial_stiffness[among], law.spatial_damping[among]
     axes = tuple(held.tolist())
-    return LinearConnector(law.name, relative[held].T, stiffness, damping, over_speed=table, axes=axes), nonlinear
+    # A law of its own has its force from the elements.
+    offset = None if mounted.offset is None or mounted.law is not None else mounted.offset[held]
+    linear = LinearConnector(law.name, relative[held].T, stiffness, damping, table, axes, offset)
+    return linear, nonlinear
 
 
 def _contact(

@@ -23,7 +23,7 @@ Dynamics of Rotating Systems, 2005, section 4.4).
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2
 
 import numpy as np
@@ -127,6 +127,17 @@ class MountedBearing:
     With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take. With
     ``rolling``, the machine's static equilibrium goes by the bearing's elements; one whose ``bearing`` has no stiffness
     gets it from there.
+
+    Attributes
+    ----------
+    bearing : rotors.Bearing
+    rotor : str
+    seat : str or None
+        None for the ground.
+    law : BearingLaw or None
+    rolling : RollingBearing or None
+    offset : ndarray, shape (5,), or None
+        Force of the linear law without deflection [N, N m]: that of the operating point less K times its deflection.
     """
 
     bearing: Bearing
@@ -134,6 +145,7 @@ class MountedBearing:
     seat: str | None
     law: BearingLaw | None = None
     rolling: RollingBearing | None = None
+    offset: FloatArray | None = field(default=None, compare=False)
 
     @property
     def elements(self) -> RollingBearing | None:
@@ -145,7 +157,7 @@ class MountedBearing:
     @property
     def needs_load(self) -> bool:
         """Whether its stiffness has still to follow from its load at the operating point."""
-        return self.rolling is not None and not np.any(self.bearing.stiffness)
+        return self.elements is not None and not np.any(self.bearing.stiffness)
 
 
 @dataclass(frozen=True)
@@ -201,7 +213,7 @@ _JUST_AFTER = 1e-9  # mesh periods
 
 @dataclass(frozen=True)
 class LinearConnector:
-    """A connector whose law is f = K δ + C δ': a bearing, a coupling, a mount.
+    """A connector whose law is f = f₀ + K δ + C δ': a bearing, a coupling, a mount.
 
     Attributes
     ----------
@@ -216,6 +228,8 @@ class LinearConnector:
         K and C at other speeds than the nominal one, where they depend on it.
     axes : tuple of int
         Of a bearing, the axis of each direction: x, y, z and the rotations about x and y (0 to 4); empty otherwise.
+    offset : ndarray, shape (d,), or None
+        f₀ of a law that is linearised about a deflection [N]; among the system's constant loads as -D f₀.
     """
 
     name: str
@@ -224,6 +238,7 @@ class LinearConnector:
     damping: FloatArray
     over_speed: "SpeedTable | None" = None
     axes: tuple[int, ...] = ()
+    offset: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Require stiffness and damping of shape (d, d) for d directions."""

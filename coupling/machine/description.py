@@ -7,8 +7,8 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import copysign
 
@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry
+from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
@@ -51,7 +52,7 @@ from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
 from coupling.signals.histories import histories, transient_outputs
 from coupling.statics.operating_point import OperatingPoint, solve_operating_point
-from coupling.statics.static_model import StaticGear, StaticShaftPart, face_stations, static_bearing, static_pair
+from coupling.statics.static_model import StaticGear, StaticShaftPart, static_bearing, static_pair
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
@@ -301,16 +302,20 @@ class Machine:
         rotors.EquilibriumError
             Where a rolling bearing is loaded beyond its theory.
         """
-        gears = {one.name: self._static_gear(one) for one in self._meshing_gears}
         sense = 1 if self.speed >= 0.0 else -1
         pairs = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             driver, driven = self._gears_of(pair)
+            gears = self._static_gear(driver, geometry.face_width), self._static_gear(driven, geometry.face_width)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
-            pairs.append(static_pair(pair, geometry, (gears[driver.name], gears[driven.name]), axes, rotation, torque))
+            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
+        gears_on = [gear for pair in pairs for gear in (pair.driver, pair.driven)]
         return solve_operating_point(
-            [self._static_shaft(shaft, gears) for shaft in self.shafts],
+            [
+                self._static_shaft(shaft, [gear for gear in gears_on if gear.shaft == shaft.name])
+                for shaft in self.shafts
+            ],
             [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
             pairs,
             self.housing_component,
@@ -318,10 +323,54 @@ class Machine:
             gravity,
         )
 
+    @property
+    def needs_operating_point(self) -> bool:
+        """Whether the stiffness of a bearing or the misalignment of a pair has still to follow from the loads."""
+        unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
+        return unaligned or any(mounted.needs_load for mounted in self.bearings)
+
+    def at_operating_point(
+        self, point: OperatingPoint | None = None, *, gravity: Sequence[float] | None = None
+    ) -> "Machine":
+        """Return the machine linearised about its static equilibrium.
+
+        Rolling bearings whose stiffness is not given get their tangent stiffness under load, with the force that they
+        have there; those with a nonlinear law start there. Pairs whose misalignment is None get the gap over the face
+        by the deflection of shafts, bearings and housing. What is given stays as it is.
+
+        Parameters
+        ----------
+        point : OperatingPoint, optional
+            By default :meth:`operating_point`.
+        gravity : sequence of float, optional
+            Acceleration of free fall along x, y, z [m/s²].
+
+        Raises
+        ------
+        CouplingError, EquilibriumNotFoundError, rotors.EquilibriumError
+            As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
+        """
+        point = self.operating_point(gravity) if point is None else point
+        gaps = {(one.pair.driver.name, one.pair.driven.name): one.station_gap for one in point.pairs}
+        pairs = [
+            replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
+            if pair.misalignment is None
+            else pair
+            for pair in self.gear_pairs
+        ]
+        return replace(self, bearings=[one.linearised for one in point.bearings], gear_pairs=pairs)
+
+    @cached_property
+    def _resolved(self) -> "Machine":
+        return self.at_operating_point() if self.needs_operating_point else self
+
     @cached_property
     def assembled(self) -> CoupledMachine:
-        """The coupled equations of motion under constant torques, as :meth:`assemble` makes them; assembled once."""
-        return self.assemble()
+        """The coupled equations of motion under constant torques, as :meth:`assemble` makes them; assembled once.
+
+        About the operating point, where something is left to it.
+        """
+        return self._resolved.assemble()
 
     def modes(self) -> CoupledModes:
         """Complex natural modes about the mean contact, see :func:`coupling.coupled_modes`.
@@ -428,7 +477,7 @@ class Machine:
         if self.speed == 0.0:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
-        coupled = self.assembled if driving is CONSTANT else self.assemble(driving=driving)
+        coupled = self.assembled if driving is CONSTANT else self._resolved.assemble(driving=driving)
         settings = TransientSettings(
             duration=revolutions * period,
             record_from=discard * period,
@@ -524,35 +573,23 @@ class Machine:
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 
-    @property
-    def _meshing_gears(self) -> tuple[ShaftGear, ...]:
-        """Gears that are in a pair."""
-        return tuple({one.name: one for pair in self.gear_pairs for one in self._gears_of(pair)}.values())
-
-    def _static_gear(self, gear: ShaftGear) -> StaticGear:
-        """Place a gear with the stations of its face on its shaft; the face is the narrowest of its pairs."""
-        width = min(
-            geometry.face_width
-            for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True)
-            if gear.name in (pair.driver, pair.driven)
-        )
-        stations = gear.at + face_stations(width)
-        length = self.shaft(gear.shaft).rotor.length
-        within = stations[0] >= 0.0 and stations[-1] <= length
+    def _static_gear(self, gear: ShaftGear, face_width: float) -> StaticGear:
+        """Place a gear with the stations of its face on its shaft."""
+        stations = gear.at + face_stations(face_width)
+        within = stations[0] >= 0.0 and stations[-1] <= self.shaft(gear.shaft).rotor.length
         return StaticGear(gear.name, gear.shaft, gear.at, stations if within else None)
 
-    def _static_shaft(self, shaft: Shaft, gears: Mapping[str, StaticGear]) -> StaticShaftPart:
+    def _static_shaft(self, shaft: Shaft, gears: Sequence[StaticGear]) -> StaticShaftPart:
+        """Exact stiffness of a shaft with its gears, within whose faces it is as thick as their root circle."""
         places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         bodies = []
-        for gear in self._meshing_gears:
-            static = gears[gear.name]
-            if gear.shaft != shaft.name:
-                continue
+        for gear in gears:
             places.append(gear.at)
-            if static.stations is not None:
-                places += static.stations.tolist()
-                bodies.append((float(static.stations[0]), float(static.stations[-1]), 2 * gear.gear.root_circle_radius))
+            if gear.stations is not None:
+                places += gear.stations.tolist()
+                made = next(one.gear for one in self.gears if one.name == gear.name)
+                bodies.append((float(gear.stations[0]), float(gear.stations[-1]), 2.0 * made.root_circle_radius))
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 

@@ -71,11 +71,16 @@ def axially_held(
     bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str] | None = None
 ) -> set[str]:
     """Rotors that a bearing with axial stiffness holds at their speeds [rad/s]; only ``among`` these are looked at."""
+
+    def holds(mounted: MountedBearing) -> bool:
+        if mounted.needs_load and mounted.elements is not None:
+            return mounted.elements.has_axial_stiffness
+        return bool(mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0)
+
     return {
         mounted.rotor
         for mounted in bearings
-        if mounted.rotor in (speeds if among is None else among)
-        and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
+        if mounted.rotor in (speeds if among is None else among) and holds(mounted)
     }
 
 

@@ -303,9 +303,9 @@ def _beside_linear(
 def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:
     """Linear force of a bearing in every held direction, shape (s, d), at the relative speed of each sample."""
     table = connector.over_speed
+    force = np.zeros_like(deflection) if connector.offset is None else np.tile(connector.offset, (len(deflection), 1))
     if table is None:
-        return np.asarray(deflection @ connector.stiffness.T + velocity @ connector.damping.T)
-    force = np.zeros_like(deflection)
+        return np.asarray(force + deflection @ connector.stiffness.T + velocity @ connector.damping.T)
     for row in range(len(table.rates)):
         # Weight of each speed of the table in the linear interpolation.
         share = np.interp(rates, table.rates, np.eye(len(table.rates))[row])

@@ -23,7 +23,7 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -32,7 +32,7 @@ from scipy import linalg
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears.loaded.face_load import FaceLoad
 from coupling.machine.components import HousingComponent
-from coupling.machine.connectors import MountedBearing
+from coupling.machine.connectors import MountedBearing, RollingLaw
 from coupling.machine.loads import Torque
 from coupling.statics.static_model import (
     ConnectorLaw,
@@ -43,7 +43,7 @@ from coupling.statics.static_model import (
     StaticShaftPart,
 )
 from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings import RollingState, rolling_state
+from rotors.rolling_bearings import RollingState, linearised_bearing, rolling_state
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -116,6 +116,23 @@ class BearingLoad:
         """Name of the bearing."""
         return self.mounted.bearing.name
 
+    @property
+    def linearised(self) -> MountedBearing:
+        """The bearing linearised about its load, where its stiffness is left to that; else as it is.
+
+        Raises
+        ------
+        rotors.EquilibriumError
+            Where clearance leaves the shaft loose in x or y.
+        """
+        if not self.mounted.needs_load or self.rolling is None:
+            return self.mounted
+        given, law = self.mounted.bearing, self.mounted.law
+        bearing = replace(given, stiffness=linearised_bearing(self.rolling, given.name, given.at).stiffness)
+        if isinstance(law, RollingLaw):
+            return replace(self.mounted, bearing=bearing, law=replace(law, state=self.rolling))
+        return replace(self.mounted, bearing=bearing, offset=self.force - self.stiffness @ self.deflection)
+
 
 CAUSES = ("shafts", "bearings", "housing", "bodies")
 """Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, and the twist of
@@ -162,6 +179,12 @@ class PairLoad:
         """Gap of the flanks over the face by the machine's deflection, its mean taken off [m], shape (s,)."""
         over = self.pair.contact.over_face @ self.approach[:-1]
         return np.asarray(over.mean() - over)
+
+    @property
+    def station_gap(self) -> tuple[float, ...]:
+        """The same gap at the stations of the face [m], for :attr:`coupling.GearPair.face_gap`."""
+        mean = float(self.pair.contact.face_mean @ self.approach)
+        return tuple((mean - self.approach[:-1]).tolist())
 
     @property
     def line_load(self) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import GearPairGeometry, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.contact.face_slices import face_slices, face_stations
 from coupling.gears.loaded.face_load import FaceContact
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
@@ -21,9 +21,6 @@ from rotors.analyses.static_stiffness import StaticShaft
 from rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
 FloatArray = npt.NDArray[np.float64]
-
-FACE_STATIONS = 5
-"""Stations over the face of a gear at which it follows its shaft."""
 
 _TRIAL_LOAD = 0.05  # of the static rating, at which a rolling bearing has its nominal stiffness
 
@@ -193,12 +190,6 @@ class StaticPair:
     sense: int
     towards: tuple[float, float]
     nominal: float
-
-
-def face_stations(width: float) -> FloatArray:
-    """Stations from the middle of a face of some width [m], at Chebyshev's points, both ends among them, (j,)."""
-    steps = np.arange(FACE_STATIONS)[::-1] / (FACE_STATIONS - 1)
-    return np.asarray(0.5 * width * np.cos(np.pi * steps))
 
 
 def static_pair(

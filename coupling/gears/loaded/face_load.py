@@ -32,7 +32,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.contact.contact_law import ToothContact
-from coupling.gears.contact.face_slices import face_equilibrium, face_yield
+from coupling.gears.contact.face_slices import face_equilibrium, face_yield, lagrange
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.geometry.pair import GearPairGeometry
 
@@ -306,12 +306,3 @@ class _Prepared:
         """Mean over the phases of the approach at which the first slice touches [m]."""
         gap = np.where(self.meeting, self.gap - np.einsum("pnm,m->pn", self.basis, shape), np.inf).min(axis=1)
         return float(np.minimum.reduceat(gap, self.first).mean())
-
-
-def lagrange(stations: FloatArray, z: FloatArray) -> FloatArray:
-    """Lagrange's polynomials over j stations at places z (s,), shape (s, j)."""
-    found = np.ones((z.size, stations.size))
-    for j, own in enumerate(stations):
-        for other in np.delete(stations, j):
-            found[:, j] *= (z - other) / (own - other)
-    return found
