@@ -34,7 +34,7 @@ from coupling.gears import GearPairGeometry, ToothContact
 from coupling.gears.contact.sliding_friction import SlidingFriction
 from coupling.machine.components import RotorComponent
 from rotors import Bearing
-from rotors.rolling_bearings import RollingBearing, RollingState
+from rotors.rolling_bearings import FourPointRow, RollerRow, RollingBearing, RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,10 +53,26 @@ class RollingLaw:
         in which the shaft cannot move.
     cage_angle : float
         Azimuth of the first element of every row at t = 0 [rad].
+
+    Raises
+    ------
+    CouplingError
+        Balls in four-point contact, or cylindrical rollers with flanges, which have no law in the time domain.
     """
 
     state: RollingState
     cage_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Require rows whose elements have a law in the time domain."""
+        for row in self.state.bearing.rows:
+            flanged = isinstance(row, RollerRow) and row.flanges != "none"
+            if flanged or isinstance(row, FourPointRow):
+                kind = "cylindrical rollers between flanges" if flanged else "balls in four-point contact"
+                raise CouplingError(
+                    f"{self.state.bearing.name} has {kind}; expected other elements where a law follows each of them: "
+                    'linearise it, law = "linear" of a case'
+                )
 
     @property
     def reference(self) -> FloatArray:

@@ -1,8 +1,9 @@
 r"""Rolling-bearing law, compiled: forces and tangent stiffness by the ring's deflections and the cage angle.
 
-The laws of a ball at the azimuth ψ and of a roller's slice are those of
-:mod:`rotors.rolling_bearings.element_contacts`. Added is the slope of the energy over ψ, by which the rotating cage
-does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
+The laws of a ball at the azimuth ψ and of a roller's slice are those of :mod:`rotors.rolling_bearings.element_contacts`
+and :mod:`rotors.rolling_bearings.roller_slices`, without inertia. Added is the slope of the energy over ψ, by which the
+rotating cage does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the
+ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 
@@ -70,14 +71,14 @@ def _rollers(
     force: FloatArray,
     tangent: FloatArray,
 ) -> tuple[float, float]:
-    """Add the forces and tangent of a row of rollers in slices (n, 2): position along the axis, gap of the profile."""
-    clearance, stiffness, number = shape[0], shape[1], int(shape[2])
+    """Add the forces and tangent of a row of rollers in slices (n, 2): arm of the normal, gap of the profile."""
+    free, stiffness, number, across, along = shape[0], shape[1], int(shape[2]), shape[3], shape[4]
     energy, slope = 0.0, 0.0
     for roller in range(count):
         azimuth = angle + 2.0 * math.pi * roller / count
         c, s = math.cos(azimuth), math.sin(azimuth)
-        level, tilt = q[0] * c + q[1] * s - clearance, q[4] * c - q[3] * s
-        level_slope, tilt_slope = q[1] * c - q[0] * s, -q[4] * s - q[3] * c
+        level, tilt = across * (q[0] * c + q[1] * s) + along * q[2] + free, q[4] * c - q[3] * s
+        level_slope, tilt_slope = across * (q[1] * c - q[0] * s), -q[4] * s - q[3] * c
         load, moment, k, k_place, k_square = 0.0, 0.0, 0.0, 0.0, 0.0
         for one in range(number):
             place = slices[one, 0]
@@ -95,19 +96,19 @@ def _rollers(
         if k == 0.0:
             continue
         slope += load * level_slope + moment * tilt_slope
-        # A roller feels its approach in the middle and its tilt: rows (c, s) of x, y and (-s, c) of the rotations.
-        force[0] += load * c
-        force[1] += load * s
-        force[3] -= moment * s
-        force[4] += moment * c
-        for i in range(2):
-            middle_i, tilt_i = (c if i == 0 else s), (-s if i == 0 else c)
+        # A roller feels its approach in the middle, by x, y and z, and its tilt, by the rotations.
+        middle, turn = (across * c, across * s, along), (-s, c)
+        for i in range(3):
+            force[i] += load * middle[i]
+            for j in range(3):
+                tangent[i, j] += k * middle[i] * middle[j]
             for j in range(2):
-                middle_j, tilt_j = (c if j == 0 else s), (-s if j == 0 else c)
-                tangent[i, j] += k * middle_i * middle_j
-                tangent[i, 3 + j] += k_place * middle_i * tilt_j
-                tangent[3 + i, j] += k_place * tilt_i * middle_j
-                tangent[3 + i, 3 + j] += k_square * tilt_i * tilt_j
+                tangent[i, 3 + j] += k_place * middle[i] * turn[j]
+                tangent[3 + j, i] += k_place * middle[i] * turn[j]
+        for i in range(2):
+            force[3 + i] += moment * turn[i]
+            for j in range(2):
+                tangent[3 + i, 3 + j] += k_square * turn[i] * turn[j]
     return energy, slope
 
 

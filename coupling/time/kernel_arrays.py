@@ -7,6 +7,7 @@ in all, then two for each contact with friction.
 Rolling-bearing and gap laws are plain arrays too.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -227,9 +228,15 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
         if isinstance(row, BallRow):
             yield BALLS, row.count, _ball_shape(row), cage, none
         else:
-            place = row.position + row.slice_places
-            shape = 0.5 * row.clearance, row.stiffness / row.slices, float(row.slices)
-            yield ROLLERS, row.count, shape, cage, np.column_stack([place, 2.0 * row.slice_drops])
+            angle = row.contact_angle
+            shape = (
+                row.free_approach,
+                row.stiffness / row.slices,
+                float(row.slices),
+                math.cos(angle),
+                row.direction * math.sin(angle),
+            )
+            yield ROLLERS, row.count, shape, cage, np.column_stack([row.tilt_arms, 2.0 * row.slice_drops])
 
 
 def _ball_shape(row: BallRow) -> tuple[float, ...]:

@@ -24,8 +24,9 @@ from rotors.rolling_bearings.equilibrium import (
     rolling_state,
 )
 from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, point_contact
+from rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, SphericalRollerRow, TaperedRollerRow
 from rotors.rolling_bearings.rolling_bearing import RollingBearing, catalogue_row, paired, preload_offset, static_rating
-from rotors.rolling_bearings.rows import BallRow, RollerRow
+from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 __all__ = [
     "COORDINATES",
@@ -34,11 +35,15 @@ __all__ = [
     "BallRow",
     "ContactElasticity",
     "ElementLoads",
+    "FourPointRow",
+    "LineContactRow",
     "PointContact",
     "RollerRow",
     "RollingBearing",
     "RollingElements",
     "RollingState",
+    "SphericalRollerRow",
+    "TaperedRollerRow",
     "catalogue_row",
     "kramer_ball_stiffness",
     "kramer_roller_stiffness",
@@ -48,5 +53,6 @@ __all__ = [
     "preload_offset",
     "rolling_equilibrium",
     "rolling_state",
+    "spherical_groove",
     "static_rating",
 ]

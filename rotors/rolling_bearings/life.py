@@ -10,7 +10,8 @@ import numpy as np
 
 from rotors.errors import require_finite
 from rotors.rolling_bearings.equilibrium import RollingState
-from rotors.rolling_bearings.rows import BallRow, RollerRow
+from rotors.rolling_bearings.roller_rows import RollerRow
+from rotors.rolling_bearings.rows import BallRow
 
 _MILLION = 1e6
 # Deep-groove balls: relative axial load F_a / (Z D_w²) [Pa], e, and Y; X is the same for all.

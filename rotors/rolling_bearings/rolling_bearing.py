@@ -24,9 +24,10 @@ from typing import Literal
 from scipy.optimize import brentq
 
 from rotors.errors import RotorError, require, require_finite
-from rotors.rolling_bearings.rows import BallRow, RollerRow
+from rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow
+from rotors.rolling_bearings.rows import BallRow
 
-Row = BallRow | RollerRow
+Row = BallRow | LineContactRow
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class RollingBearing:
     Raises
     ------
     RotorError
-        No rows, a preload that is not finite, or one on rollers, which have no axial stiffness.
+        No rows, a preload that is not finite, or one on rollers without flanges, which have no axial stiffness.
     """
 
     rows: Sequence[Row]
@@ -60,7 +61,10 @@ class RollingBearing:
         require_finite(f"axial preload of {self.name}", self.axial_preload)
         held = self.axial_preload == 0.0 or self.has_axial_stiffness
         require(
-            held, f"axial preload of {self.name}", self.axial_preload, "none: cylindrical rollers carry no axial load"
+            held,
+            f"axial preload of {self.name}",
+            self.axial_preload,
+            "none: cylindrical rollers carry no axial load without flanges",
         )
 
     @property
@@ -76,7 +80,7 @@ class RollingBearing:
     @property
     def has_axial_stiffness(self) -> bool:
         """Whether any row carries an axial load."""
-        return any(isinstance(row, BallRow) for row in self.rows)
+        return any(row.has_axial_stiffness for row in self.rows)
 
     @property
     def reach(self) -> float:
@@ -91,7 +95,7 @@ _DIRECTIONS: dict[str, tuple[int, int]] = {"back to back": (1, -1), "face to fac
 
 
 def paired(
-    row: BallRow, arrangement: Arrangement, spacing: float, *, preload: float = 0.0, name: str = "paired bearing"
+    row: Row, arrangement: Arrangement, spacing: float, *, preload: float = 0.0, name: str = "paired bearing"
 ) -> RollingBearing:
     """Two equal rows, on the same rings or on rings clamped together.
 
@@ -110,7 +114,8 @@ def paired(
     Raises
     ------
     RotorError
-        A spacing that is not positive, a negative preload, or a preload in tandem, where no row opposes it.
+        A spacing that is not positive, a negative preload, or a preload in tandem, where no row opposes it, or of rows
+        without axial stiffness.
     """
     known = arrangement in _DIRECTIONS
     require(known, "arrangement", arrangement, f"one of {', '.join(map(repr, _DIRECTIONS))}")
@@ -127,19 +132,26 @@ def paired(
     return RollingBearing(rows, name=name)
 
 
-def preload_offset(row: BallRow, preload: float) -> float:
+def preload_offset(row: Row, preload: float) -> float:
     """Axial offset (m) at which a centred row presses with the axial force ``preload`` (N) along its direction.
 
-    With v = (A cos α − s/2, A sin α + e) that is the root of Z K (|v| − A)^{3/2} sin α' = F, sin α' = v_z/|v|; the left
-    side grows with e.
+    The root e of the row's `axial_force`, which grows with e: of balls, with v = (A cos α − s/2, A sin α + e),
+    Z K (|v| − A)^{3/2} sin α' = F, sin α' = v_z/|v|; of rollers Z c/n Σ_k δ_k^{10/9} sin α = F.
+
+    Raises
+    ------
+    RotorError
+        A preload that is not positive, or a row that carries no axial load.
     """
     require_finite("preload of a row", preload, positive=True)
-    scale = row.groove_distance
-    highest = scale
-    while row.axial_force(highest) < preload:
-        highest *= 2.0
-    lowest = -scale * math.sin(row.contact_angle)
-    return float(brentq(lambda e: row.axial_force(e) - preload, lowest, highest, xtol=1e-15 * scale, rtol=8.9e-16))
+    require(row.has_axial_stiffness, "preload of a row", preload, "none: its rollers carry no axial load")
+    lowest, scale = row.slack_offset, 0.01 * row.element_diameter
+    width = scale
+    while row.axial_force(lowest + width) < preload:
+        width *= 2.0
+    return float(
+        brentq(lambda e: row.axial_force(e) - preload, lowest, lowest + width, xtol=1e-14 * scale, rtol=8.9e-16)
+    )
 
 
 CatalogueType = Literal["deep-groove", "angular-contact", "cylindrical-roller"]
@@ -210,12 +222,12 @@ def static_rating(row: Row) -> float:
     """Radial static load rating C₀ (N) of one row after ISO 76, for a check of a row against a catalogue.
 
     Balls: the load under which Hertz's greatest pressure reaches 4 200 MPa at the inner ring, where the worst of Z
-    balls carries 5/(Z cos α) of a radial load. Rollers: 44 (1 − D/D_pw) Z L D, in N and mm.
+    balls carries 5/(Z cos α) of a radial load. Rollers: 44 (1 − γ) Z L D cos α, in N and mm.
     """
     if isinstance(row, BallRow):
         return row.inner_contact.load_at_pressure(_RATING_PRESSURE) * row.count * math.cos(row.contact_angle) / 5.0
-    slender = 1.0 - row.roller_diameter / row.pitch_diameter
-    return 44e6 * slender * row.count * row.length * row.roller_diameter
+    across = row.count * row.length * row.roller_diameter * math.cos(row.contact_angle)
+    return 44e6 * (1.0 - row.gamma) * across
 
 
 def _conrad(pitch: float, ball: float) -> int:
