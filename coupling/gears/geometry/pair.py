@@ -37,6 +37,11 @@ angle and helix angle of a pair agree within it, and a backlash of less, in modu
 _ALLOWED_JAM = 0.01
 
 
+def mesh_frequency(speed: float, teeth: int) -> float:
+    """Tooth-mesh frequency [Hz] of a gear with this number of teeth at a speed [rad/s] of either sign."""
+    return abs(speed) * teeth / (2.0 * math.pi)
+
+
 @dataclass(frozen=True)
 class GearPairGeometry:
     """A driver and a driven gear on parallel shafts.
