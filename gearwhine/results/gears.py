@@ -279,7 +279,7 @@ HARRIS_MAP = (
 """The transmission error over the mesh period for a range of torques."""
 
 STIFFNESS = (
-    Quantity("mean", lambda pair: pair.solved.contact.mean_mesh_stiffness),
+    Quantity("mean", lambda pair: pair.solved.contact.unloaded_mean_mesh_stiffness),
     Quantity("min", lambda pair: pair.stiffness.min()),
     Quantity("max", lambda pair: pair.stiffness.max()),
     Quantity("loaded_mean", lambda pair: pair.solved.static.mean_mesh_stiffness),
