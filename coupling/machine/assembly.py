@@ -18,6 +18,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.gears import ToothContact
 from coupling.gears.contact.sliding_friction import sliding_friction
+from coupling.gears.geometry.pair import mesh_frequency
 from coupling.machine.components import (
     Component,
     HousingComponent,
@@ -336,7 +337,7 @@ def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
     """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
-    rate = abs(coordinates.speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
+    rate = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
     name, law, clearance = mesh.name, mesh.contact, 0.0
     if back:
         name, law, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0

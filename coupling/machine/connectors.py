@@ -353,6 +353,9 @@ class Sliding:
 class ContactConnector:
     """A connector whose law is a tooth contact: one line of action of a gear pair.
 
+    Backlash is two one-sided contacts: a gear pair has one such connector for its drive flanks and, where it has a
+    backlash, one for its back flanks with the backlash as ``clearance``.
+
     With the mesh phase p(t) = phase + rate t and the runout error e(t) = Σ a cos(w t + c), the compression is
     δ = dᵀ q - e(t) - clearance and the force is :func:`coupling.gears.contact.tooth_force_kernels.tooth_force`.
 
@@ -369,7 +372,7 @@ class ContactConnector:
     errors : ndarray, shape (h, 3)
         a [m], w [rad/s] and c [rad] of each harmonic of the runout error.
     clearance : float
-        Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
+        Backlash, for the back flanks; 0 for the drive flanks [m].
     drives : bool
         Whether these flanks carry the mean load.
     compression_limit : float

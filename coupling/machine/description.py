@@ -26,15 +26,16 @@ from coupling.machine.assembly import CoupledMachine, assemble_machine
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
-    LARGEST_IMBALANCE,
+    AppliedTorque,
     GearedShafts,
     GearTrain,
     Output,
+    carrying_flanks,
     gear_train,
     geometry_on_axes,
+    imbalances_of_shafts,
     require_balanced_outputs,
     require_one_plane,
-    shared_torques,
 )
 from coupling.machine.loads import BowReactions, Torque, Unbalance, constant_torques
 from coupling.machine.parts import (
@@ -42,10 +43,12 @@ from coupling.machine.parts import (
     Driving,
     Shaft,
     ShaftGear,
+    inertia_with_discs,
     pair_label,
     require_names,
     require_seats,
     require_stations,
+    rotor_with_gears,
 )
 from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
@@ -56,15 +59,13 @@ from coupling.statics.static_model import StaticGear, StaticShaftPart, static_be
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
-from rotors import Coupling, Disc, Rotor, modal_rotor
+from rotors import Coupling, Rotor, modal_rotor
 from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
 _LATERAL_LIMIT = 2.0 * np.pi * 8000.0  # of the bending modes of a shaft that says nothing of its own [rad/s]
-_SAME_STATION = 1e-6  # part of the rotor's length
-_NO_TORQUE = 1e-9  # part of the input torque below which a gear pair carries none but for rounding
 
 
 @dataclass(frozen=True)
@@ -133,25 +134,23 @@ class Machine:
     def train(self) -> GearTrain:
         """The gear train."""
         geared = [self._gears_of(pair) for pair in self.gear_pairs]
-        return gear_train(
+        pairs = [
             GearedShafts(driver.shaft, driven.shaft, (driver.gear.teeth, driven.gear.teeth))
             for driver, driven in geared
-        )
+        ]
+        return gear_train(pairs, [shaft.name for shaft in self.shafts])
 
     @cached_property
     def speeds(self) -> dict[str, float]:
         """Signed speed of each shaft [rad/s]."""
         names = [shaft.name for shaft in self.shafts]
-        if not self.gear_pairs:
-            return dict.fromkeys(names, self.speed)
         ratios = self.train.require_turning(names, [pair_label(pair) for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
 
     @cached_property
     def mesh_frequencies(self) -> tuple[float, ...]:
         """Tooth-mesh frequency of each gear pair [Hz]."""
-        drivers = [self._gears_of(pair)[0] for pair in self.gear_pairs]
-        return tuple(abs(self.speeds[one.shaft]) * one.gear.teeth / (2.0 * np.pi) for one in drivers)
+        return self.train.mesh_frequencies(self.speed)
 
     @cached_property
     def pair_geometries(self) -> tuple[GearPairGeometry, ...]:
@@ -167,37 +166,23 @@ class Machine:
     def constant_torques(self) -> tuple[Torque, ...]:
         """Torques about z that act from outside: the input first, then the outputs, by default at right ends."""
         if not self.gear_pairs:
-            ratios = dict.fromkeys((shaft.name for shaft in self.shafts), 1.0)
-            first = self.outputs[0].shaft if self.outputs else None
             self._require_balance_of_each_shaft()
-        else:
-            ratios = {name: float(ratio) for name, ratio in self.train.ratios.items()}
-            first = next(iter(ratios))
-            if any(output.shaft == first for output in self.outputs):
+        for output in self.outputs if self.gear_pairs else ():
+            if output.shaft == self.train.pairs[0].driver:
                 raise CouplingError(
-                    f"an output on shaft {first!r}; expected a shaft other than {first!r}, where the torque comes in"
+                    f"an output on shaft {output.shaft!r}; expected a shaft other than {output.shaft!r}, where the "
+                    "torque comes in"
                 )
-        require_balanced_outputs(ratios, self.torque, self.outputs)
-        if first is None or self.torque == 0.0:
-            return ()
-        sense = copysign(1.0, self.speed)
-        found = [Torque(first, self.torque_at, sense * self.torque)]
-        for output, torque in shared_torques(self.train, ratios, self.torque, self.outputs):
-            at = self.shaft(output.shaft).rotor.length if output.at is None else output.at
-            against = -sense * copysign(1.0, ratios[output.shaft])
-            found.append(Torque(output.shaft, at, against * torque))
-        return tuple(found)
+        require_balanced_outputs(self.train, self.torque, self.outputs)
+        ends = {shaft.name: shaft.rotor.length for shaft in self.shafts}
+        applied = self.train.applied_torques(self.torque, self.speed, self.outputs, self.torque_at)
+        return tuple(Torque(one.shaft, ends[one.shaft] if one.at is None else one.at, one.torque) for one in applied)
 
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
         """Mean torque that each pair takes off its driver [N m], positive where power flows to the driven gear."""
-        if not self.gear_pairs:
-            return ()
-        sense = copysign(1.0, self.speed)
-        along = dict.fromkeys(self.train.ratios, 0.0)
-        for torque in self.constant_torques:
-            along[torque.rotor] += torque.value * sense * copysign(1.0, self.train.ratios[torque.rotor])
-        return self.train.pair_torques(along)
+        applied = [AppliedTorque(one.rotor, one.at, one.value) for one in self.constant_torques]
+        return self.train.mean_pair_torques(applied, self.speed)
 
     def shaft(self, name: str) -> Shaft:
         """Return the shaft of this name."""
@@ -205,19 +190,18 @@ class Machine:
 
     def rotor(self, name: str) -> Rotor:
         """Return a shaft's rotor with its gears as discs."""
-        rotor = self.shaft(name).rotor
-        rigid = [(gear.at, *gear.mass_and_inertias) for gear in self.gears if gear.shaft == name]
-        discs = [Disc(*one) for one in rigid if any(one[1:])]
-        return Rotor(rotor.name, rotor.segments, [*rotor.discs, *discs], rotor.mass_model)
+        return rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
 
     def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
         """Contact law of every gear pair, and its static mesh under the mean torque."""
         found = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
-            driver, driven = self._gears_of(pair)
-            inertias = self._inertia_at(driver), self._inertia_at(driven)
-            speed = self.speeds[driver.shaft]
-            found.append(load_gear_pair(pair, geometry, torque=torque, inertias=inertias, speed=speed))
+            driver, driven = (
+                inertia_with_discs(gear, self.shaft(gear.shaft).rotor, self._gears_on(gear.shaft))
+                for gear in self._gears_of(pair)
+            )
+            speed = self.speeds[self._gears_of(pair)[0].shaft]
+            found.append(load_gear_pair(pair, geometry, torque=torque, inertias=(driver, driven), speed=speed))
         return tuple(found)
 
     def rotor_components(
@@ -521,28 +505,24 @@ class Machine:
             )
         if len(self.shafts) == 1 or any(output.torque is None for output in self.outputs):
             return
-        for place, name in enumerate(dict.fromkeys(output.shaft for output in self.outputs)):
-            entering = self.torque if place == 0 else 0.0
-            taken = sum(output.torque or 0.0 for output in self.outputs if output.shaft == name)
-            if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
-                raise CouplingError(
-                    f"shaft {name!r} takes in {entering:g} N m and gives out {taken:g} N m; expected torques that "
-                    f"balance on shaft {name!r}, as no gear pair leads to or from it"
-                )
+        for one in imbalances_of_shafts(self.torque, self.outputs):
+            raise CouplingError(
+                f"shaft {one.shaft!r} takes in {one.entering:g} N m and gives out {one.leaving:g} N m; expected "
+                f"torques that balance on shaft {one.shaft!r}, as no gear pair leads to or from it"
+            )
 
     def _require_power_flow(self) -> None:
         """Refuse pairs whose driven gear drives the driver, and braked pairs without back flanks."""
-        least = _NO_TORQUE * abs(self.torque)
-        sense = copysign(1.0, self.torque)
-        if self.torque == 0.0:
-            return
-        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
-            if sense * torque < -least:
+        flanks = carrying_flanks(self.pair_torques, self.torque)
+        for pair, geometry, torque, flank in zip(
+            self.gear_pairs, self.pair_geometries, self.pair_torques, flanks, strict=True
+        ):
+            if flank == "driven":
                 raise CouplingError(
-                    f"{pair_label(pair)}: {-sense * torque:g} N m flow from {pair.driven!r} to {pair.driver!r}; "
+                    f"{pair_label(pair)}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
                     "expected power to flow from driver to driven; swap the two names"
                 )
-            if torque < -least and pair.backlash_of(geometry) is None:
+            if flank == "back" and pair.backlash_of(geometry) is None:
                 raise CouplingError(
                     f"{pair_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by "
                     "the back flanks, which never meet without one"
@@ -557,7 +537,7 @@ class Machine:
         if shaft.rotor.mass_model == "distributed":
             # A lumped rotor has no more modes than its masses allow.
             limit, count = None if limit is None else reach * limit, None if count is None else round(reach * count)
-        gears = [gear for gear in self.gears if gear.shaft == shaft.name]
+        gears = self._gears_on(shaft.name)
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
         pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
         pushed_at += [mounted.bearing.at for mounted in held if isinstance(mounted.law, RollingLaw)]
@@ -593,6 +573,9 @@ class Machine:
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 
+    def _gears_on(self, shaft: str) -> list[ShaftGear]:
+        return [gear for gear in self.gears if gear.shaft == shaft]
+
     def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
         """Driver and driven gear of a pair."""
         gears = {gear.name: gear for gear in self.gears}
@@ -603,17 +586,6 @@ class Machine:
             MountedGear(one.name, one.shaft, one.at, self.shaft(one.shaft).axis) for one in self._gears_of(loaded.pair)
         )
         return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
-
-    def _inertia_at(self, gear: ShaftGear) -> float:
-        """Polar inertia of a gear with the discs at its station [kg m²]; of its whole rotor where that is nothing."""
-        rotor = self.shaft(gear.shaft).rotor
-        inertia = gear.mass_and_inertias[1]
-        inertia += sum(
-            disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length
-        )
-        if inertia == 0.0:
-            inertia = self.rotor(gear.shaft).polar_inertia
-        return inertia if inertia > 0.0 else gear.gear.polar_inertia
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:

@@ -90,7 +90,7 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     held = system.stiffness + stiffest * rigid @ rigid.T
     directions = system.contact_directions[:, driving]
     laws = [system.contacts[number].contact for number in driving]
-    stiffness = np.array([law.mean_mesh_stiffness for law in laws])
+    stiffness = np.array([law.unloaded_mean_mesh_stiffness for law in laws])
     offset = np.array([system.contacts[number].clearance for number in driving])
     before = np.full(len(driving), np.nan)
     loaded = np.ones(len(driving), dtype=bool)

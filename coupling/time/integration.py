@@ -345,7 +345,7 @@ class Integration:
         """
         for contact, peak in zip(self.system.contacts, peaks.tolist(), strict=True):
             compression = max(
-                float(contact.direction @ q) - contact.clearance, peak / contact.contact.mean_mesh_stiffness
+                float(contact.direction @ q) - contact.clearance, peak / contact.contact.unloaded_mean_mesh_stiffness
             )
             if compression > contact.compression_limit:
                 raise DeflectionError(

@@ -95,7 +95,6 @@ from gearwhine.case.rotors import (
     UnbalanceResponse,
 )
 from gearwhine.case.speeds_and_torques import (
-    AppliedTorque,
     applied_torques,
     campbell_speeds,
     gears_on,
@@ -112,7 +111,6 @@ from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 __all__ = [
     "SPEED_KEY",
     "Align",
-    "AppliedTorque",
     "AxialDashpots",
     "AxialSprings",
     "Base",

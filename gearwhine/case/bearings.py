@@ -314,7 +314,7 @@ _DAMPINGS = (units.DAMPING, units.COUPLED_DAMPING, units.TILT_DAMPING)
 
 
 def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> MatrixRows:
-    """Validate a 5×5 matrix of quantities over (x, y, z, tilt about x, tilt about y), none negative on its diagonal."""
+    """Validate a 5x5 matrix of quantities over (x, y, z, tilt about x, tilt about y), none negative on its diagonal."""
     rows = value if isinstance(value, (list, tuple)) else ()
     if len(rows) != 5 or any(not isinstance(row, (list, tuple)) or len(row) != 5 for row in rows):
         raise wrong("five rows of five, over x, y, z and the tilts about x and y")
@@ -328,7 +328,7 @@ def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> M
 
 
 class _Matrix(Table):
-    """A 5×5 matrix over (x, y, z, tilt about x, tilt about y)."""
+    """A 5x5 matrix over (x, y, z, tilt about x, tilt about y)."""
 
     matrix: MatrixRows
 
@@ -340,7 +340,7 @@ class _Matrix(Table):
 
 
 class MatrixStiffness(_Matrix):
-    """A 5×5 stiffness over (x, y, z, tilt about x, tilt about y): N/m, N/rad and N m/rad."""
+    """A 5x5 stiffness over (x, y, z, tilt about x, tilt about y): N/m, N/rad and N m/rad."""
 
     @field_validator("matrix", mode="before")
     @classmethod
@@ -349,7 +349,7 @@ class MatrixStiffness(_Matrix):
 
 
 class MatrixDamping(_Matrix):
-    """A 5×5 damping over (x, y, z, tilt about x, tilt about y): N s/m, N s/rad and N m s/rad."""
+    """A 5x5 damping over (x, y, z, tilt about x, tilt about y): N s/m, N s/rad and N m s/rad."""
 
     @field_validator("matrix", mode="before")
     @classmethod

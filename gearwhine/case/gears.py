@@ -487,11 +487,12 @@ def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]])
     ]
 
 
-def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]]) -> GearTrain:
-    """Return the gear train of pairs, see :func:`readable_pairs`."""
-    # The package brings numpy and scipy: only a case with gear pairs waits for them.
+def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = ()) -> GearTrain:
+    """Return the gear train of pairs, see :func:`readable_pairs`; without pairs that of single shafts."""
+    # The package brings numpy and scipy: only a case that turns waits for them.
     from coupling.machine.gear_train import GearedShafts, gear_train
 
-    return gear_train(
+    geared = [
         GearedShafts(shaft_of(driver), shaft_of(driven), (driver.teeth, driven.teeth)) for _, driver, driven in pairs
-    )
+    ]
+    return gear_train(geared, shafts)

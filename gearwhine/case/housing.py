@@ -309,7 +309,7 @@ class Housing(Table):
     """`[housing]`: geometry (exactly one of box, cad, mesh), material, damping and the modes wanted.
 
     `damping_ratio` is one ratio for all modes, a ratio per mode, or a table from frequency (text with
-    unit, see `damping_points`) to ratio. `frequency_limit` is in Hz.
+    unit, see `damping_points`) to ratio. `frequency_limit` is in Hz. `solver` is the eigensolver of the modes.
     """
 
     material: Name
@@ -321,6 +321,7 @@ class Housing(Table):
     ] = 0.01
     frequency_limit: PositiveFrequency | None = None
     modes: Annotated[int, Whole(1, 5000)] | None = None
+    solver: Literal["lanczos", "eigsh"] = "lanczos"
     box: Box | None = None
     cad: CadFile | None = None
     mesh: MeshFile | None = None

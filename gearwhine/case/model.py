@@ -7,6 +7,7 @@ resolved case: defaults included, every quantity with its unit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -95,6 +96,14 @@ class Case(Table):
     def seat_named(self, name: str) -> Seat:
         """Return the housing's seat of this name; KeyError where there is none."""
         return _named(self.housing.seat if self.housing else (), name)
+
+    def centre_distance(self, pair: GearPair) -> float | None:
+        """Return the distance of a pair's shafts [m]: of the rotors' axes, else as given; None: without backlash."""
+        rotors = self.gear_named(pair.driver).rotor, self.gear_named(pair.driven).rotor
+        if rotors[0] is None or rotors[1] is None:
+            return pair.centre_distance
+        first, second = (self.rotor_named(name).axis for name in rotors if name is not None)
+        return math.hypot(second[0] - first[0], second[1] - first[1])
 
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""

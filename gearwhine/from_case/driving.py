@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from coupling import SpeedProfile, Torque
 from coupling.machine.components import RotorComponent
+from coupling.machine.gear_train import AppliedTorque
 from coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
 from coupling.machine.parts import Driving
 from coupling.time.speed_profile import free_speed
-from gearwhine.case import AppliedTorque, Case, TorqueLine, applied_torques, speed_ratios
+from gearwhine.case import Case, TorqueLine, applied_torques, speed_ratios
 
 FloatArray = npt.NDArray[np.float64]
 

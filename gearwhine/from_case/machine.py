@@ -9,14 +9,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Output, Shaft, ShaftGear
+from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Shaft
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
 from coupling.machine.components import HousingComponent, housing_component
 from gearwhine.case import Case, Rotor, require
 from gearwhine.from_case.driving import driving
 from gearwhine.from_case.gear_pairs import build_pair, solve_gears
-from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear, gear_inertia
+from gearwhine.from_case.rotors import bearing_law, build_bearings, shaft_gears
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, base_participation, solve_housing
 from housing import ModeSet
@@ -149,15 +149,11 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
     return Machine(
         shafts=[_shaft(case, given) for given in case.rotor],
         bearings=bearings,
-        gears=[
-            ShaftGear(build_gear(case, gear), gear.rotor, gear.at, gear_inertia(case, gear))
-            for gear in case.gear
-            if gear.rotor is not None and gear.at is not None
-        ],
+        gears=[gear for given in case.rotor for gear in shaft_gears(case, given.name)],
         gear_pairs=[build_pair(given, number) for number, given in enumerate(case.gear_pair)],
         speed=operation.speed,
         torque=operation.torque,
-        outputs=[Output(output.rotor, output.torque, output.at) for output in operation.output],
+        outputs=[output.build() for output in operation.output],
         housing=housing,
         torque_at=operation.at or 0.0,
     )

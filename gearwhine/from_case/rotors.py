@@ -6,16 +6,19 @@ Rolling bearings are linearised about their equilibrium under load.
 import numpy as np
 import numpy.typing as npt
 
-from coupling import RollingLaw
+from coupling import RollingLaw, ShaftGear
 from coupling.gears import Gear
 from coupling.machine.connectors import BearingLaw
+from coupling.machine.parts import rotor_with_gears
 from gearwhine.case import Bearing, Case, CaseError, Problem, RollingStiffness, StopStiffness
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
 from gearwhine.case.errors import UNSAID
 from rotors import Bearing as RotorBearing
-from rotors import Disc, EquilibriumError, Rotor, RotorError
+from rotors import EquilibriumError, Rotor, RotorError
 from rotors import rolling_bearings as rolling
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def build_gear(case: Case, given: GivenGear) -> Gear:
@@ -28,19 +31,18 @@ def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
     return given.inertia(case.material_of_gear(given))
 
 
+def shaft_gears(case: Case, rotor: str) -> list[ShaftGear]:
+    """Build the gears on a rotor of the case, in the order of the file."""
+    return [
+        ShaftGear(build_gear(case, gear), rotor, gear.at, gear_inertia(case, gear))
+        for gear in case.gear
+        if gear.rotor == rotor and gear.at is not None
+    ]
+
+
 def build_rotor(case: Case, given: GivenRotor) -> Rotor:
     """Build a rotor of the case, its gears on it as discs."""
-    bare = given.build(case.material)
-    discs = list(bare.discs)
-    for gear in case.gear:
-        if gear.rotor == given.name and gear.at is not None:
-            inertia = gear_inertia(case, gear)
-            if any(inertia):
-                discs.append(Disc(gear.at, *inertia))
-    return Rotor(bare.name, bare.segments, discs, bare.mass_model)
-
-
-FloatArray = npt.NDArray[np.float64]
+    return rotor_with_gears(given.build(case.material), shaft_gears(case, given.name))
 
 
 def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:

@@ -1,11 +1,12 @@
-"""Warnings of gear geometry: teeth with a thin tip, or undercut."""
+"""Warnings of gear geometry: teeth with a thin tip, or undercut; a backlash that the teeth do not leave."""
 
 from coupling.gears import GearPairGeometry
 from coupling.gears.errors import ThinTipError
 from coupling.gears.geometry.gear import require_tip_thickness
+from coupling.gears.loaded.gear_pair import GearPair
 
 
-def geometry_warnings(geometry: GearPairGeometry) -> list[dict[str, str]]:
+def geometry_warnings(pair: GearPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
     """Warnings of what runs but is not as it should be."""
     found = []
     for gear in (geometry.driver, geometry.driven):
@@ -20,4 +21,5 @@ def geometry_warnings(geometry: GearPairGeometry) -> list[dict[str, str]]:
                 f"{gear.least_generating_shift + gear.profile_shift - gear.generating_shift:.4g} avoids it"
             )
             found.append({"name": "undercut", "message": message})
-    return found
+    backlash = pair.backlash_warning(geometry)
+    return found if backlash is None else [*found, {"name": "backlash", "message": backlash}]

@@ -345,6 +345,7 @@ def _solve_modes(
             count=given.modes,
             ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
             port_orders=RESPONSE_ORDERS,
+            solver=given.solver,
             progress=progress,
         )
     except HousingError as error:

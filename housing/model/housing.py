@@ -371,7 +371,9 @@ class HousingModes:
 
 
 def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
-    """Return a seat's motions x, y, z and rotations about x, y at a distance from its centre [m], shape (5, 3 n_nodes).
+    """Return the port of a bearing: motions x, y, z and rotations about x, y from the nodes', shape (5, 3 n_nodes).
+
+    They are those of its seat at a distance from its centre [m]. The transpose spreads a bearing force over the nodes.
 
     Any bearing can load these; none loads the rotation about z, in which the shaft turns.
     """

@@ -274,7 +274,7 @@ def nearest_modes(
     threads: int = 1,
     tolerance: float | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Find the modes nearest to a shift on one side of it by the eigensolver that is asked for.
+    """Choose the eigensolver by its name, and find the modes nearest to a shift on one side of it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Bearings as linear springs and dashpots: 2×2 or 5×5 matrices, pedestals, supports in one plane, axis springs.
+"""Bearings as linear springs and dashpots: 2x2 or 5x5 matrices, pedestals, supports in one plane, axis springs.
 
 A `Bearing` holds the shaft in both planes by its stiffness and damping matrices, over speed where they are tables, and
 may stand on a `Pedestal`. A `RadialSupport` is a spring to ground in one plane. An `AxisSpring` is an axial or a

@@ -4,7 +4,7 @@
     state = rolling_equilibrium(RollingBearing([row]), [1000.0, 0.0, 0.0, 0.0, 0.0])
     bearing = linearised_bearing(state, "drive end", at=0.02)
 
-A state carries the displacement, the 5×5 tangent stiffness, each element's load, contact angles and pressures, and the
+A state carries the displacement, the 5x5 tangent stiffness, each element's load, contact angles and pressures, and the
 residual of its equilibrium. `RollingElements` is the energy of the elements at any displacement, with reaction and
 tangent, for the equilibrium of a whole machine; `rolling_state` is the state at a displacement found so.
 `catalogue_row` estimates a row from bore, outer diameter and width; `paired` sets two against each other. Coordinates

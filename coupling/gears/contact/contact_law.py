@@ -1,5 +1,7 @@
 r"""Tooth contact law of a gear pair: contact force, mesh stiffness and stored energy by the compression of the mesh.
 
+:class:`ToothContact` holds the law; :func:`coupling.gears.contact.tooth_force_kernels.tooth_force` evaluates its force.
+
 At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j all whole numbers with positions
 in the range of contact.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, its gap in
 nominal motion.  With the compression ``delta`` of the mesh along the line of action and its rate ``v``:
@@ -25,7 +27,8 @@ Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the
 (:mod:`coupling.gears.geometry.pitch_deviations`).  It is constant while the pair is in contact, so ``dU/dp``, at a
 fixed delta ``sum_j 1/2 dk'/dp (x - d_j)^2 - k' (x - d_j) dd/dp``, keeps its form, and repeats with the hunting period.
 
-The idle flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
+Backlash is two one-sided contacts, of the drive flanks and of the back flanks, each with this law; between them lies a
+clearance. The back flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
 motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign; their own
 pitch gaps come with `ToothContact.back_flanks`.
 
@@ -124,10 +127,10 @@ class ToothContact:
     damping : float
         Damping coefficient while the mesh is compressed [N s/m].
     back_flank_offset : float
-        Phase of the idle flanks, see `GearPairGeometry.back_flank_offset`.
+        Phase of the back flanks, see `GearPairGeometry.back_flank_offset`.
     pitch_gaps, back_pitch_gaps : ndarray, shape (h,)
-        Gap by pitch deviations of the pair that enters at phase n, at n mod h [m], on the working and on the idle
-        flanks; empty for none.
+        Gap by pitch deviations of the pair that enters at phase n, at n mod h [m], on the working and on the
+        back flanks; empty for none.
     damping_depth : float
         Compression up to which the damping fades in [m]; 0 for full damping at first touch.
     variants : tuple of ToothPairCurves
@@ -261,8 +264,8 @@ class ToothContact:
         return max(1, self.hunting_numbers)
 
     @cached_property
-    def mean_mesh_stiffness(self) -> float:
-        """Mean mesh stiffness over a mesh period, with all pairs on the path in contact [N/m]."""
+    def unloaded_mean_mesh_stiffness(self) -> float:
+        """Mean mesh stiffness over a mesh period, with all pairs on the path in contact, whatever the load [N/m]."""
         inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]
         if self.shared_compliance == 0.0:
             on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
@@ -329,7 +332,7 @@ class ToothContact:
 
     @property
     def back_flank_event_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) at which a pair of idle flanks would enter or leave, ascending."""
+        """Phases in [0, 1) at which a pair of back flanks would enter or leave, ascending."""
         return tuple(sorted((self.back_flank_offset - phase) % 1.0 for phase in self.event_phases))
 
     @property
@@ -345,7 +348,7 @@ class ToothContact:
 
     @property
     def back_flanks(self) -> ToothContact:
-        """Contact law of the idle flanks by their own phase: the same law with the gaps and kinds of their own pairs.
+        """Contact law of the back flanks by their own phase: the same law, with gaps and variants of their own pairs.
 
         A helical face passes through the mesh from its other end.
         """

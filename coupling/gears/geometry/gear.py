@@ -127,7 +127,7 @@ class Gear:
         working pitch circle [m].  One for each tooth in the order in which they come into mesh, tooth 0 at
         phase 0; none for a perfect pitch.  Positive where the working flank stands ahead, so that it touches
         early: a driver's tooth displaced in the sense of its rotation, a driven gear's against it.  The whole
-        tooth is displaced, so its idle flank is behind by as much.  Each mesh of a gear counts from its own
+        tooth is displaced, so its back flank is behind by as much.  Each mesh of a gear counts from its own
         tooth 0, and reads the signs for its own working flanks.
     profile_deviation : ProfileDeviation or None
         Deviation of the profile of all flanks from its design.

@@ -37,6 +37,11 @@ angle and helix angle of a pair agree within it, and a backlash of less, in modu
 _ALLOWED_JAM = 0.01
 
 
+def mesh_frequency(speed: float, teeth: int) -> float:
+    """Tooth-mesh frequency [Hz] of a gear with this number of teeth at a speed [rad/s] of either sign."""
+    return abs(speed) * teeth / (2.0 * math.pi)
+
+
 @dataclass(frozen=True)
 class GearPairGeometry:
     """A driver and a driven gear on parallel shafts.
@@ -126,7 +131,7 @@ class GearPairGeometry:
 
     @property
     def backlash(self) -> float:
-        """Backlash: gap of the idle flanks along their line of action, in the transverse plane [m].
+        """Backlash: gap of the back flanks along their line of action, in the transverse plane [m].
 
         From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
         teeth would jam.
@@ -147,7 +152,7 @@ class GearPairGeometry:
 
     @property
     def normal_backlash(self) -> float:
-        """Normal backlash, the shortest distance of the idle flanks [m]: ``backlash cos(beta_b)``."""
+        """Normal backlash, the shortest distance of the back flanks [m]: ``backlash cos(beta_b)``."""
         return self.backlash * math.cos(self.driver.base_helix_angle)
 
     @property
@@ -190,10 +195,10 @@ class GearPairGeometry:
 
     @property
     def back_flank_offset(self) -> float:
-        """Phase ``b`` such that the idle flanks' pairs are at ``s = frac(b - p) + j``, in 0 ... 1.
+        """Phase ``b`` such that the back flanks' pairs are at ``s = frac(b - p) + j``, in 0 ... 1.
 
-        The idle flanks are the mirror image of the working ones in the line of centres, running backwards:
-        they touch the driver's tip first.  A tooth whose working flank is at ``xi`` has its idle flank at
+        The back flanks are the mirror image of the working ones in the line of centres, running backwards:
+        they touch the driver's tip first.  A tooth whose working flank is at ``xi`` has its back flank at
         ``2 rb_k (w + psi_k) - xi``, ``psi_k`` half its angle on the base circle.
         """
         return self._back_flank_shift % 1.0
@@ -204,9 +209,9 @@ class GearPairGeometry:
         return n % self.driver.teeth, n % self.driven.teeth
 
     def mating_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
-        """Mating teeth of the idle flanks in the pairs that enter at whole phases `number` of the idle flanks.
+        """Mating teeth of the back flanks in the pairs that enter at whole phases `number` of the back flanks.
 
-        With B the offset before its whole periods are dropped, the idle flank of driver tooth n is at
+        With B the offset before its whole periods are dropped, the back flank of driver tooth n is at
         ``s = B - p + n`` and so belongs to the pair that enters at ``-n - floor(B)`` of ``frac(B) - p``.  Its mate is
         the driven tooth that follows, n + 1: n itself is on the other side.
         """
@@ -262,7 +267,7 @@ class GearPairGeometry:
 
     @property
     def _back_flank_shift(self) -> float:
-        """Sum of the positions of a driver tooth's working and idle flanks when it enters at phase 0 [base pitches]."""
+        """Sum of the positions of a driver tooth's working and back flanks when it enters at phase 0 [base pitches]."""
         sum_of_distances = 2.0 * self.driver.base_radius * (self.working_pressure_angle + self.driver.base_half_angle)
         return (sum_of_distances - 2.0 * self.start_distance) / self.base_pitch
 

@@ -16,7 +16,7 @@ from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
 from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry
+from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency
 from coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, loaded_transmission_error
 from coupling.gears.stiffness.crack import ToothCrack
 from coupling.gears.stiffness.models import (
@@ -271,11 +271,11 @@ def load_gear_pair(
     )
     static = loaded_transmission_error(contact, force)
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
-    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.mean_mesh_stiffness
+    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.unloaded_mean_mesh_stiffness
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
-    contact = contact.with_damping(damping, _FADING * force / contact.mean_mesh_stiffness)
+    contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
     hunting = hunting_period_mesh(contact, force) if contact.hunting_period > 1 else None
-    frequency = None if speed is None else abs(speed) * geometry.driver.teeth / (2.0 * math.pi)
+    frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
     return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
 
 
