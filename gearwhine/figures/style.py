@@ -6,10 +6,14 @@ from contextlib import contextmanager
 from math import pi
 from pathlib import Path
 from textwrap import wrap
+from typing import TypeVar
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+Kind = TypeVar("Kind")
 
 INK, BLUE, RED, GREY, PALE = "#202428", "#1f5a96", "#b5382a", "#8a9097", "#e4e7ea"
 SERIES = (BLUE, "#c77d1e", "#3b7d4f", "#7a4f9a", "#5b6770", "#a3485f", "#2a8c8c", "#8c6d1f")
@@ -70,6 +74,20 @@ def panel_size(axes: Axes) -> tuple[float, float]:
     across, up = figure.get_size_inches()
     place = axes.get_position()
     return place.width * float(across) * MM_PER_INCH, place.height * float(up) * MM_PER_INCH
+
+
+def mark_operation(axes: Axes, speed: float, line: str) -> Line2D:
+    """Draw the operating speed [rad/s] as a line in a given style across a diagram over speed in rpm."""
+    return axes.axvline(RPM * abs(speed), color=INK, lw=0.8, ls=line, zorder=1, label="operation")
+
+
+def stretches(kinds: Sequence[Kind]) -> Iterator[tuple[slice, Kind]]:
+    """Yield the stretches of a curve whose samples share one kind: slices that overlap in one sample, and the kind."""
+    start = 0
+    for end in range(1, len(kinds) + 1):
+        if end == len(kinds) or kinds[end] != kinds[start]:
+            yield slice(start, end + 1), kinds[start]
+            start = end
 
 
 def legend(figure: Figure, handles: Sequence[Artist]) -> None:
