@@ -1,4 +1,4 @@
-"""Compilation of kernels by numba, the decorators :func:`counted`, :func:`uncounted` and :func:`inner`, and their cache.
+"""Compilation of kernels by numba: decorators :func:`counted`, :func:`uncounted` and :func:`inner`, and the cache.
 
 Importing this module imports numba.
 
