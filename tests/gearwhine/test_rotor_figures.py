@@ -26,7 +26,7 @@ from gearwhine.figures import (
     save,
 )
 from gearwhine.figures.labels import spread
-from gearwhine.figures.rotors.whirl_shapes import local_direction
+from gearwhine.figures.rotors.mode_shapes import local_direction
 
 STEEL = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
 ALUMINIUM = rotors.ShaftMaterial(70e9, 26e9, 2700.0)

@@ -10,7 +10,12 @@ from gearwhine.case import Case, RollingStiffness, Segment
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.rotors.campbell import draw_campbell
 from gearwhine.figures.rotors.critical_speed_map import draw_critical_map
-from gearwhine.figures.rotors.mode_shapes import draw_lateral_modes, draw_static_deflection, draw_torsional_modes
+from gearwhine.figures.rotors.mode_shapes import (
+    draw_lateral_modes,
+    draw_static_deflection,
+    draw_torsional_modes,
+    draw_whirl_modes,
+)
 from gearwhine.figures.rotors.responses import (
     ProbeResponse,
     TorsionalReading,
@@ -18,7 +23,6 @@ from gearwhine.figures.rotors.responses import (
     draw_unbalance_response,
 )
 from gearwhine.figures.rotors.shaft import draw_shaft
-from gearwhine.figures.rotors.whirl_shapes import draw_whirl_modes
 from gearwhine.figures.style import shortened
 from gearwhine.from_case.rotors import build_gear, gear_inertia
 from gearwhine.output import file_stems
