@@ -10,7 +10,7 @@ from gearwhine.from_case import mesh_health
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import COMPARISON, comparison_document, responses_document, survey_document
 from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison, write_response_correlation

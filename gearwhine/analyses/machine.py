@@ -10,7 +10,7 @@ from gearwhine.case import Case, swept_keys
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import basis_error, solve_machine
 from gearwhine.output.dataset import labelled
-from gearwhine.output.warnings import add_warnings, joined, warning
+from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document

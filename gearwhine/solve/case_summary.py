@@ -13,7 +13,7 @@ from gearwhine.from_case.mesh import material_of
 from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gear_warnings import geometry_warnings
 from rotors import Rotor as BuiltRotor
