@@ -16,7 +16,6 @@ from coupling.linear.campbell import SystemCampbell
 from coupling.linear.frequency_response import FrequencyResponse
 from coupling.signals.excitation import ExcitationLine
 from gearwhine.case import Case, mesh_frequencies
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -29,6 +28,9 @@ from gearwhine.figures.style import (
     RED,
     RPM,
     SERIES,
+    Label,
+    arrange,
+    draw_row,
     legend,
     mark_operation,
     panel,

@@ -13,7 +13,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -26,6 +25,9 @@ from gearwhine.figures.style import (
     RED,
     RPM,
     SERIES,
+    Label,
+    arrange,
+    draw_row,
     legend,
     mark_operation,
     panel,

@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Polygon, Rectangle
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
 from gearwhine.figures.rotors.assembly import DrawnGear, RotorAssembly
 from gearwhine.figures.style import (
     FOOT,
@@ -24,6 +23,10 @@ from gearwhine.figures.style import (
     INK,
     PANEL_WIDTH,
     RED,
+    Label,
+    LabelRow,
+    arrange,
+    draw_row,
     legend,
     name_in_legend,
     panel,
