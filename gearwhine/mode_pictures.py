@@ -56,7 +56,7 @@ def check_request(
 
         find_renderer()
     if mode_format == "mp4":
-        from housing.pictures.animations import find_encoder
+        from housing.pictures.images import find_encoder
 
         find_encoder()
 
