@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from gearwhine.study import Study as Study
     from gearwhine.study import build as build
     from gearwhine.study import load as load
+    from housing import STEEL as STEEL
     from housing import Housing as Housing
     from housing import HousingError as HousingError
     from housing import Joint as Joint
@@ -72,7 +73,18 @@ _HOMES = {
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
     "gearwhine.study": ("Study", "build", "load"),
-    "housing": ("Housing", "HousingError", "Joint", "LumpedMass", "Material", "Mount", "Seat", "Sensor", "Support"),
+    "housing": (
+        "Housing",
+        "HousingError",
+        "Joint",
+        "LumpedMass",
+        "Material",
+        "Mount",
+        "STEEL",
+        "Seat",
+        "Sensor",
+        "Support",
+    ),
     "meshes": ("GeometryError",),
     "rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
 }

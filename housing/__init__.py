@@ -32,6 +32,7 @@ from housing.model.fixtures import attach_fixtures as attach_fixtures
 from housing.model.housing import Housing as Housing
 from housing.model.housing import HousingModes as HousingModes
 from housing.model.housing import cover_joints as cover_joints
+from housing.model.material import STEEL as STEEL
 from housing.model.material import Material as Material
 from housing.model.patches import Patch as Patch
 from housing.model.seats import Seat as Seat

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rotors.errors import require, require_finite
-from rotors.model.material import Section, ShaftMaterial, ShearFormula
+from rotors.model.material import ElasticMaterial, Section, ShearFormula
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -116,7 +116,7 @@ class Segment:
     length: float
     outer_diameter: float
     inner_diameter: float
-    material: ShaftMaterial
+    material: ElasticMaterial
     shear_coefficient: ShearFormula | float = "cowper"
     right_outer_diameter: float | None = None
     right_inner_diameter: float | None = None
