@@ -121,8 +121,7 @@ def _tell(document: dict[str, Any]) -> None:
 
 def _draw(desk: Path) -> list[str]:
     """Do the task that lies on the desk."""
-    from housing.pictures.animations import animate_shapes
-    from housing.pictures.images import render_shapes, render_sheet
+    from housing.pictures.images import animate_shapes, render_shapes, render_sheet
 
     task = json.loads((desk / "task.json").read_text(encoding="utf-8"))
     with np.load(desk / "arrays.npz", allow_pickle=False) as arrays:

@@ -56,7 +56,7 @@ def check_request(
 
         find_renderer()
     if mode_format == "mp4":
-        from housing.pictures.animations import find_encoder
+        from housing.pictures.images import find_encoder
 
         find_encoder()
 
@@ -157,8 +157,8 @@ def draw_measured(
     """
     from gearwhine.figures import ShapePair, draw_measured_shapes, save
     from gearwhine.solve.comparison import mapped_shapes, read_measured
+    from housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
     from housing.pictures.scene import viewing_direction
-    from housing.pictures.survey_wireframe import laid_over, point_motions, wireframe
 
     measured = read_measured(case)
     if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:

@@ -17,7 +17,6 @@ ten digits.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +27,14 @@ from coupling.linear.eigenpairs import refine_pair
 from coupling.machine.assembly import CoupledMachine
 from coupling.signals.excitation import ExcitationLine, excitation_lines
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
-from rotors.numerics.branch_following import BranchPoint, extended_branches, paired_modes, refined_crossing
+from rotors.numerics.branch_following import (
+    BranchPoint,
+    along_branches,
+    extended_branches,
+    order_intervals,
+    paired_modes,
+    refined_crossing,
+)
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -310,17 +316,17 @@ def system_campbell(
         branches = extended_branches(branches, partner, here.modes.values.size)
         known.append(here)
         progress((number + 1) / stand_in.size)
-    sizes = np.abs(_along(branches, [one.modes.values for one in known], np.nan))
+    sizes = np.abs(along_branches(branches, [one.modes.values for one in known], np.nan))
     table = branches[:, np.any(sizes < frequency_limit, axis=0)]
-    eigenvalues = _along(table, [one.modes.values for one in known], complex(np.nan, np.nan))
-    kinds, where = (_along(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where"))
-    whirl, teeth = (_along(table, [getattr(one, key) for one in known], np.nan) for key in ("whirl", "teeth"))
+    eigenvalues = along_branches(table, [one.modes.values for one in known], complex(np.nan, np.nan))
+    kinds, where = (
+        along_branches(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where")
+    )
+    whirl = along_branches(table, [one.whirl for one in known], np.nan)
+    teeth = along_branches(table, [one.teeth for one in known], np.nan)
     crossings, unsettled = [], []
     for line in chosen:
-        gap = eigenvalues.imag - line.order * np.abs(stand_in)[:, None]
-        for left, branch in np.argwhere((gap[:-1] > 0.0) != (gap[1:] > 0.0)):
-            if not np.all(np.isfinite(gap[left : left + 2, branch])):
-                continue
+        for left, branch in order_intervals(eigenvalues.imag, line.order, stand_in):
             ends = [(known[i].modes, int(table[i, branch])) for i in (left, left + 1)]
             found = order_crossing(machine, line.order, ends, state)
             if found is None:
@@ -332,9 +338,9 @@ def system_campbell(
                 continue
             speed, value = found
             if abs(value) < frequency_limit:
-                at = int(left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1)
+                at = left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1
                 named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
-                crossings.append(SystemCrossing(speed, line, value, int(branch), *named))
+                crossings.append(SystemCrossing(speed, line, value, branch, *named))
     return SystemCampbell(
         speeds=leading_speeds,
         eigenvalues=eigenvalues,
@@ -376,12 +382,3 @@ def _described(machine: CoupledMachine, speed: float, limit: float, contact: Con
         whirl=modes.whirl[chosen, most],
         teeth=modes.shares.strain[chosen][:, contacts].sum(axis=1),
     )
-
-
-def _along(table: npt.NDArray[np.intp], values: Sequence[npt.NDArray[Any]], missing: Any) -> npt.NDArray[Any]:
-    """Values of the modes at each speed along the branches, (s, b)."""
-    columns = [
-        np.where(row >= 0, of[np.maximum(row, 0)] if of.size else missing, missing)
-        for row, of in zip(table, values, strict=True)
-    ]
-    return np.array(columns).reshape(table.shape)

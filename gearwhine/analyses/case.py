@@ -68,7 +68,7 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
 def report_case(case: Case, folder: Path) -> dict[str, Any]:
     """Write the results in a folder as one HTML page, which marks those that no longer fit the case."""
     from gearwhine.output.html import report_page
-    from gearwhine.results.chapters import chapters_of
+    from gearwhine.results import chapters_of
 
     page = report_page(folder, chapters_of, case)
     with staging(folder) as place:

@@ -17,7 +17,7 @@ from gearwhine.from_case.machine import basis_error, build_machine, reduce_housi
 from gearwhine.mode_pictures import draw_modes
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
-from gearwhine.output.warnings import add_warnings, joined
+from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import comparison_document
 from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison

@@ -290,7 +290,7 @@ class LumpedMass(Patch):
     def build(self) -> BuiltMass:
         """Build the lumped mass."""
         from housing import LumpedMass as BuiltMass
-        from housing.model.lumped_mass import NO_INERTIA
+        from housing.model.fixtures import NO_INERTIA
 
         return BuiltMass(
             name=self.name,

@@ -2,6 +2,7 @@
 
 A quantity is a number and a unit of plain symbols multiplied, divided and raised to whole powers. Text is
 held to that grammar before the unit registry sees any of it, so nothing in a case file is ever evaluated.
+For objects made in Python, :func:`rpm` turns a speed into SI.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pint
+
 
 LONGEST_QUANTITY = 100
 """Characters beyond which a string is not taken for a quantity."""
@@ -339,3 +341,13 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
             return text
     short = f"{number:g}"
     return f"{short if float(short) == number else repr(number)} {dimension.unit}"
+
+
+def rpm(value: float) -> float:
+    """Revolutions a minute as an angular speed [rad/s]."""
+    return value * math.pi / 30.0
+
+
+def to_rpm(speed: float) -> float:
+    """Angular speed [rad/s] in revolutions a minute."""
+    return speed * 30.0 / math.pi

@@ -9,8 +9,8 @@ figure for print, 160 mm wide, that :func:`save` writes::
     save(draw_lateral_modes(assembly, solve_lateral_modes(rotor, supports)), Path("modes.png"))
 """
 
+from gearwhine.figures.gears import draw_gear_pairs
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern
-from gearwhine.figures.gears.figure_set import draw_gear_pairs
 from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
 from gearwhine.figures.housing import (
@@ -25,11 +25,16 @@ from gearwhine.figures.machine.steady_state import draw_response_curve, draw_ste
 from gearwhine.figures.machine.sweep import draw_sweep
 from gearwhine.figures.machine.system import draw_system, draw_system_campbell, draw_transmissibility
 from gearwhine.figures.machine.transient import draw_transient
+from gearwhine.figures.rotors import draw_rotors
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnProbe, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.rotors.campbell import draw_campbell
 from gearwhine.figures.rotors.critical_speed_map import draw_critical_map
-from gearwhine.figures.rotors.figure_set import draw_rotors
-from gearwhine.figures.rotors.mode_shapes import draw_lateral_modes, draw_static_deflection, draw_torsional_modes
+from gearwhine.figures.rotors.mode_shapes import (
+    draw_lateral_modes,
+    draw_static_deflection,
+    draw_torsional_modes,
+    draw_whirl_modes,
+)
 from gearwhine.figures.rotors.responses import (
     ProbeResponse,
     TorsionalReading,
@@ -37,7 +42,6 @@ from gearwhine.figures.rotors.responses import (
     draw_unbalance_response,
 )
 from gearwhine.figures.rotors.shaft import draw_shaft
-from gearwhine.figures.rotors.whirl_shapes import draw_whirl_modes
 from gearwhine.figures.style import save, save_all
 
 __all__ = [

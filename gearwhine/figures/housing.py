@@ -25,7 +25,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -41,6 +40,10 @@ from gearwhine.figures.style import (
     RED,
     SHEET_WIDTH,
     TICK,
+    Label,
+    LabelRow,
+    arrange,
+    draw_row,
     panel,
     sheet,
     shortened,

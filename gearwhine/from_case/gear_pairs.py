@@ -6,6 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
+from coupling.gears.errors import ThinTipError
+from coupling.gears.geometry.gear import require_tip_thickness
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.machine.parts import inertia_with_discs
 from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
@@ -105,3 +107,22 @@ def _inertia(case: Case, name: str) -> float:
     gears = shaft_gears(case, given.rotor)
     (gear,) = (one for one in gears if one.name == name)
     return inertia_with_discs(gear, case.rotor_named(given.rotor).build(case.material), gears)
+
+
+def geometry_warnings(pair: GearPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
+    """Warnings of what runs but is not as it should be."""
+    found = []
+    for gear in (geometry.driver, geometry.driven):
+        try:
+            require_tip_thickness(gear)
+        except ThinTipError as error:
+            found.append({"name": "thin tip", "message": str(error)})
+        if gear.is_undercut:
+            message = (
+                f"gear {gear.name!r}: the teeth are undercut, their flanks begin at a diameter of "
+                f"{2e3 * gear.form_radius:.6g} mm; a profile_shift of "
+                f"{gear.least_generating_shift + gear.profile_shift - gear.generating_shift:.4g} avoids it"
+            )
+            found.append({"name": "undercut", "message": message})
+    backlash = pair.backlash_warning(geometry)
+    return found if backlash is None else [*found, {"name": "backlash", "message": backlash}]

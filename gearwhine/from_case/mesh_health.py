@@ -14,7 +14,7 @@ from gearwhine.case.check_housing import wall_volume
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import check_places
 from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from housing import Joint
 from meshes import Mesh, MeshDefect, diagnose, resolution_defects

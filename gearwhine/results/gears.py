@@ -11,9 +11,9 @@ import numpy as np
 from coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of_contact
 from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
 from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
+from gearwhine.from_case.gear_pairs import geometry_warnings
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
-from gearwhine.results.gear_warnings import geometry_warnings
 
 if TYPE_CHECKING:
     from gearwhine.solve.gear_pairs import PairAnalysis

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of, warning
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
-from gearwhine.output.warnings import warning
 
 if TYPE_CHECKING:
     from gearwhine.solve.rotors import Crossings, SolvedRotor

@@ -27,7 +27,7 @@ from gearwhine.from_case.fixtures import attach_all, build_attachments, check_pl
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.mesh_health import noted_on_failure, require_meshable, resolution_warnings
 from gearwhine.output.files import file_contents, installed, source_digest, texts_in, with_contents
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_health import bearing_places, housing_checks
 from housing import (

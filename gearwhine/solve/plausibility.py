@@ -17,7 +17,7 @@ from coupling.linear.complex_modes import Stability
 from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from coupling import signals as signature
 from coupling.signals.excitation import excitation_lines
 from gearwhine.case import Case, speed_ratios
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.solve.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]

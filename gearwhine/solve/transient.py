@@ -24,8 +24,7 @@ from coupling.time.integration import Checkpoint
 from coupling.time.settings import MotionRecord
 from coupling.time.transient import TransientFigures, fingerprint, integrate_blocks, integration_key, transient_figures
 from gearwhine.case import Case, require
-from gearwhine.from_case.driving import driving
-from gearwhine.from_case.machine import ReducedHousing, base_motion
+from gearwhine.from_case.machine import ReducedHousing, base_motion, driving
 from gearwhine.output.files import installed, source_digest
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing

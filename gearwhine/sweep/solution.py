@@ -22,7 +22,7 @@ from gearwhine.failures import explain
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing
 from gearwhine.output import finite, json_text
-from gearwhine.output.warnings import add_warnings
+from gearwhine.output.quantity import add_warnings
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, machine_warnings

@@ -17,8 +17,7 @@ from housing.fem.assembly import assemble
 from housing.fem.matrices import Matrices
 from housing.model.bolted_joints import bolted_joint
 from housing.model.bushings import Bushing, Joint, Mount
-from housing.model.fixtures import Fixture, attach_fixtures
-from housing.model.lumped_mass import LumpedMass
+from housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
 from housing.model.material import Material, enclosed_volume, mass_properties
 from housing.model.patches import Patch, rigid_motions
 from housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port

@@ -114,7 +114,7 @@ class CoupledPlanes:
 
     def eigenvalues(self, speeds: FloatArray) -> tuple[ComplexArray, BoolArray]:
         """All λ with conjugates, (speeds, 2N), rad/s, and the speeds at which damping couples modes too strongly."""
-        from rotors.whirl.modal_projection_kernels import damped, squares
+        from rotors.whirl.eigenvalue_kernels import damped, squares
 
         squared, right = np.linalg.eigh(squares(self.frequencies, self.gyroscopic, speeds))
         undamped = self.frequencies, self.gyroscopic, speeds

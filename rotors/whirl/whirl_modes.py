@@ -48,8 +48,37 @@ LEAST_GAP = 1e-6
 MOST_HELD = 16
 
 
+class ComplexFrequencies:
+    """Frequencies and damping that complex eigenvalues λ [rad/s] stand for, of one speed or of a Campbell diagram.
+
+    All arrays have the shape of ``eigenvalues``; what is NaN there is NaN in them.
+    """
+
+    eigenvalues: ComplexArray
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Natural frequency |λ|, rad/s."""
+        return np.asarray(np.abs(self.eigenvalues))
+
+    @property
+    def damped_frequencies(self) -> FloatArray:
+        """Im λ, rad/s."""
+        return np.asarray(self.eigenvalues.imag)
+
+    @property
+    def damping_ratios(self) -> FloatArray:
+        """−Re λ / |λ|; negative where a mode grows."""
+        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
+
+    @property
+    def log_decrements(self) -> FloatArray:
+        """Logarithmic decrement −2π Re λ / Im λ."""
+        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
+
 @dataclass(frozen=True)
-class WhirlModes:
+class WhirlModes(ComplexFrequencies):
     """Complex modes at one speed of rotation, ascending in frequency, without overdamped motions.
 
     Attributes
@@ -90,26 +119,6 @@ class WhirlModes:
     def axial_share(self) -> FloatArray:
         """Share of the kinetic energy along the axis, (w,): 0 where no bearing couples axial and lateral motion."""
         return self.roots.motion.axial_share
-
-    @property
-    def frequencies(self) -> FloatArray:
-        """Natural frequency |λ|, rad/s, (w,)."""
-        return np.asarray(np.abs(self.eigenvalues))
-
-    @property
-    def damped_frequencies(self) -> FloatArray:
-        """Im λ, rad/s, (w,)."""
-        return np.asarray(self.eigenvalues.imag)
-
-    @property
-    def damping_ratios(self) -> FloatArray:
-        """−Re λ / |λ|, (w,); negative is unstable."""
-        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
-
-    @property
-    def log_decrements(self) -> FloatArray:
-        """Logarithmic decrement −2π Re λ / Im λ, (w,)."""
-        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
 
     @property
     def stable(self) -> bool:

@@ -25,8 +25,8 @@ from gearwhine.figures import (
     draw_whirl_modes,
     save,
 )
-from gearwhine.figures.labels import spread
-from gearwhine.figures.rotors.whirl_shapes import local_direction
+from gearwhine.figures.rotors.mode_shapes import local_direction
+from gearwhine.figures.style import spread
 
 STEEL = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
 ALUMINIUM = rotors.ShaftMaterial(70e9, 26e9, 2700.0)

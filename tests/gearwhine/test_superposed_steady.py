@@ -20,7 +20,7 @@ from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import build_machine
-from gearwhine.results.chapters import chapters_of
+from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
 from gearwhine.solve.steady_state import solve_steady
 

@@ -21,7 +21,6 @@ from coupling.signals import decibels
 from coupling.signals.histories import Histories
 from coupling.signals.spectrum import Window, signal_parts
 from gearwhine.case import Case, mesh_frequencies
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,
@@ -35,6 +34,9 @@ from gearwhine.figures.style import (
     RED,
     SERIES,
     SHEET_WIDTH,
+    Label,
+    arrange,
+    draw_row,
     legend,
     panel,
     panel_size,
