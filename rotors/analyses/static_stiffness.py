@@ -149,6 +149,8 @@ class StaticShaft:
         return moved, forces
 
 
+# Fields that outgrow all numbers fail the test of symmetry.
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")
 def static_shaft(rotor: Rotor, stations: Sequence[float], *, stiffened: Stiffened = ()) -> StaticShaft:
     """Assemble the exact static stiffness and the weight of a free shaft between stations.
 
@@ -179,18 +181,15 @@ def static_shaft(rotor: Rotor, stations: Sequence[float], *, stiffened: Stiffene
     nodes = _short_of_buckling(stiff, merged_positions(rotor.joints, others))
     station = np.unique([station_index(nodes, at) for at in stations])
 
-    # Stiffened parts keep the mass they have.
+    # Stiffened parts keep the mass they have; they are cylinders where cones may have been.
     given, heavy = _between(stiff, nodes), _between(rotor.profile, nodes)[:, _MASS_ROWS]
-    coefficients = np.zeros((nodes.size - 1, 10, max(given.shape[2], heavy.shape[2])))
+    coefficients = np.zeros((nodes.size - 1, 10, heavy.shape[2]))
     coefficients[:, :, : given.shape[2]] = given
-    coefficients[:, _MASS_ROWS] = 0.0
-    coefficients[:, _MASS_ROWS, : heavy.shape[2]] = heavy * float(rotor.mass_model == "distributed")
+    coefficients[:, _MASS_ROWS] = heavy * float(rotor.mass_model == "distributed")
     mass = station_inertias(rotor, nodes)[:, 0]
-    # Fields that outgrow all numbers fail the test of symmetry.
-    with np.errstate(over="ignore", invalid="ignore"):
-        bending, axial = (_motion(nodes, coefficients[:, rows], mass, station) for rows in (BENDING, AXIAL))
-        # No weight turns a shaft about its axis.
-        torsion = _motion(nodes, coefficients[:, TORSION] * [[1.0], [0.0]], 0.0 * mass, station)
+    bending, axial = (_motion(nodes, coefficients[:, rows], mass, station) for rows in (BENDING, AXIAL))
+    # No weight turns a shaft about its axis.
+    torsion = _motion(nodes, coefficients[:, TORSION] * [[1.0], [0.0]], 0.0 * mass, station)
 
     motions, count = (bending, bending, axial, torsion), station.size
     stiffness = np.zeros((count, 6, count, 6))
