@@ -160,6 +160,8 @@ def static_shaft(rotor: Rotor, stations: Sequence[float], *, stiffened: Stiffene
         The shaft with its couplings and discs.
     stations
         Positions of the nodes, m from the left end, in any order; those closer than 1e-9 of the length are one node.
+        The stiffness of a short span is exact to rounding, but a solution on it for displacements loses digits: between
+        nodes a micrometre apart on a shaft of 0.4 m, it keeps nine.
     stiffened
         Intervals (left, right, outer diameter), m, within which the shaft is at least this thick against deformation,
         such as the root circle of a pinion cut into its shaft. Of overlapping ones the thickest counts. Couplings and
@@ -249,9 +251,8 @@ class _Motion:
         number = np.clip(self.nodes.searchsorted(positions, side="right") - 1, 0, self.span.size - 1)
         fraction = (positions - self.nodes[number]) / np.diff(self.nodes)[number]
         inside = self.elements.transfer_matrices_to(number, fraction, np.array([TINY * 1j]))[:, 0]
-        return _apply(_with_weight(inside, self.units), _apply(self.starts[number], left[..., self.span[number], :]))[
-            ..., :-1
-        ]
+        states = _apply(self.starts[number], left[..., self.span[number], :])
+        return _apply(_with_weight(inside, self.units), states)[..., :-1]
 
 
 def _motion(nodes: FloatArray, coefficients: FloatArray, node_mass: FloatArray, station: IntArray) -> _Motion:
