@@ -243,5 +243,5 @@ def static_pair(
         axial=axial,
         sense=sense,
         towards=(float(line[0] / np.hypot(*line)), float(line[1] / np.hypot(*line))) if np.any(line) else (0.0, 0.0),
-        nominal=own.mean_mesh_stiffness,
+        nominal=own.unloaded_mean_mesh_stiffness,
     )

@@ -265,7 +265,7 @@ class FaceContact:
         if self._last is not None:
             force, deep = self._last
             return force * beyond / deep
-        return self._contact.mean_mesh_stiffness * beyond
+        return self._contact.unloaded_mean_mesh_stiffness * beyond
 
     def _uniform_stiffness(self, load: FaceLoad) -> FloatArray:
         return np.asarray(load.tangents @ self.uniform @ self.uniform)
