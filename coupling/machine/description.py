@@ -335,7 +335,7 @@ class Machine:
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
         point = self.operating_point(gravity) if point is None else point
-        gaps = {(one.pair.driver.name, one.pair.driven.name): one.station_gap for one in point.pairs}
+        gaps = {one.names: one.station_gap for one in point.pairs}
         pairs = [
             replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
             if pair.misalignment is None

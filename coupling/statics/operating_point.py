@@ -170,6 +170,11 @@ class PairLoad:
     fine: FaceLoad
 
     @property
+    def names(self) -> tuple[str, str]:
+        """Driver and driven gear."""
+        return self.pair.driver.name, self.pair.driven.name
+
+    @property
     def z(self) -> FloatArray:
         """Slices of the face, from its middle [m], shape (s,)."""
         return self.pair.contact.z

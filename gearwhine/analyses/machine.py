@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, swept_keys
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import basis_error, solve_machine
+from gearwhine.case import Case, require, swept_keys
+from gearwhine.from_case.machine import basis_error, solve_machine, solve_pairs
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
@@ -86,7 +85,8 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
     CaseError, coupling.gears.GearError
         Where the case has no gear pairs, or one cannot be solved as it stands.
     """
-    loaded = solve_gears(case, progress)
+    require(case, "gear_pair", command="gears")
+    loaded = solve_pairs(case, None, progress)
     aims = relief_aims(case, loaded, progress, folder=folder)
     pairs = solve_over_torques(analyse_pairs(case, loaded), progress, aims)
 

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine
+from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine, solve_pairs
 from gearwhine.mode_pictures import draw_modes
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
@@ -99,13 +98,15 @@ def run(
 
     begin = time.perf_counter()
     rotors = solve_rotors(case, progress) if case.rotor else ()
-    pairs = solve_gears(case, progress) if case.gear_pair else ()
-    analysed = analyse_pairs(case, pairs)
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     timed("housing", begin)
+    begin = time.perf_counter()
+    pairs = solve_pairs(case, housing, progress)
+    analysed = analyse_pairs(case, pairs)
+    timed("rotors_and_gears", begin - seconds["rotors_and_gears"])
     if rotors:
         document = joined(document, rotors_document(rotors))
     if pairs:

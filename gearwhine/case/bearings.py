@@ -415,10 +415,12 @@ class Bearing(Table):
         depends = isinstance(self.stiffness, RollingStiffness | StopStiffness)
         if self.load is not None and not depends:
             raise wrong("nothing: only the stiffness of a rolling bearing or a stop depends on its load", "load")
-        if isinstance(self.stiffness, RollingStiffness) and self.load is None and not self.stiffness.rolling.pressed:
-            expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
-            raise wrong(expected, "load")
         return self
+
+    @property
+    def lacks_load(self) -> bool:
+        """Whether it is a rolling bearing whose load is not given."""
+        return isinstance(self.stiffness, RollingStiffness) and self.load is None
 
     @model_validator(mode="after")
     def _ascending(self) -> Bearing:

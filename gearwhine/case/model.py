@@ -105,6 +105,10 @@ class Case(Table):
         first, second = (self.rotor_named(name).axis for name in rotors if name is not None)
         return math.hypot(second[0] - first[0], second[1] - first[1])
 
+    def finds_load(self, bearing: Bearing) -> bool:
+        """Whether the load of a rolling bearing follows from the machine's operating point."""
+        return bearing.lacks_load and bool(self.gear_pair) and self.operation is not None
+
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""
         name = gear.material

@@ -1,5 +1,7 @@
 """Gear pairs of a case: geometry, contact law, and static transmission error under the mean torque."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,8 +20,12 @@ from gearwhine.progress import Progress, silent
 FloatArray = npt.NDArray[np.float64]
 
 
-def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair, ...]:
+def solve_gears(
+    case: Case, progress: Progress = silent, gaps: Mapping[tuple[str, str], tuple[float, ...]] | None = None
+) -> tuple[LoadedGearPair, ...]:
     """Solve every gear pair of the case.
+
+    ``gaps`` are those of the flanks over the face by driver and driven gear, where the misalignment is to be found.
 
     Raises
     ------
@@ -33,7 +39,7 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair
     for number, (given, torque) in enumerate(zip(case.gear_pair, torques, strict=True)):
         progress(f"gear pair {given.driver} -> {given.driven}")
         loaded = load_gear_pair(
-            build_pair(given, number),
+            aligned_pair(build_pair(given, number), gaps or {}),
             pair_geometry(case, given),
             torque=torque,
             inertias=(_inertia(case, given.driver), _inertia(case, given.driven)),
@@ -59,9 +65,16 @@ def build_pair(given: GivenPair, number: int = 0) -> GearPair:
         damping=given.damping,
         backlash=given.backlash,
         friction=given.friction,
-        misalignment=given.misalignment,
+        misalignment=None if given.misalignment == "found" else given.misalignment,
         corner_contact=given.corner_contact,
     )
+
+
+def aligned_pair(pair: GearPair, gaps: Mapping[tuple[str, str], tuple[float, ...]]) -> GearPair:
+    """Give a pair whose misalignment is to be found the gap of its flanks over the face, if there is one."""
+    if pair.misalignment is not None or (pair.driver, pair.driven) not in gaps:
+        return pair
+    return replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
 
 
 def pair_geometries(case: Case) -> tuple[GearPairGeometry, ...]:

@@ -23,12 +23,14 @@ from coupling.machine.parts import Driving
 from coupling.time.speed_profile import free_speed
 from gearwhine.case import Case, Rotor, TorqueLine, applied_torques, require, speed_ratios
 from gearwhine.from_case.gear_pairs import build_pair, solve_gears
-from gearwhine.from_case.rotors import bearing_law, build_bearings, shaft_gears
+from gearwhine.from_case.rotors import bearing_law, build_bearings, rolling_elements, rolling_states, shaft_gears
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, base_participation, solve_housing
 from housing import ModeSet
 from housing.model.housing import RESPONSE_ORDERS
 from housing.modes.residual_modes import leading_residual_modes
+from rotors import Bearing
+from rotors.rolling_bearings import RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -111,6 +113,9 @@ def build_machine(
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
     machine = describe_machine(case, None if housing is None else housing.component)
+    if any(mounted.needs_load for mounted in machine.bearings):
+        progress("static equilibrium of the machine under its mean load")
+        machine = machine.at_operating_point(gravity=_gravity(case))
     components = machine.rotor_components(reach=reach, progress=progress)
     return machine.assemble(pairs, components, driving(case, components))
 
@@ -142,15 +147,18 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
     assert operation is not None
     bearings = []
     for given in case.rotor:
-        laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
+        own = [(n, entry) for n, entry in enumerate(case.bearing) if entry.rotor == given.name]
+        laws = {entry.name: bearing_law(case, n) for n, entry in own}
+        elements = {entry.name: rolling_elements(case, n) for n, entry in own}
         # Those of the rotor's own file stand on the ground.
-        seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
+        seats = {entry.name: entry.seat for _, entry in own if not entry.grounded}
         bearings += [
             MountedBearing(
                 bearing,
                 given.name,
                 None if grounded else seats.get(bearing.name),
                 laws.get(bearing.name),
+                elements.get(bearing.name),
             )
             for bearing in build_bearings(case, given.name)
         ]
@@ -196,10 +204,61 @@ def solve_machine(
     """
     require(case, "rotor", "operation", command="system")
     require_machine(case)
-    pairs = solve_gears(case, progress) if case.gear_pair else ()
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+    pairs = solve_pairs(case, housing, progress)
     return housing, pairs, build_machine(case, housing, pairs, progress)
+
+
+def solve_pairs(
+    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+) -> tuple[LoadedGearPair, ...]:
+    """Solve the gear pairs of a case; none for one without.
+
+    The gap of flanks whose misalignment is to be found is that of the operating point, on rigid seats where there is no
+    housing.
+
+    Raises
+    ------
+    CaseError, coupling.gears.GearError, coupling.CouplingError, coupling.EquilibriumNotFoundError
+        Where a pair cannot be solved as it stands, or the machine has no operating point.
+    """
+    if not case.gear_pair:
+        return ()
+    if all(pair.misalignment != "found" for pair in case.gear_pair):
+        return solve_gears(case, progress)
+    progress("misalignment of the flanks at the operating point")
+    if isinstance(housing, SolvedHousing):
+        housing = reduce_housing(case, housing, progress)
+    component = None if housing is None else housing.component
+    point = describe_machine(case, component, grounded=component is None).operating_point(_gravity(case))
+    return solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
+
+
+def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str, RollingState]]]:
+    """Bearings of each rotor and the states of the rolling ones, linearised about the operating point on rigid seats.
+
+    Where no bearing's load is left to the operating point the case gives them all.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
+        Where a bearing's load or geometry does not let it be, or the machine has no operating point.
+    """
+    given = {one.name: (build_bearings(case, one.name), rolling_states(case, one.name)) for one in case.rotor}
+    if not any(case.finds_load(bearing) for bearing in case.bearing):
+        return given
+    point = describe_machine(case, grounded=True).operating_point(_gravity(case))
+    found = {}
+    for name, (_, states) in given.items():
+        own = [one for one in point.bearings if one.mounted.rotor == name]
+        open_loads = {one.name: one.rolling for one in own if one.mounted.needs_load and one.rolling is not None}
+        found[name] = tuple(one.linearised.bearing for one in own), states | open_loads
+    return found
+
+
+def _gravity(case: Case) -> tuple[float, ...] | None:
+    return None if case.operation is None else case.operation.gravity
 
 
 def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:

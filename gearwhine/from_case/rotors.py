@@ -62,7 +62,7 @@ def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:
 
 
 def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
-    """Solve a bearing's equilibrium under its load, its shaft in line with its seat; None for other bearings.
+    """Solve a bearing's equilibrium under the load of the case, its shaft in line with its seat; None for others.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
         As `build_bearings`.
     """
     given = case.bearing[index]
-    if not isinstance(given.stiffness, RollingStiffness):
+    if not isinstance(given.stiffness, RollingStiffness) or case.finds_load(given):
         return None
     load = (0.0, 0.0, 0.0) if given.load is None else (given.load.x, given.load.y, given.load.z)
     try:
@@ -92,10 +92,30 @@ def bearing_law(case: Case, index: int) -> BearingLaw | None:
     if isinstance(given, StopStiffness):
         return given.stop.build()
     if isinstance(given, RollingStiffness) and given.rolling.law == "nonlinear":
+        # One whose load is left to the operating point waits for it undeflected.
         state = rolling_state(case, index)
-        assert state is not None
-        return RollingLaw(state)
+        return RollingLaw(rolling.rolling_state(_elements(case, index), np.zeros(5)) if state is None else state)
     return None
+
+
+def rolling_elements(case: Case, index: int) -> rolling.RollingBearing | None:
+    """Build a rolling bearing by its elements; None for other bearings.
+
+    Raises
+    ------
+    CaseError
+        As `build_bearings`.
+    """
+    return _elements(case, index) if isinstance(case.bearing[index].stiffness, RollingStiffness) else None
+
+
+def _elements(case: Case, index: int) -> rolling.RollingBearing:
+    given = case.bearing[index]
+    assert isinstance(given.stiffness, RollingStiffness)
+    try:
+        return given.stiffness.rolling.build(given.name)
+    except RotorError as error:
+        raise _refused(given, index, error) from error
 
 
 def rolling_states(case: Case, rotor: str) -> dict[str, rolling.RollingState]:
@@ -131,6 +151,8 @@ def _stiffness(case: Case, index: int) -> FloatArray:
         return given.stiffness.stop.build().tangent(load)
     if not isinstance(given.stiffness, RollingStiffness):
         return given.stiffness.build()
+    if case.finds_load(given):
+        return np.zeros((5, 5))
     state = rolling_state(case, index)
     assert state is not None
     try:

@@ -25,7 +25,8 @@ from gearwhine.case import (
     whirl_speeds,
 )
 from gearwhine.case import Rotor as GivenRotor
-from gearwhine.from_case.rotors import build_bearings, build_rotor, rolling_states
+from gearwhine.from_case.machine import rotor_bearings
+from gearwhine.from_case.rotors import build_rotor
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from rotors import (
@@ -446,10 +447,11 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
     """
     require(case, "rotor", command="rotors")
     analysis = case.rotor_analysis or RotorAnalysis()
+    held = rotor_bearings(case)
     solved = []
     for given in case.rotor:
         progress(f"rotor {given.name}")
-        rotor, bearings = build_rotor(case, given), build_bearings(case, given.name)
+        rotor, (bearings, rolling) = build_rotor(case, given), held[given.name]
         lowest, _ = table_range(case, given.name)
         resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
         speeds = whirl_speeds(case, given.name)
@@ -460,10 +462,9 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         diagram = campbell_speeds(case, given.name)
         solver = WhirlSolver(rotor, bearings)
         campbell = rotor_campbell(rotor, bearings, diagram, count=analysis.modes, solver=solver) if diagram else None
-        held = not isinstance(weight, str)
+        stands = not isinstance(weight, str)
         rest = rest_frequencies(rotor, resting, count=analysis.modes)
         torsional = solve_torsional_modes(rotor)
-        rolling = rolling_states(case, given.name)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
@@ -483,7 +484,9 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 critical=critical_speeds(rotor, bearings, count=analysis.modes).lateral,
                 operation=operation,
                 weight=weight,
-                response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
+                response=solve_response(
+                    case, analysis, given, rotor, bearings, operation, held=not isinstance(weight, str)
+                ),
                 torsion=solve_torsion(analysis, given, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling,

@@ -19,8 +19,7 @@ import numpy.typing as npt
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case, mesh_frequencies
 from gearwhine.failures import explain
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing
+from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.output import finite, json_text
 from gearwhine.output.quantity import add_warnings
 from gearwhine.results.run import transient_document
@@ -102,7 +101,7 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        pairs = solve_gears(case) if case.gear_pair else ()
+        pairs = solve_pairs(case, housing)
         machine = build_machine(case, housing, pairs)
         frequencies = mesh_frequencies(case) if case.gear_pair else ()
         solved = solve_transient(case, machine, frequencies, housing=housing)
