@@ -484,9 +484,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 critical=critical_speeds(rotor, bearings, count=analysis.modes).lateral,
                 operation=operation,
                 weight=weight,
-                response=solve_response(
-                    case, analysis, given, rotor, bearings, operation, held=not isinstance(weight, str)
-                ),
+                response=solve_response(case, analysis, given, rotor, bearings, operation, held=stands),
                 torsion=solve_torsion(analysis, given, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling,
