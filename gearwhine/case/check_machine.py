@@ -135,7 +135,7 @@ _RPM = 30.0 / pi
 def check_bearings(draft: Draft) -> Iterator[Finding]:
     """Yield tables that do not fit their speeds or end too early, pedestals in the housing, and loads that lack."""
     ratios = _ratios(draft)
-    loaded = draft.operation is not None and bool(draft.gear_pairs)
+    loaded = bool(draft.document.get("operation")) and bool(draft.document.get("gear_pair"))
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
         if bearing.pedestal is not None and not bearing.grounded:

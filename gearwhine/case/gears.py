@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -234,7 +235,12 @@ class _Misalignment(Quantity):
 
     def validate(self, value: object) -> Any:
         """Return the angle in SI, or "found"."""
-        return value if value == "found" else super().validate(value)
+        if value == "found":
+            return value
+        try:
+            return super().validate(value)
+        except PydanticCustomError:
+            raise wrong(self.expected) from None
 
     def write(self, number: Any) -> str | float:
         """Return the angle as text with its unit, or "found"."""
