@@ -9,12 +9,6 @@ ONE_WRONG = {
     # ranges
     "bearing stiffness": ("bearing.0.stiffness.xx", "0 N/m", "bearing[0].stiffness.xx", "above 0 N/m"),
     # keys, forms and choices
-    "rolling without load": (
-        "bearing.2.stiffness",
-        {"rolling": {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}},
-        "bearing[2].load",
-        "{ x, y, z }, the force of the shaft on it",
-    ),
     "load of a spring": ("bearing.0.load", {"x": "5 N"}, "bearing[0].load", "only the stiffness of a rolling bearing"),
     "rollers without length": (
         "bearing.2.stiffness",

@@ -75,7 +75,8 @@ def test_flanks_open_as_the_operating_point_finds(case: gw.Case) -> None:
     """The contact of a pair left to the operating point has the load over its face that was found there."""
     point = describe_machine(case).operating_point()
     (pair,) = solve_pairs(case, None)
-    assert pair.contact.faces is not None and pair.static.line_loads is not None
+    assert pair.contact.faces is not None
+    assert pair.static.line_loads is not None
     (found,) = point.pairs
     assert np.ptp(pair.contact.faces.gap) == pytest.approx(np.ptp(found.gap), rel=1e-9)
     load = pair.static.line_loads.sum(axis=1)
@@ -84,7 +85,8 @@ def test_flanks_open_as_the_operating_point_finds(case: gw.Case) -> None:
     # The tilt changes the profile's side of the contact a little, which the pair's own contact leaves out.
     assert mean == pytest.approx(found.line_load, abs=0.02 * float(found.line_load.max()))
     (given,) = solve_pairs(parse_case(document(misalignment="0.2 mrad")), None)
-    assert given.pair.misalignment == 2e-4 and not given.pair.face_gap
+    assert given.pair.misalignment == 2e-4
+    assert not given.pair.face_gap
 
 
 def test_rotors_alone_stand_on_the_same_bearings(case: gw.Case) -> None:
