@@ -11,6 +11,7 @@ tangent, for the equilibrium of a whole machine; `rolling_state` is the state at
 are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
+from rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
 from rotors.rolling_bearings.element_contacts import ElementLoads
 from rotors.rolling_bearings.equilibrium import (
     COORDINATES,
@@ -37,7 +38,9 @@ __all__ = [
     "ElementLoads",
     "FourPointRow",
     "LineContactRow",
+    "OperatingClearance",
     "PointContact",
+    "RingFit",
     "RollerRow",
     "RollingBearing",
     "RollingElements",
@@ -48,6 +51,7 @@ __all__ = [
     "kramer_ball_stiffness",
     "kramer_roller_stiffness",
     "linearised_bearing",
+    "operating_clearance",
     "paired",
     "point_contact",
     "preload_offset",
@@ -55,4 +59,5 @@ __all__ = [
     "rolling_state",
     "spherical_groove",
     "static_rating",
+    "thermal_offset",
 ]
