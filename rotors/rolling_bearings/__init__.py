@@ -11,7 +11,7 @@ tangent, for the equilibrium of a whole machine; `rolling_state` is the state at
 are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
-from rotors.rolling_bearings.catalogue import catalogue_bearing, catalogue_row
+from rotors.rolling_bearings.catalogue import CatalogueType, catalogue_bearing, catalogue_row, standing_rows
 from rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
 from rotors.rolling_bearings.element_contacts import ElementLoads
 from rotors.rolling_bearings.equilibrium import (
@@ -27,7 +27,7 @@ from rotors.rolling_bearings.equilibrium import (
 )
 from rotors.rolling_bearings.frequencies import CharacteristicFrequencies, characteristic_frequencies
 from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, point_contact
-from rotors.rolling_bearings.ratings import dynamic_rating, static_rating
+from rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
 from rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, SphericalRollerRow, TaperedRollerRow
 from rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
 from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
@@ -37,6 +37,7 @@ __all__ = [
     "LARGEST_APPROACH",
     "STEEL",
     "BallRow",
+    "CatalogueType",
     "CharacteristicFrequencies",
     "ContactElasticity",
     "ElementLoads",
@@ -49,6 +50,7 @@ __all__ = [
     "RollingBearing",
     "RollingElements",
     "RollingState",
+    "Row",
     "SphericalRollerRow",
     "TaperedRollerRow",
     "catalogue_bearing",
@@ -65,6 +67,7 @@ __all__ = [
     "rolling_equilibrium",
     "rolling_state",
     "spherical_groove",
+    "standing_rows",
     "static_rating",
     "thermal_offset",
 ]

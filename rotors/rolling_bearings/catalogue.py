@@ -230,17 +230,17 @@ def _fitted(
     """Row of ``count`` elements with the wanted rating, by the length of its rollers or the diameter of its balls."""
     if count * math.asin(min(diameter / pitch, 1.0)) >= math.pi:
         return None
-    if length > 0.0:
-        scale = (wanted, lambda factor: rated(make(count, diameter, factor * length)))
-        low, high = 0.2, 5.0
-    else:
-        scale = (wanted, lambda factor: rated(make(count, factor * diameter, 0.0)))
-        low, high = 0.7, min(1.4, 0.999 * pitch * math.sin(math.pi / count) / diameter)
-    target, rating = scale
-    if high <= low or not rating(low) <= target <= rating(high):
+    low, high = (0.2, 5.0) if length else (0.7, min(1.4, 0.999 * pitch * math.sin(math.pi / count) / diameter))
+
+    def scaled(factor: float) -> Row:
+        return make(count, diameter, factor * length) if length else make(count, factor * diameter, 0.0)
+
+    def excess(factor: float) -> float:
+        return rated(scaled(factor)) - wanted
+
+    if high <= low or excess(low) > 0.0 or excess(high) < 0.0:
         return None
-    factor = float(brentq(lambda one: rating(one) - target, low, high, xtol=1e-12))
-    return make(count, diameter, factor * length) if length > 0.0 else make(count, factor * diameter, 0.0)
+    return scaled(float(brentq(excess, low, high, xtol=1e-12)))
 
 
 def _conrad(pitch: float, ball: float) -> int:
