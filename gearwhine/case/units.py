@@ -87,6 +87,8 @@ ANGLE = Dimension("an angle", "rad", "24 deg", 1e6, 1e-12, display="deg")
 FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz", 1e7, 1e-6)
 SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", 1e6, 1e-6, display="rpm")
 DIAMETRAL_PITCH = Dimension("a diametral pitch", "1/m", "8 1/in", 1e6, 1e-3)
+TEMPERATURE = Dimension("a difference of temperatures", "K", "45 K", 1e4, 1e-6)
+EXPANSION = Dimension("a coefficient of thermal expansion", "1/K", "12e-6 1/K", 1.0, 1e-12)
 RATIO = Dimension("a plain number", "", "0.01", 1e12, 1e-12)
 
 _DIMENSIONS = (

@@ -11,6 +11,8 @@ tangent, for the equilibrium of a whole machine; `rolling_state` is the state at
 are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
+from rotors.rolling_bearings.catalogue import CatalogueType, catalogue_bearing, catalogue_row, standing_rows
+from rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
 from rotors.rolling_bearings.element_contacts import ElementLoads
 from rotors.rolling_bearings.equilibrium import (
     COORDINATES,
@@ -23,9 +25,11 @@ from rotors.rolling_bearings.equilibrium import (
     rolling_equilibrium,
     rolling_state,
 )
+from rotors.rolling_bearings.frequencies import CharacteristicFrequencies, characteristic_frequencies
 from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, point_contact
+from rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
 from rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, SphericalRollerRow, TaperedRollerRow
-from rotors.rolling_bearings.rolling_bearing import RollingBearing, catalogue_row, paired, preload_offset, static_rating
+from rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
 from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 __all__ = [
@@ -33,26 +37,37 @@ __all__ = [
     "LARGEST_APPROACH",
     "STEEL",
     "BallRow",
+    "CatalogueType",
+    "CharacteristicFrequencies",
     "ContactElasticity",
     "ElementLoads",
     "FourPointRow",
     "LineContactRow",
+    "OperatingClearance",
     "PointContact",
+    "RingFit",
     "RollerRow",
     "RollingBearing",
     "RollingElements",
     "RollingState",
+    "Row",
     "SphericalRollerRow",
     "TaperedRollerRow",
+    "catalogue_bearing",
     "catalogue_row",
+    "characteristic_frequencies",
+    "dynamic_rating",
     "kramer_ball_stiffness",
     "kramer_roller_stiffness",
     "linearised_bearing",
+    "operating_clearance",
     "paired",
     "point_contact",
     "preload_offset",
     "rolling_equilibrium",
     "rolling_state",
     "spherical_groove",
+    "standing_rows",
     "static_rating",
+    "thermal_offset",
 ]

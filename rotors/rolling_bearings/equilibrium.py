@@ -26,9 +26,10 @@ from rotors.numerics.trust_region import Local, minimise
 from rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
 from rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
 from rotors.rolling_bearings.four_point_balls import FourPointBalls
+from rotors.rolling_bearings.ratings import Row
 from rotors.rolling_bearings.roller_rows import LineContactRow
 from rotors.rolling_bearings.roller_slices import RollerSlices
-from rotors.rolling_bearings.rolling_bearing import RollingBearing, Row
+from rotors.rolling_bearings.rolling_bearing import RollingBearing
 from rotors.rolling_bearings.rows import BallRow, FourPointRow
 
 FloatArray = npt.NDArray[np.float64]

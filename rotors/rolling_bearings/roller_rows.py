@@ -73,6 +73,7 @@ class LineContactRow:
     elasticity: ContactElasticity = STEEL
     axial_offset: float = 0.0
     direction: int = 1
+    estimated: bool = False
 
     def __post_init__(self) -> None:
         """Check that the rollers fit on the pitch circle, and length, slices, profile, places and direction."""
@@ -203,6 +204,8 @@ class RollerRow(LineContactRow):
         Axial displacement of the inner ring at assembly along the row's direction, m.
     direction
         1 or −1: of the axial load that one flange carries.
+    estimated
+        Whether the geometry is an estimate (`rotors.rolling_bearings.catalogue`).
     flanges
         ``"none"`` (NU, N: no axial load), ``"one"`` (NJ: in the row's direction) or ``"both"`` (NUP).
     flange_stiffness

@@ -53,6 +53,8 @@ class BallRow:
         Contact angles between which there is a groove, in the row's direction, rad: its shoulders.
     elasticity
         Steel unless given.
+    estimated
+        Whether the geometry is an estimate (`rotors.rolling_bearings.catalogue`).
 
     Raises
     ------
@@ -72,6 +74,7 @@ class BallRow:
     direction: int = 1
     groove_limits: tuple[float, float] = (-RIGHT_ANGLE, RIGHT_ANGLE)
     elasticity: ContactElasticity = STEEL
+    estimated: bool = False
 
     def __post_init__(self) -> None:
         """Check that the balls fit on the pitch circle, and angles, grooves, clearance and direction."""
@@ -135,6 +138,12 @@ class BallRow:
         return True
 
     @property
+    def self_aligning(self) -> bool:
+        """Whether the outer groove is the sphere about the bearing's centre."""
+        sphere = spherical_groove(self.ball_diameter, self.pitch_diameter, self.contact_angle)
+        return self.outer_groove >= 0.999 * sphere
+
+    @property
     def slack_offset(self) -> float:
         """Axial offset at which a centred row carries no axial force, m."""
         return -self.groove_distance * math.sin(self.contact_angle)
@@ -144,7 +153,7 @@ class BallRow:
 
         γ = D cos α / D_pw, of pure rolling at the nominal contact angle (Harris and Kotzalas 2006).
         """
-        return 0.5 * (1.0 - self._gamma) * speed
+        return 0.5 * (1.0 - self.gamma) * speed
 
     def facing(self, direction: int) -> Self:
         """Return the same row with another direction."""
@@ -159,12 +168,12 @@ class BallRow:
     @cached_property
     def inner_contact(self) -> PointContact:
         """A ball in the inner groove: curvatures 2/D and γ/(1 − γ) · 2/D along, 2/D and −1/(f D) across."""
-        return self._contact(self.inner_groove, self._gamma / (1.0 - self._gamma))
+        return self._contact(self.inner_groove, self.gamma / (1.0 - self.gamma))
 
     @cached_property
     def outer_contact(self) -> PointContact:
         """A ball in the outer groove: curvatures 2/D and −γ/(1 + γ) · 2/D along, 2/D and −1/(f D) across."""
-        return self._contact(self.outer_groove, -self._gamma / (1.0 + self._gamma))
+        return self._contact(self.outer_groove, -self.gamma / (1.0 + self.gamma))
 
     @cached_property
     def stiffness(self) -> float:
@@ -189,7 +198,8 @@ class BallRow:
         return float(self.count * self.stiffness * approach**1.5 * axial / distance)
 
     @property
-    def _gamma(self) -> float:
+    def gamma(self) -> float:
+        """γ = D cos α / D_pw."""
         return self.ball_diameter * math.cos(self.contact_angle) / self.pitch_diameter
 
     def _contact(self, groove: float, along: float) -> PointContact:
