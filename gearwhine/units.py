@@ -1,4 +1,4 @@
-"""Units of the library: SI, with radians per second for speeds."""
+"""Units of speed: rpm and rad/s; units of quantities in case files are those of :mod:`gearwhine.case.units`."""
 
 import math
 

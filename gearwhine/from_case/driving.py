@@ -87,10 +87,10 @@ def train_inertia(case: Case, rotors: Sequence[RotorComponent]) -> float:
     """Polar inertia of the train, reduced to the first driver's rotor [kg m²]."""
     ratios = speed_ratios(case)
     shares = applied_torques(case, 1.0)
-    turned = set(ratios) if case.gear_pair else {shares[0].shaft}
+    rotating = set(ratios) if case.gear_pair else {shares[0].shaft}
     inertias = {rotor.name: float(np.sum(rotor.turning**2)) for rotor in rotors}
     first = float(ratios[shares[0].shaft])
-    return sum(inertias[name] * (float(ratios[name]) / first) ** 2 for name in inertias if name in turned)
+    return sum(inertias[name] * (float(ratios[name]) / first) ** 2 for name in inertias if name in rotating)
 
 
 def _torque(line: TorqueLine, speed: float) -> float:

@@ -13,6 +13,7 @@ from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Shaft
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
 from coupling.machine.components import HousingComponent, housing_component
+from coupling.machine.description import LATERAL_LIMIT_HZ
 from gearwhine.case import Case, Rotor, require
 from gearwhine.from_case.driving import driving
 from gearwhine.from_case.gear_pairs import build_pair, solve_gears
@@ -25,13 +26,12 @@ from housing.modes.residual_modes import leading_residual_modes
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
-# Shafts keep every bending mode up to this frequency, or several times the housing's limit where that is higher;
-# what lies above answers statically, through attachment vectors at bearings and gears.
-_LATERAL_LIMIT_HZ = 8000.0
-_LIMIT_FACTOR = 2.5
-_REACH = 2.0  # of the shafts' modes in the basis that tells the error of the first
+# Shafts keep every bending mode up to LATERAL_LIMIT_HZ, or several times the housing's limit where that is higher; what
+# lies above answers statically, through attachment vectors at bearings and gears.
+_HOUSING_FACTOR = 2.5
+_MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis that tells the error of the first
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,11 @@ def build_machine(
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
     *,
-    reach: float = 1.0,
+    limit_factor: float = 1.0,
 ) -> CoupledMachine:
     """Assemble the machine of a case at its operating speed.
 
-    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
+    ``limit_factor`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def build_machine(
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
     machine = describe_machine(case, None if housing is None else housing.component)
-    components = machine.rotor_components(reach=reach, progress=progress)
+    components = machine.rotor_components(limit_factor=limit_factor, progress=progress)
     return machine.assemble(pairs, components, driving(case, components))
 
 
@@ -200,9 +200,9 @@ def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
     if given.modes is not None:
         return None, given.modes
     if given.frequency_limit is not None:
-        return _HERTZ * given.frequency_limit, None
+        return _TWO_PI * given.frequency_limit, None
     limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
-    return _HERTZ * max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit), None
+    return _TWO_PI * max(LATERAL_LIMIT_HZ, _HOUSING_FACTOR * limit), None
 
 
 def base_motion(case: Case) -> BaseMotion | None:
@@ -228,7 +228,7 @@ def basis_error(
         return None
     progress("comparing with another modal basis")
     other = replace(housing, component=housing.coarser)
-    return BasisError(machine, build_machine(case, other, pairs, reach=_REACH))
+    return BasisError(machine, build_machine(case, other, pairs, limit_factor=_MORE_MODES))
 
 
 def _housing_components(
