@@ -85,13 +85,13 @@ def _follow(lines: IO[str], progress: Progress) -> dict[str, Any]:
     """Forward progress up to the answer; empty where there is none."""
     for line in lines:
         try:
-            told = json.loads(line)
+            report = json.loads(line)
         except ValueError:  # a library's own chatter
             continue
-        if isinstance(told, dict):
-            if "files" in told or "failed" in told:
-                return told
-            progress(str(told.get("progress", "drawing")))
+        if isinstance(report, dict):
+            if "files" in report or "failed" in report:
+                return report
+            progress(str(report.get("progress", "drawing")))
     return {}
 
 

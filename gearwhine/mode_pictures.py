@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _MOST_MODES = 5000
 _DOMINANT = 8
 
@@ -89,7 +89,7 @@ def draw_modes(
     notes = {}
     if comparison is not None:
         notes = {
-            pair.mode: f"measured {pair.measured / _HERTZ:.0f} Hz ({pair.error_percent:+.1f} %"
+            pair.mode: f"measured {pair.measured / _TWO_PI:.0f} Hz ({pair.error_percent:+.1f} %"
             + (")" if pair.mac is None else f", MAC {pair.mac:.2f})")
             for pair in comparison.pairs
         }
@@ -171,7 +171,7 @@ def draw_measured(
         likeness = "" if pair.mac is None else f", MAC {pair.mac:.2f}"
         drawn.append(
             ShapePair(
-                f"{pair.measured / _HERTZ:.0f} Hz measured, mode {pair.mode} at {pair.model / _HERTZ:.0f} Hz "
+                f"{pair.measured / _TWO_PI:.0f} Hz measured, mode {pair.mode} at {pair.model / _TWO_PI:.0f} Hz "
                 f"({pair.error_percent:+.1f} %{likeness})",
                 point_motions(geometry, laid),
                 # What was not measured is left out of both.

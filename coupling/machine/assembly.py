@@ -52,7 +52,7 @@ from coupling.machine.loads import (
     constant_torques,
     gravity_load,
 )
-from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried, shuttling_loads
+from coupling.machine.thrust import ThrustPair, require_thrust_carried, shuttling_loads
 from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from coupling.statics.mean_mesh import mean_meshes
 from coupling.statics.static_equilibrium import with_loaded_flanks
@@ -431,10 +431,10 @@ def _require_thrust_carried(
         ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
         for mesh in meshes
     ]
-    held = axially_held(bearings, speeds)
-    carriers = {rotor.name: rotor.modal.axial is not None and rotor.name in held for rotor in rotors}
-    if all(name in carriers for pair in pairs for name in pair.rotors):
-        require_thrust_carried(axial_forces(pairs, speeds, constant_torques(torques)), carriers)
+    names = {rotor.name for rotor in rotors}
+    movable = {rotor.name for rotor in rotors if rotor.modal.axial is not None}
+    if all(name in names for pair in pairs for name in pair.rotors):
+        require_thrust_carried(pairs, bearings, speeds, constant_torques(torques), movable)
 
 
 def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:

@@ -50,7 +50,7 @@ from coupling.machine.parts import (
     require_stations,
     rotor_with_gears,
 )
-from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
+from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
 from coupling.signals.histories import histories, transient_outputs
@@ -65,7 +65,8 @@ from rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
-_LATERAL_LIMIT = 2.0 * np.pi * 8000.0  # of the bending modes of a shaft that says nothing of its own [rad/s]
+LATERAL_LIMIT_HZ = 8000.0
+"""Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
 
 
 @dataclass(frozen=True)
@@ -205,18 +206,18 @@ class Machine:
         return tuple(found)
 
     def rotor_components(
-        self, *, reach: float = 1.0, progress: Callable[[str], None] = lambda text: None
+        self, *, limit_factor: float = 1.0, progress: Callable[[str], None] = lambda text: None
     ) -> tuple[RotorComponent, ...]:
         """Shafts with their gears, reduced to modes on the bearings' mean stiffness.
 
         Parameters
         ----------
-        reach : float
+        limit_factor : float
             Multiplies the frequency limit, or the number, of the retained modes of the shafts.
         progress : callable
             Called with a line of text for each shaft.
         """
-        return tuple(self._component(shaft, reach, progress) for shaft in self.shafts)
+        return tuple(self._component(shaft, limit_factor, progress) for shaft in self.shafts)
 
     def assemble(
         self,
@@ -486,9 +487,7 @@ class Machine:
                 map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True
             )
         ]
-        forces = axial_forces(pairs, self.speeds, constant_torques(self.constant_torques))
-        held = axially_held(self.bearings, self.speeds, forces)
-        require_thrust_carried(forces, {name: name in held for name in forces})
+        require_thrust_carried(pairs, self.bearings, self.speeds, constant_torques(self.constant_torques))
 
     def _require_balance_of_each_shaft(self) -> None:
         """Refuse torques that no gear pair leads away and that do not balance on their own shaft.
@@ -528,15 +527,16 @@ class Machine:
                     "the back flanks, which never meet without one"
                 )
 
-    def _component(self, shaft: Shaft, reach: float, progress: Callable[[str], None]) -> RotorComponent:
+    def _component(self, shaft: Shaft, limit_factor: float, progress: Callable[[str], None]) -> RotorComponent:
         progress(f"modes of rotor {shaft.name}")
         held = [mounted for mounted in self.bearings if mounted.rotor == shaft.name]
         limit, count = shaft.frequency_limit, shaft.mode_count
         if limit is None and count is None:
-            limit = _LATERAL_LIMIT
+            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ
         if shaft.rotor.mass_model == "distributed":
             # A lumped rotor has no more modes than its masses allow.
-            limit, count = None if limit is None else reach * limit, None if count is None else round(reach * count)
+            limit = None if limit is None else limit_factor * limit
+            count = None if count is None else round(limit_factor * count)
         gears = self._gears_on(shaft.name)
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
         pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]

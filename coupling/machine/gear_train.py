@@ -546,21 +546,21 @@ def mesh_phases(
     CouplingError
         Where a loop of gears cannot be assembled.
     """
-    turned: dict[str, float] = {}
+    angles: dict[str, float] = {}
     phases = []
     for driver, driven, pair, line, sense in zip(drivers, drivens, geometries, centre_lines, senses, strict=True):
         at_zero = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
         pitches = sense * 2.0 * math.pi / pair.driver.teeth, -sense * 2.0 * math.pi / pair.driven.teeth
-        if driver in turned:
-            phase = (turned[driver] - at_zero[0]) / pitches[0]
-        elif driven in turned:
-            phase = (turned[driven] - at_zero[1]) / pitches[1]
+        if driver in angles:
+            phase = (angles[driver] - at_zero[0]) / pitches[0]
+        elif driven in angles:
+            phase = (angles[driven] - at_zero[1]) / pitches[1]
         else:
             phase = 0.0
         for gear, zero, pitch in zip((driver, driven), at_zero, pitches, strict=True):
             stands = zero + phase * pitch
             # A whole number of pitches is the same place.
-            misfit = (turned.setdefault(gear, stands) - stands) / pitch
+            misfit = (angles.setdefault(gear, stands) - stands) / pitch
             if abs(misfit - round(misfit)) > _MISFIT:
                 raise CouplingError(
                     f"{driver} -> {driven}: the gears form a loop that cannot be assembled: teeth of {gear} would "

@@ -23,6 +23,10 @@ FloatArray = npt.NDArray[np.float64]
 
 ACCELERATION_REFERENCE = 1e-6
 """Of vibratory acceleration levels [m/s²], ISO 1683."""
+ComplexArray = npt.NDArray[np.complex128]
+Window = Literal["uniform", "hann"]
+
+_NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # of the window, over the spacing of lines
 
 
 def rms_of_peak(amplitude: npt.ArrayLike) -> FloatArray:
@@ -63,10 +67,6 @@ def from_decibels(level: npt.ArrayLike, reference: float = ACCELERATION_REFERENC
 def _check(reference: float) -> None:
     if not 0.0 < reference < np.inf:
         raise CouplingError(f"levels over a reference of {reference}; expected a positive number")
-
-
-ComplexArray = npt.NDArray[np.complex128]
-Window = Literal["uniform", "hann"]
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class Spectrum:
         three of them, whose squares add up to 3/2.
         """
         inside = (self.frequencies > 0.0) & (self.frequencies <= limit)
-        noise_bandwidth = 1.0 if self.window == "uniform" else 1.5
+        noise_bandwidth = _NOISE_BANDWIDTH[self.window]
         return np.asarray(np.sqrt(0.5 * (self.amplitude[..., inside] ** 2).sum(axis=-1) / noise_bandwidth))
 
 
@@ -262,9 +262,6 @@ def spectrum_peaks(
     peaks = peaks[a[peaks] > floor * a[peaks].max(initial=0.0)]
     peaks = peaks[np.argsort(-a[peaks], kind="stable")][:count]
     return [Peak(float(f[i]), float(a[i])) for i in peaks]
-
-
-_NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # of the window, over the spacing of lines
 
 
 @dataclass(frozen=True)

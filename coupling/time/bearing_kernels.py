@@ -17,7 +17,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.time.kernel_arrays import BALLS, ROLLERS, Bearings
+from coupling.time.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, ROLLERS, Bearings
 from rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
@@ -137,7 +137,7 @@ def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArra
 
 @uncounted()
 def bearing_force(
-    bearings: Bearings, number: int, turned: float, q: FloatArray, force: FloatArray, tangent: FloatArray
+    bearings: Bearings, number: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
     """Force (5,) of the shaft on a bearing displaced by q (5,), and its tangent (5, 5); both are overwritten.
 
@@ -146,7 +146,7 @@ def bearing_force(
     energy : float
         [J].
     slope : float
-        Its derivative by the turned time [J/s]: the power of the rotating cage at nominal speed.
+        Its derivative by the nominal time [J/s]: the power of the rotating cage at nominal speed.
     """
     for i in range(5):
         force[i] = 0.0
@@ -155,7 +155,7 @@ def bearing_force(
     energy, slope = 0.0, 0.0
     for row in range(bearings.first_row[number], bearings.first_row[number + 1]):
         kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
-        angle = bearings.cage[row, 0] + bearings.cage[row, 1] * turned
+        angle = bearings.cage[row, 0] + bearings.cage[row, 1] * nominal_time
         if kind == BALLS:
             added, by_angle = _balls(shape, count, angle, q, force, tangent)
         elif kind == ROLLERS:
@@ -173,26 +173,26 @@ def bearing_force(
 def evaluate_bearings(
     bearings: Bearings,
     offset: int,
-    turned: float,
+    nominal_time: float,
     delta: FloatArray,
     force: FloatArray,
     tangents: FloatArray,
-    held: FloatArray,
+    room: FloatArray,
 ) -> None:
     """Nonlinear part f - K δ of every bearing's force at the deflections ``delta[offset:]``, and its tangent.
 
-    Fills in the forces, the leading d by d of the tangents (b, 5, 5), and ``held`` (8, 5): in row 0 energy [J] and its
+    Fills in the forces, the leading d by d of the tangents (b, 5, 5), and ``room`` (8, 5): in row 0 energy [J] and its
     slope [J/s]; the other rows are scratch for one bearing.
     """
-    held[0, 0], held[0, 1] = 0.0, 0.0
-    q, push, tangent = held[1], held[2], held[3:]
+    room[BEARING_ENERGY], room[BEARING_POWER] = 0.0, 0.0
+    q, push, tangent = room[1], room[2], room[3:]
     for number in range(bearings.preload.size):
         first, end = bearings.first[number], bearings.first[number + 1]
         for i in range(5):
             q[i] = bearings.fixed[number, i]
         for k in range(first, end):
             q[bearings.axis[k]] = delta[offset + k]
-        energy, slope = bearing_force(bearings, number, turned, q, push, tangent)
+        energy, slope = bearing_force(bearings, number, nominal_time, q, push, tangent)
         for k in range(first, end):
             linear = 0.0
             for j in range(first, end):
@@ -201,22 +201,22 @@ def evaluate_bearings(
                 tangents[number, k - first, j - first] = tangent[bearings.axis[k], bearings.axis[j]] - stiffness
             force[offset + k] = push[bearings.axis[k]] - linear
             energy -= 0.5 * delta[offset + k] * linear
-        held[0, 0] += energy
-        held[0, 1] += slope
+        room[BEARING_ENERGY] += energy
+        room[BEARING_POWER] += slope
 
 
 @counted()
-def bearing_history(bearings: Bearings, number: int, turned: FloatArray, deflection: FloatArray) -> FloatArray:
+def bearing_history(bearings: Bearings, number: int, nominal_time: FloatArray, deflection: FloatArray) -> FloatArray:
     """Force of the shaft on one bearing over time, shape (s, d), from its deflections (s, d)."""
     first, end = bearings.first[number], bearings.first[number + 1]
     q, push, tangent = np.zeros(5), np.zeros(5), np.zeros((5, 5))
-    history = np.empty((turned.size, end - first))
+    history = np.empty((nominal_time.size, end - first))
     for i in range(5):
         q[i] = bearings.fixed[number, i]
-    for sample in range(turned.size):
+    for sample in range(nominal_time.size):
         for k in range(first, end):
             q[bearings.axis[k]] = deflection[sample, k - first]
-        bearing_force(bearings, number, turned[sample], q, push, tangent)
+        bearing_force(bearings, number, nominal_time[sample], q, push, tangent)
         for k in range(first, end):
             history[sample, k - first] = push[bearings.axis[k]]
     return history

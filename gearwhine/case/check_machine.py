@@ -378,7 +378,7 @@ def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
     torques = [operation.over_time, *(output.over_time for output in operation.output)]
     unknown += ["a torque given over time"] * any(torque is not None for torque in torques)
     if unknown:
-        yield Finding(("transient", "method"), f"'newmark' or 'auto'; the exact march knows nothing of {unknown[0]}")
+        yield Finding(("transient", "method"), f"'newmark' or 'auto'; exact integration does not cover {unknown[0]}")
 
 
 def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:

@@ -163,7 +163,7 @@ class GearErrors(Table):
         """Deviation of each tooth from its ideal place [m], of zero mean where it follows from `spacing`."""
         if not self.spacing:
             return self.pitch
-        # What is left over after a turn is nobody's: pitches sum to the circle.
+        # The pitches of all teeth sum to the circumference: the mean spacing is subtracted.
         closing = sum(self.spacing) / len(self.spacing)
         places = [0.0]
         for step in self.spacing[1:]:

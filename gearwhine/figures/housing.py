@@ -57,6 +57,23 @@ _PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the roo
 _LARGEST = 60.0  # area of the circle of MAC 1 [points²]
 _FAINT = 0.05  # MACs below it are not drawn
 _TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
+IntArray = npt.NDArray[np.int64]
+
+_COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
+_LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # beside the cells: row names, gap, colours, their numbers [mm]
+_BELOW = 11.0  # for the columns' names, which stand [mm]
+_CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # a cell's largest and least height, and the most of all [mm]
+_FITS = (4.2, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
+_NOTHING = 0.05  # values below it are left blank
+_DARK = 0.5  # values above it are written in white
+_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # of a panel, and between them [mm of paper]
+_NAMED = 6  # at most, of the degrees of freedom that stand out
+_STANDS_OUT = 2.0  # times the median of the enhanced criterion
+_MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # beside the panels, between two pairs, and for a pair's words [mm]
+_IN_A_ROW = 2  # pairs
+_LONGEST = 56  # caption [letters]
+_REACH = 0.09  # largest displacement drawn, as a part of the survey's diagonal
+_FAINTEST = 0.3  # opacity of what is farthest from the eye
 
 
 def draw_comparison(title: str, comparison: Comparison, model_frequencies: FloatArray) -> Figure:
@@ -173,15 +190,6 @@ def _dot(name: str, color: str, *, filled: bool = True) -> Line2D:
     return Line2D([], [], color=color, marker="o", ms=4.5, mfc=color if filled else "none", mew=0.7, ls="", label=name)
 
 
-_COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
-_LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # beside the cells: row names, gap, colours, their numbers [mm]
-_BELOW = 11.0  # for the columns' names, which stand [mm]
-_CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # a cell's largest and least height, and the most of all [mm]
-_FITS = (4.2, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
-_NOTHING = 0.05  # values below it are left blank
-_DARK = 0.5  # values above it are written in white
-
-
 def draw_mac_matrix(
     title: str,
     values: FloatArray,
@@ -255,11 +263,6 @@ def _name(axis: Axis, names: Sequence[str], size: float, *, upright: bool) -> No
     axis.set_ticklabels([names[place] for place in places], size=NOTE, rotation=90.0 if upright else 0.0)
 
 
-_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # of a panel, and between them [mm of paper]
-_NAMED = 6  # at most, of the degrees of freedom that stand out
-_STANDS_OUT = 2.0  # times the median of the enhanced criterion
-
-
 def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray, names: Sequence[str]) -> Figure:
     """Draw both criteria as bars in the survey's order; red what stands out by the one that sees signs and gains.
 
@@ -306,15 +309,6 @@ def _bars(axes: Axes, values: FloatArray, worst: npt.NDArray[np.int64]) -> None:
     axes.bar(places, np.nan_to_num(values), width=0.85, color=colors, lw=0.0)
     axes.set_xlim(0.5, len(values) + 0.5)
     axes.grid(visible=False, axis="x")
-
-
-IntArray = npt.NDArray[np.int64]
-
-_MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # beside the panels, between two pairs, and for a pair's words [mm]
-_IN_A_ROW = 2  # pairs
-_LONGEST = 56  # caption [letters]
-_REACH = 0.09  # largest displacement drawn, as a part of the survey's diagonal
-_FAINTEST = 0.3  # opacity of what is farthest from the eye
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Shaft,
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
 from coupling.machine.components import HousingComponent, RotorComponent, housing_component
+from coupling.machine.description import LATERAL_LIMIT_HZ
 from coupling.machine.gear_train import AppliedTorque
 from coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
 from coupling.machine.parts import Driving
@@ -34,13 +35,12 @@ from rotors.rolling_bearings import RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
-# Shafts keep every bending mode up to this frequency, or several times the housing's limit where that is higher;
-# what lies above answers statically, through attachment vectors at bearings and gears.
-_LATERAL_LIMIT_HZ = 8000.0
-_LIMIT_FACTOR = 2.5
-_REACH = 2.0  # of the shafts' modes in the basis that tells the error of the first
+# Shafts keep every bending mode up to LATERAL_LIMIT_HZ, or several times the housing's limit where that is higher; what
+# lies above answers statically, through attachment vectors at bearings and gears.
+_HOUSING_FACTOR = 2.5
+_MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis that tells the error of the first
 _SLOPE_STEP = 1e-6  # part of the nominal speed to both sides of a corner of a torque line
 
 
@@ -97,11 +97,11 @@ def build_machine(
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
     *,
-    reach: float = 1.0,
+    limit_factor: float = 1.0,
 ) -> CoupledMachine:
     """Assemble the machine of a case at its operating speed.
 
-    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
+    ``limit_factor`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def build_machine(
     if any(mounted.needs_load for mounted in machine.bearings):
         progress("static equilibrium of the machine under its mean load")
         machine = machine.at_operating_point(gravity=_gravity(case))
-    components = machine.rotor_components(reach=reach, progress=progress)
+    components = machine.rotor_components(limit_factor=limit_factor, progress=progress)
     return machine.assemble(pairs, components, driving(case, components))
 
 
@@ -267,9 +267,9 @@ def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
     if given.modes is not None:
         return None, given.modes
     if given.frequency_limit is not None:
-        return _HERTZ * given.frequency_limit, None
+        return _TWO_PI * given.frequency_limit, None
     limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
-    return _HERTZ * max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit), None
+    return _TWO_PI * max(LATERAL_LIMIT_HZ, _HOUSING_FACTOR * limit), None
 
 
 def base_motion(case: Case) -> BaseMotion | None:
@@ -295,7 +295,7 @@ def basis_error(
         return None
     progress("comparing with another modal basis")
     other = replace(housing, component=housing.coarser)
-    return BasisError(machine, build_machine(case, other, pairs, reach=_REACH))
+    return BasisError(machine, build_machine(case, other, pairs, limit_factor=_MORE_MODES))
 
 
 def _housing_components(
@@ -406,10 +406,10 @@ def train_inertia(case: Case, rotors: Sequence[RotorComponent]) -> float:
     """Polar inertia of the train, reduced to the first driver's rotor [kg m²]."""
     ratios = speed_ratios(case)
     shares = applied_torques(case, 1.0)
-    turned = set(ratios) if case.gear_pair else {shares[0].shaft}
+    rotating = set(ratios) if case.gear_pair else {shares[0].shaft}
     inertias = {rotor.name: float(np.sum(rotor.turning**2)) for rotor in rotors}
     first = float(ratios[shares[0].shaft])
-    return sum(inertias[name] * (float(ratios[name]) / first) ** 2 for name in inertias if name in turned)
+    return sum(inertias[name] * (float(ratios[name]) / first) ** 2 for name in inertias if name in rotating)
 
 
 def _torque(line: TorqueLine, speed: float) -> float:

@@ -42,7 +42,7 @@ from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
 # Places looked at for each sensor, and in all at least: more of them stand closer, and the method takes neighbours,
 # which say the same twice.
@@ -64,7 +64,7 @@ def read_measured(case: Case, progress: Progress = silent) -> MeasuredModes:
     if given.survey is None:
         assert given.frequencies is not None
         ratios = None if given.damping_ratios is None else np.array(given.damping_ratios)
-        return MeasuredModes(_HERTZ * np.array(given.frequencies), ratios)
+        return MeasuredModes(_TWO_PI * np.array(given.frequencies), ratios)
     if given.survey.modes is not None:
         return given.survey.modes
     assert given.survey.responses is not None
@@ -192,7 +192,7 @@ def compare_responses(
     lines = np.flatnonzero((responses.frequencies > 0.0) & (responses.frequencies <= limit))
     if len(lines) < 2:
         raise HousingError(
-            f"the responses have {len(lines)} lines between 0 and {limit / _HERTZ:.0f} Hz, up to where the model's "
+            f"the responses have {len(lines)} lines between 0 and {limit / _TWO_PI:.0f} Hz, up to where the model's "
             "modes are known: expected two at least"
         )
     forces = replace(

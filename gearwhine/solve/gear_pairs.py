@@ -54,7 +54,7 @@ _HARMONICS = 8  # of the mesh frequency, where the case does not name them
 
 
 @dataclass(frozen=True, eq=False)
-class ToothPairCurves:
+class MeshPeriodCurves:
     """A gear pair at even phases of its mesh period, (n,), with every pair of teeth (n, m); NaN where one is absent.
 
     Attributes
@@ -170,7 +170,7 @@ class PairAnalysis:
         place = np.unravel_index(int(known.argmax()), known.shape)
         return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
 
-    def curves(self) -> ToothPairCurves:
+    def curves(self) -> MeshPeriodCurves:
         """Return the pair's curves at even phases of the mesh period."""
         phases = np.arange(_PHASES) / _PHASES
         contact, faces = self.solved.contact, self.solved.contact.faces
@@ -181,7 +181,7 @@ class PairAnalysis:
             whole = mesh_pressure(self.solved.geometry, contact, mesh)
             # Over the face the largest; what lies off the path has none.
             pressure = whole if whole.ndim == 2 else np.fmax.reduce(whole, axis=2)
-        return ToothPairCurves(
+        return MeshPeriodCurves(
             phases=phases,
             mesh=mesh,
             stiffness=mesh_stiffness(contact, phases),

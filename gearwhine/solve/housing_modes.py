@@ -39,7 +39,6 @@ from housing import (
     effective_mass,
     modal_damping,
     read_modes,
-    solve_modes,
     write_modes,
 )
 from housing.correlation.comparison import Comparison
@@ -47,8 +46,7 @@ from housing.correlation.pairing import PairingRule
 from housing.errors import ModeFileError
 from housing.measured import MeasuredModes
 from housing.measured.survey_planning import Survey, survey_grid
-from housing.model.housing import RESPONSE_ORDERS, bearing_port
-from housing.model.patches import rigid_motions
+from housing.model.housing import RESPONSE_ORDERS, bearing_port, certified_modes
 from housing.model.seats import SensorPort
 from housing.modes.dominance import Dominance, dominance
 from housing.modes.effective_mass import damping_ratios as housing_damping_ratios
@@ -63,6 +61,13 @@ MODE_CACHE_FILE = "modes.nc"
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
+FloatArray = npt.NDArray[np.float64]
+
+_TWO_PI = 2.0 * np.pi
+_COORDINATES = ("coordinate", "other_coordinate")
+_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
+_DAMPING = "modal_damping"  # its name in a mode-set file
 
 
 def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
@@ -104,15 +109,6 @@ def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord
     except ModeFileError as error:
         return None, f"{error}; the modes are solved again"
     return (record if record.key == content_key(inputs) else None), None
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_HERTZ = 2.0 * np.pi
-_COORDINATES = ("coordinate", "other_coordinate")
-_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
-_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
-_DAMPING = "modal_damping"  # its name in a mode-set file
 
 
 @dataclass(frozen=True)
@@ -178,13 +174,11 @@ class SolvedHousing:
     @property
     def trusted_limit_hz(self) -> float:
         """Frequency below which the modes are complete [Hz]."""
-        return self.modes.certificate.limit / _HERTZ
+        return self.modes.certificate.limit / _TWO_PI
 
     @property
     def total_damping_ratios(self) -> FloatArray:
         """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
-        if self.damping_matrix is None:
-            return self.damping_ratios
         return housing_damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
 
     @property
@@ -278,7 +272,7 @@ def solve_housing(
         if cached is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
-            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _HERTZ)
+            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _TWO_PI)
         else:
             modes, mass, checks = cached.modes, cached.mass, cached.notes["checks"]
             damping_matrix = cached.extras[_DAMPING].values if _DAMPING in cached.extras else None
@@ -339,12 +333,11 @@ def _solve_modes(
     assembled = time.perf_counter() - begin
     wanted = "modes" if given.frequency_limit is None else "frequency_limit"
     try:
-        modes = solve_modes(
+        modes = certified_modes(
             matrices,
-            frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
+            loaded,
+            below_hz=given.frequency_limit,
             count=given.modes,
-            ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-            port_orders=RESPONSE_ORDERS,
             solver=given.solver,
             progress=progress,
         )
@@ -387,11 +380,10 @@ def write_mode_cache(place: Path, solved: SolvedHousing) -> None:
 def base_participation(case: Case, mesh: Mesh, modes: ModeSet) -> FloatArray:
     """Participation of modes and attachments in the motions of the ground, about the origin, shape (n, 6) [√kg, √kg m].
 
-    φᵀ M R over every degree of freedom: what is fixed moves with the ground, and pulls by the consistent mass.
+    See :meth:`housing.Housing.participation`.
     """
-    mass = describe_housing(case, mesh).matrices().mass
-    moved = mass @ rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)
-    return modes.project_all(sparse.csr_array(moved.T))
+    described = describe_housing(case, mesh)
+    return described.participation(described.matrices(), modes)
 
 
 def pair_modes(
@@ -439,9 +431,9 @@ def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> Non
     limit = solved.modes.certificate.limit
     if limit < highest:
         expected = (
-            f"at least {highest / _HERTZ:.5g} Hz: {why} up to there, and the model's are known only below the limit"
+            f"at least {highest / _TWO_PI:.5g} Hz: {why} up to there, and the model's are known only below the limit"
         )
-        raise CaseError([Problem("housing.frequency_limit", f"{limit / _HERTZ:.5g} Hz", expected)])
+        raise CaseError([Problem("housing.frequency_limit", f"{limit / _TWO_PI:.5g} Hz", expected)])
 
 
 def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:

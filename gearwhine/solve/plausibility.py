@@ -66,7 +66,7 @@ def bearing_load_warnings(case: Case, mean_force: Mapping[str, FloatArray]) -> l
     return found
 
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _TOLD = 5  # growing modes named one by one
 
 
@@ -74,7 +74,7 @@ def unstable_modes_warnings(stability: Stability) -> list[dict[str, Any]]:
     """One warning for each growing mode, the fastest first; beyond a few they are counted."""
     found = []
     for mode in stability.growing[:_TOLD]:
-        frequency = abs(mode.eigenvalue) / _HERTZ
+        frequency = abs(mode.eigenvalue) / _TWO_PI
         where = f" ({mode.where})" if mode.where else ""
         fed = ", ".join(part.name for part, _ in mode.feeders[:3])
         found.append(
@@ -129,7 +129,7 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
     rows = [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
     frequencies = np.unique([line["frequency_hz"] for _, line in rows])
-    told = error.at(_HERTZ * frequencies)
+    told = error.at(_TWO_PI * frequencies)
     for name, line in rows:
         line["uncertainty"] = float(told[name][np.searchsorted(frequencies, line["frequency_hz"])])
     if limit_hz is not None:
@@ -141,7 +141,7 @@ def _bands(error: BasisError, limit_hz: float) -> list[dict[str, Any]]:
     edges = np.linspace(0.0, limit_hz, _BANDS + 1)
     inner = (np.arange(_OF_A_BAND) + 0.5) / _OF_A_BAND
     frequencies = edges[:-1, None] + np.diff(edges)[:, None] * inner
-    told = {name: values.reshape(_BANDS, -1) for name, values in error.at(_HERTZ * frequencies.ravel()).items()}
+    told = {name: values.reshape(_BANDS, -1) for name, values in error.at(_TWO_PI * frequencies.ravel()).items()}
     return [
         {
             "from_hz": float(edges[band]),

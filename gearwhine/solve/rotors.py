@@ -68,6 +68,15 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _DEFLECTION_PLACES = 201  # along a rotor, of its static deflection
 
+_TWO_PI = 2.0 * np.pi
+_STEPS = 400  # of frequency, where none are given
+_MODES, _BEYOND = 3, 1.25  # up to this elastic mode, and a little beyond
+_RIGID = 1000.0 * _TWO_PI  # highest frequency for a rotor that has no elastic mode [rad/s]
+_TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
+Bearings = tuple[Bearing, ...]
+Crossings = tuple[Crossing, ...] | str
+_PLACES = 101  # along a rotor, of its shapes
+
 
 @dataclass(frozen=True)
 class SolvedWeight:
@@ -205,13 +214,6 @@ def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Prob
     return [Probe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
 
 
-_HERTZ = 2.0 * np.pi
-_STEPS = 400  # of frequency, where none are given
-_MODES, _BEYOND = 3, 1.25  # up to this elastic mode, and a little beyond
-_RIGID = 1000.0 * _HERTZ  # highest frequency for a rotor that has no elastic mode [rad/s]
-_TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
-
-
 @dataclass(frozen=True)
 class TorsionReading:
     """Torsional response at a probe over the frequencies, Re(amplitude e^{iωt}) each.
@@ -313,7 +315,7 @@ def solve_torsion(
 def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bool) -> FloatArray:
     """Return given frequencies, or even steps beyond the third elastic mode, with the modes' own where damped."""
     if wanted.frequency is not None:
-        return _HERTZ * np.array(wanted.frequency.frequencies)
+        return _TWO_PI * np.array(wanted.frequency.frequencies)
     elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
     highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID
     steps = highest * np.arange(1, _STEPS + 1) / _STEPS
@@ -328,12 +330,6 @@ def _torsion_probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: Rotor) 
     for number, torque in enumerate((one for one in wanted.torques if one.rotor == given.name), start=1):
         places[torque.at] = f"torque {number}"
     return [TorsionProbe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
-
-
-Bearings = tuple[Bearing, ...]
-Crossings = tuple[Crossing, ...] | str
-
-_PLACES = 101  # along a rotor, of its shapes
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _SLOWEST = 0.5  # of the speed of operation, where a case names no range
 _OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: little folds back below it
 _LEAST_SAMPLES = 512

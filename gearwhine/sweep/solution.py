@@ -32,7 +32,7 @@ from housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ def _failure(error: Exception) -> PointFailure:
 
 def _reduced(case: Case, solved: SolvedTransient, housing: ReducedHousing | None, seconds: float) -> PointResult:
     assert case.operation is not None
-    turning_hz = abs(case.operation.speed) / _HERTZ
+    turning_hz = abs(case.operation.speed) / _TWO_PI
     spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
     lines = spectra[0].frequencies if spectra else np.empty(0)
     count = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))

@@ -14,6 +14,8 @@ from scipy.interpolate import PchipInterpolator
 
 from rotors.errors import RotorError, require, require_finite
 
+FloatArray = npt.NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class AxisSpring:
@@ -34,9 +36,6 @@ class AxisSpring:
         """Check the position, and that the stiffness is not negative; it may be infinite."""
         require_finite("axis spring position", self.at, minimum=0.0)
         require(self.stiffness >= 0.0, "axis spring stiffness", self.stiffness, "zero, a positive number or infinity")
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,18 @@ from rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+
+# Slopes are recomputed after steps longer than this.
+STALE = 1e-4
+# A step larger than this part of the root is shortened: its start is not near a root.
+LONGEST_STEP = 0.3
+# After a smaller relative step the existing factors serve for the next one.
+CLOSE = 1e-6
+# Largest correction of the vector in that step: its remaining error is a few times the square of the correction.
+TURNED = 1e-7
+# Relative step of the forward difference for slopes of the entries, accurate to about 1e-6.
+FORWARD = 1e-6
 
 
 @inner(error_model="python")
@@ -80,20 +92,6 @@ def edge_distance(place: complex, bounds: FloatArray) -> float:
     across: float = max(bounds[0] - place.real, place.real - bounds[1])
     along: float = max(bounds[2] - place.imag, place.imag - bounds[3])
     return max(across, along)
-
-
-IntArray = npt.NDArray[np.intp]
-
-# Slopes are recomputed after steps longer than this.
-STALE = 1e-4
-# A step larger than this part of the root is shortened: its start is not near a root.
-LONGEST_STEP = 0.3
-# After a smaller relative step the existing factors serve for the next one.
-CLOSE = 1e-6
-# Largest correction of the vector in that step: its remaining error is a few times the square of the correction.
-TURNED = 1e-7
-# Relative step of the forward difference for slopes of the entries, accurate to about 1e-6.
-FORWARD = 1e-6
 
 
 @inner(error_model="python", fastmath=FUSED)

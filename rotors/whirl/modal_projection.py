@@ -65,6 +65,12 @@ MOST_MIXED = 0.01
 LEAST_SQUARED = 1e-10
 # Stiffness may lack this part of its size to be symmetric, from rounding.
 ROUNDING = 1e-12
+IntArray = npt.NDArray[np.intp]
+NumberArray = npt.NDArray[Any]
+
+AXIAL_MODES = 8
+# Mass of a massless pedestal in the projection, as a part of the rotor's: every coordinate needs a mass.
+PEDESTAL_MASS = 1e-6
 
 
 @dataclass(frozen=True)
@@ -120,14 +126,6 @@ class CoupledPlanes:
         undamped = self.frequencies, self.gyroscopic, speeds
         values, mixed = damped(squared, right, *undamped, self.damping_x, self.damping_y)
         return values, mixed > MOST_MIXED
-
-
-IntArray = npt.NDArray[np.intp]
-NumberArray = npt.NDArray[Any]
-
-AXIAL_MODES = 8
-# Mass of a massless pedestal in the projection, as a part of the rotor's: every coordinate needs a mass.
-PEDESTAL_MASS = 1e-6
 
 
 def whirl_basis(

@@ -167,7 +167,7 @@ def test_many_changes_of_contact_are_no_fault(machine: CoupledMachine) -> None:
     count = len(elements.starts)
     within = orbit._pass_within
     assert within(ready.part, ready.contacts, elements, start, -count // 2, varied=False) is None
-    found = orbit.one_pass(ready.part, ready.contacts, elements, start, varied=False)
+    found = orbit.integrate_period(ready.part, ready.contacts, elements, start, varied=False)
     assert len(found.trace.start) >= count
 
 

@@ -170,7 +170,7 @@ class ToothContact:
             raise GearError(f"tooth contact: damping_depth must be at least 0 m, got {self.damping_depth!r}")
         if not (math.isfinite(self.shared_compliance) and self.shared_compliance >= 0.0):
             raise GearError(f"tooth contact: shared_compliance must be at least 0 m/N, got {self.shared_compliance!r}")
-        for curves in self._alone:
+        for curves in self._single_pair_curves:
             self._check_curves(curves)
         for name, gaps in (("pitch_gaps", self.pitch_gaps), ("back_pitch_gaps", self.back_pitch_gaps)):
             if gaps.ndim != 1 or not np.all(np.isfinite(gaps)):
@@ -214,12 +214,16 @@ class ToothContact:
 
     @cached_property
     def _law(self) -> FloatArray:
-        curves = self.kinds if self.faces is None else face_force_table(self.faces, self.kinds, self.module)
+        curves = (
+            self.variant_curves
+            if self.faces is None
+            else face_force_table(self.faces, self.variant_curves, self.module)
+        )
         return law_table(curves, self.entering, self.damping, self.damping_depth, self.shared_compliance)
 
     @property
     def entering(self) -> FloatArray:
-        """Gap [m] and kind of every pair of the hunting period, shape (h, 2)."""
+        """Gap [m] and variant of every pair of the hunting period, shape (h, 2)."""
         entering = np.zeros((self.hunting_numbers, 2))
         if self.pitch_gaps.size:
             entering[:, 0] = self.pitch_gaps
@@ -228,13 +232,13 @@ class ToothContact:
         return entering
 
     @cached_property
-    def kinds(self) -> tuple[ToothPairCurves, ...]:
-        """Curves of every kind of pair without the shared compliance, that of sound teeth first."""
-        return tuple(without_shared_compliance(curves, self.shared_compliance) for curves in self._alone)
+    def variant_curves(self) -> tuple[ToothPairCurves, ...]:
+        """Curves of every variant of tooth pair without the shared compliance, that of sound teeth first."""
+        return tuple(without_shared_compliance(curves, self.shared_compliance) for curves in self._single_pair_curves)
 
     @property
-    def _alone(self) -> tuple[ToothPairCurves, ...]:
-        """Curves of every kind of pair that carries alone."""
+    def _single_pair_curves(self) -> tuple[ToothPairCurves, ...]:
+        """Curves of every variant of tooth pair, as of one pair in contact: the shared compliance included."""
         return (ToothPairCurves(self.stiffness, self.deviation), *self.variants)
 
     @property
@@ -302,7 +306,7 @@ class ToothContact:
             part = ((at >= 0.0) & (at < end)).astype(np.float64)
         part *= places.present[..., None]
         total = np.zeros(at.shape[0])
-        for number, curves in enumerate(self.kinds[:1] if sound else self.kinds):
+        for number, curves in enumerate(self.variant_curves[:1] if sound else self.variant_curves):
             these = part > 0.0
             if not sound:
                 these &= (places.kind == number)[..., None]
@@ -341,7 +345,7 @@ class ToothContact:
         if self.faces is not None:
             return ()
         found: set[float] = set()
-        for curves in self.kinds:
+        for curves in self.variant_curves:
             for curve in (curves.deviation, curves.stiffness):
                 found.update((slope_jumps(curve) % 1.0).tolist())
         return tuple(sorted(found))
@@ -389,12 +393,12 @@ class ToothContact:
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
         state = None
         if self.faces is None:
-            for variant, curves in enumerate(self.kinds):
+            for variant, curves in enumerate(self.variant_curves):
                 these = present & (kind == variant)
                 stiffness[these] = curves.stiffness(position[these])
                 deviation[these] = curves.deviation(position[these])
         else:
-            state = face_slice_states(self.faces, self.kinds, position[present], kind[present])
+            state = face_slice_states(self.faces, self.variant_curves, position[present], kind[present])
             deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
         return PairStates(position, present, kind, entered, stiffness, deviation + gap, gap, state)

@@ -51,6 +51,19 @@ FloatArray = npt.NDArray[np.float64]
 
 _OUTLINE = 200
 _LAYERS = 300
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+
+DEFAULT_SLICES = 61
+FINE_SLICES = 241
+"""Number of slices where steep edges cross the face. A slice is inside or outside a pit: as the edge moves, the load
+steps by the share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
+FACE_STATIONS = 5
+"""Stations over the face of a gear at which it follows its shaft."""
+_NO_SPAN = 1e-6
+"""In base pitches: a line of contact with a shorter span along the path counts as one point of it."""
+_MOST_ROUNDS = 200
+_ALONE_ROUNDS = 8
 
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
@@ -85,21 +98,6 @@ def tooth_coupling(gear: Gear, radius: float) -> float:
 def _summed(values: FloatArray) -> FloatArray:
     """Sum `values` (n,) cumulatively from zero, (n + 1,)."""
     return np.concatenate([[0.0], np.cumsum(values)])
-
-
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
-
-DEFAULT_SLICES = 61
-FINE_SLICES = 241
-"""Number of slices where steep edges cross the face. A slice is inside or outside a pit: as the edge moves, the load
-steps by the share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
-FACE_STATIONS = 5
-"""Stations over the face of a gear at which it follows its shaft."""
-_NO_SPAN = 1e-6
-"""In base pitches: a line of contact with a shorter span along the path counts as one point of it."""
-_MOST_ROUNDS = 200
-_ALONE_ROUNDS = 8
 
 
 @dataclass(frozen=True, eq=False)

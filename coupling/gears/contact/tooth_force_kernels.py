@@ -157,7 +157,11 @@ def face_force(
 def face_force_and_tangent(
     law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float]:
-    """Force and tangent, as of `face_force`, and the tangent's slope by the compression."""
+    """Force and tangent, as of `face_force`, and the tangent's slope by the compression.
+
+    Newton's iteration in `pairs_compression` needs no energy: the polynomials of `face_force` are repeated here
+    without those of the energy, which cost as much again.
+    """
     v0 = law_value(law, cell) + p * (
         law_value(law, cell + 4) + p * (law_value(law, cell + 8) + p * law_value(law, cell + 12))
     )
@@ -182,7 +186,8 @@ def pair_force_and_tangent(
 ) -> tuple[float, float, float]:
     """Force, tangent and the tangent's derivative of a pair with a penetration ``approach`` > 0.
 
-    ``here``: index of its numbers.
+    ``here``: index of its numbers. `tooth_force` has the same law in line, with the energy: it looks up what its
+    pairs share only once.
     """
     unit = law_value(law, at + DEPTH_UNIT)
     if unit > 0.0:

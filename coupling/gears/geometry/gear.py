@@ -39,6 +39,10 @@ from coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviati
 from coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
 from housing.model.material import STEEL
 
+FloatArray = npt.NDArray[np.float64]
+
+_STEEPEST_HELIX = math.radians(60.0)
+
 
 class Inertia(NamedTuple):
     """Mass [kg] and moments of inertia about the shaft and about a diameter through the middle [kg m^2]."""
@@ -53,11 +57,6 @@ def hollow_disc(density: float, width: float, outer_radius: float, inner_radius:
     mass = density * width * math.pi * (outer_radius**2 - inner_radius**2)
     polar = 0.5 * mass * (outer_radius**2 + inner_radius**2)
     return Inertia(mass, polar, 0.5 * polar + mass * width**2 / 12.0)
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_STEEPEST_HELIX = math.radians(60.0)
 
 
 class Fault(Protocol):
