@@ -92,10 +92,6 @@ class Case(Table):
         """Return the gear of this name; KeyError where there is none."""
         return _named(self.gear, name)
 
-    def seat_named(self, name: str) -> Seat:
-        """Return the housing's seat of this name; KeyError where there is none."""
-        return _named(self.housing.seat if self.housing else (), name)
-
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""
         name = gear.material

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from gearwhine.case.gears import Gear, readable_pairs, shaft_of, train_of_pairs
+from gearwhine.case.gears import readable_pairs, shaft_of, train_of_pairs
 from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
 
@@ -151,11 +151,6 @@ def _station(case: Case, shaft: str, at: float | None, default: float) -> float 
     if not case.rotor:
         return None
     return at if at is not None else default * case.rotor_named(shaft).length
-
-
-def gears_on(case: Case, shaft: str) -> tuple[Gear, ...]:
-    """Return the gears that turn with a shaft."""
-    return tuple(gear for gear in case.gear if shaft_of(gear) == shaft)
 
 
 BEYOND_OPERATION = 1.5
