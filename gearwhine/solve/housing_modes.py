@@ -34,18 +34,13 @@ from housing import (
     Housing,
     HousingError,
     ModeSet,
-    compare_by_dominance,
-    compare_by_shapes,
     effective_mass,
     modal_damping,
     read_modes,
     solve_modes,
     write_modes,
 )
-from housing.correlation.comparison import Comparison
-from housing.correlation.pairing import PairingRule
 from housing.errors import ModeFileError
-from housing.measured import MeasuredModes
 from housing.measured.survey_planning import Survey, survey_grid
 from housing.model.housing import RESPONSE_ORDERS, bearing_port
 from housing.model.patches import rigid_motions
@@ -110,7 +105,6 @@ FloatArray = npt.NDArray[np.float64]
 
 _HERTZ = 2.0 * np.pi
 _COORDINATES = ("coordinate", "other_coordinate")
-_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
 _SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
 _DAMPING = "modal_damping"  # its name in a mode-set file
 
@@ -391,56 +385,6 @@ def base_participation(case: Case, mesh: Mesh, modes: ModeSet) -> FloatArray:
     mass = describe_housing(case, mesh).matrices().mass
     moved = mass @ rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)
     return modes.project_all(sparse.csr_array(moved.T))
-
-
-def pair_modes(
-    solved: SolvedHousing,
-    measured: MeasuredModes,
-    shapes: FloatArray | None = None,
-    rule: PairingRule | None = None,
-) -> Comparison:
-    """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
-
-    Parameters
-    ----------
-    solved : SolvedHousing
-    measured : housing.measured.MeasuredModes
-    shapes : ndarray, shape (n_modes, n_dofs), optional
-        The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
-    rule : PairingRule, optional
-        Of the pairing by shape.
-
-    Raises
-    ------
-    CaseError
-        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
-        no seats to be driven at.
-    housing.HousingError
-        Where the model has too few modes in the band, or its shapes do not fit the measured ones.
-    """
-    if measured.shapes is None or shapes is None:
-        return _compare_by_dominance(solved, measured.frequencies)
-    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
-    return compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
-
-
-def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Comparison:
-    if solved.strengths is None:
-        raise CaseError(
-            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
-        )
-    comparison = compare_by_dominance(frequencies, solved.strengths)
-    _require_modes_up_to(solved, comparison.band[1], "dominant modes are looked for")
-    return comparison
-
-
-def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> None:
-    limit = solved.modes.certificate.limit
-    if limit < highest:
-        expected = (
-            f"at least {highest / _HERTZ:.5g} Hz: {why} up to there, and the model's are known only below the limit"
-        )
-        raise CaseError([Problem("housing.frequency_limit", f"{limit / _HERTZ:.5g} Hz", expected)])
 
 
 def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
