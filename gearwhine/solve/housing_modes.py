@@ -1,4 +1,4 @@
-"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance; and their cache.
+"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance; their cache and checks.
 
 The mode cache is a file in the results folder that is read again while the housing is unchanged. Modes are identified
 by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys that do not enter the
@@ -29,8 +29,8 @@ from gearwhine.from_case.mesh_health import noted_on_failure, require_meshable, 
 from gearwhine.output.files import file_contents, installed, source_digest, texts_in, with_contents
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_health import bearing_places, housing_checks
 from housing import (
+    HealthReport,
     Housing,
     HousingError,
     ModeSet,
@@ -43,9 +43,11 @@ from housing import (
 from housing.errors import ModeFileError
 from housing.measured.survey_planning import Survey, survey_grid
 from housing.model.housing import RESPONSE_ORDERS, bearing_port
+from housing.model.material import mass_properties
 from housing.model.patches import rigid_motions
 from housing.model.seats import SensorPort
 from housing.modes.dominance import Dominance, dominance
+from housing.modes.effective_mass import EffectiveMass
 from housing.modes.effective_mass import damping_ratios as housing_damping_ratios
 from housing.modes.receptance import Selection, select_modes
 from housing.storage.mesh_arrays import mesh_digest
@@ -53,11 +55,18 @@ from housing.storage.mode_file import ModeRecord, with_sensors
 from housing.storage.netcdf import LabelledArray, content_key
 from meshes import Mesh
 
+FloatArray = npt.NDArray[np.float64]
+
 MODE_CACHE_FILE = "modes.nc"
 
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
+_HERTZ = 2.0 * np.pi
+_COORDINATES = ("coordinate", "other_coordinate")
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
+_DAMPING = "modal_damping"  # its name in a mode-set file
+_DIRECTIONS = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
 
 
 def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
@@ -99,14 +108,6 @@ def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord
     except ModeFileError as error:
         return None, f"{error}; the modes are solved again"
     return (record if record.key == content_key(inputs) else None), None
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_HERTZ = 2.0 * np.pi
-_COORDINATES = ("coordinate", "other_coordinate")
-_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
-_DAMPING = "modal_damping"  # its name in a mode-set file
 
 
 @dataclass(frozen=True)
@@ -408,3 +409,70 @@ def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:
         return np.array(given[: len(frequencies_hz)])
     assert isinstance(given, float | int)
     return np.full(len(frequencies_hz), float(given))
+
+
+def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
+    """Bearing positions on the housing: by bearing, its seat and its distance along z from the seat's centre [m].
+
+    Where no bearing has a seat, each seat stands for one at its centre. The housing's attachments are for these.
+    """
+    assert case.housing is not None
+    centers = {seat.name: seat.center[2] for seat in case.housing.seat}
+    places = {
+        bearing.name: (bearing.seat, case.rotor_named(bearing.rotor).start + bearing.at - centers[bearing.seat])
+        for bearing in case.bearing
+        if bearing.seat in centers
+    }
+    return places or {name: (name, 0.0) for name in centers}
+
+
+def housing_checks(given: Housing, health: HealthReport, masses: EffectiveMass) -> dict[str, Any]:
+    """Health report, effective masses and the solid's mass, for the documents and for whatever keeps the modes."""
+    solid = mass_properties(given.mesh, given.material, given.materials)
+    return {
+        "health": _health_document(health),
+        "effective_mass": _mass_document(masses),
+        "solid": {"mass_kg": solid.mass, "center_of_mass_m": solid.center.tolist()},
+    }
+
+
+def _health_document(health: HealthReport) -> dict[str, Any]:
+    body, held = health.body, health.grounding
+    return {
+        "ok": health.ok,
+        "lines": [
+            {
+                "name": line.name,
+                "value": line.value,
+                "bound": line.bound,
+                "ok": line.ok,
+                "essential": line.essential,
+                "why": line.why,
+            }
+            for line in health.lines
+        ],
+        "mass_kg": body.mass,
+        "center_of_gravity_m": body.center.tolist(),
+        "inertia_kg_m2": body.inertia.tolist(),
+        "free_motions": held.free_motions,
+        "supports": [
+            {
+                "name": support.name,
+                "fixes": support.fixes,
+                "stiffness_n_per_m": support.stiffness[:3].tolist(),
+                "stiffness_n_m_per_rad": support.stiffness[3:].tolist(),
+                "share": dict(zip(_DIRECTIONS, support.share.tolist(), strict=True)),
+            }
+            for support in held.supports
+        ],
+    }
+
+
+def _mass_document(masses: EffectiveMass) -> dict[str, Any]:
+    return {
+        "directions": list(_DIRECTIONS),
+        "fractions": masses.fractions.tolist(),
+        "captured": masses.captured.tolist(),
+        "missing": masses.missing.tolist(),
+        "held_by_supports": (1.0 - masses.free / masses.total).tolist(),
+    }
