@@ -1,8 +1,9 @@
 """Figures by matplotlib, without a display: arrays and results in, a `Figure` or a file out.
 
-``draw_transient``, ``draw_run``, ``draw_gear_pairs``, ``draw_system``, ``draw_steady``, ``draw_sweep`` and
-``draw_rotors`` yield the figures of an analysis with their names, which :func:`save_all` writes; the others return a
-figure for print, 160 mm wide, that :func:`save` writes. The modules of a topic have more of them::
+``draw_transient``, ``draw_run``, ``draw_gear_pairs``, ``draw_system``, ``draw_steady``, ``draw_sweep``,
+``draw_rotors`` and ``draw_comparison_figures`` yield the figures of an analysis with their names, which
+:func:`save_all` writes. The others, and more in the modules of each topic, return a figure for print, 160 mm wide,
+that :func:`save` writes::
 
     assembly = RotorAssembly(rotor, bearings)
     save(draw_shaft(assembly), Path("shaft.png"))
@@ -13,6 +14,7 @@ from gearwhine.figures.gears import draw_gear_pairs
 from gearwhine.figures.housing import (
     ShapePair,
     draw_comparison,
+    draw_comparison_figures,
     draw_coordinate_criteria,
     draw_mac_matrix,
     draw_measured_shapes,
@@ -37,6 +39,7 @@ __all__ = [
     "ShapePair",
     "draw_campbell",
     "draw_comparison",
+    "draw_comparison_figures",
     "draw_coordinate_criteria",
     "draw_critical_map",
     "draw_gear_pairs",
