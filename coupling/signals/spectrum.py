@@ -218,12 +218,6 @@ class SignalParts:
     rms: FloatArray
     peak: FloatArray
 
-    @property
-    def fixed_to_varying(self) -> FloatArray:
-        """|d.c.| over the rms of the a.c. part; infinite for a constant signal."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(np.abs(self.mean) / self.rms)
-
 
 def signal_parts(signal: FloatArray) -> SignalParts:
     """Split a signal of shape (..., s) into its d.c. and its a.c. part."""

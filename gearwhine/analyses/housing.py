@@ -1,6 +1,6 @@
 """Analyses of the housing: its mesh, its natural modes, and these beside measured ones."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,8 +12,14 @@ from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from gearwhine.results.comparison import COMPARISON, comparison_document, responses_document, survey_document
-from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison, write_response_correlation
+from gearwhine.results.comparison import (
+    COMPARISON,
+    comparison_document,
+    responses_document,
+    survey_document,
+    write_comparison,
+    write_response_correlation,
+)
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
 from gearwhine.solve.comparison import (
     ResponseCorrelation,
@@ -27,6 +33,8 @@ from housing.correlation.comparison import Comparison
 from meshes import Mesh
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.updating import SolvedUpdate
 
@@ -147,13 +155,18 @@ def compare(
         if isinstance(likeness, ResponseCorrelation):
             write_response_correlation(place, likeness)
 
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_comparison_figures
+
+        return draw_comparison_figures(case.title, comparison, solved.modes.frequencies, geometry)
+
     return Result(
         "compare",
         case,
         comparison,
         document | origin_document(solved),
         _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(case)),
-        _figures=lambda progress: draw_comparison_figures(case.title, comparison, solved.modes.frequencies, geometry),
+        _figures=figures,
         _files=files,
         _housing=solved,
         _data_file="comparison.nc",

@@ -18,8 +18,7 @@ from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.progress import Progress, silent
-from gearwhine.results.comparison import comparison_document
-from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison
+from gearwhine.results.comparison import comparison_document, write_comparison
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
@@ -289,4 +288,4 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
     if solved.run_signature is not None:
         yield from figures.draw_run(case, solved.run_signature, solved.housing)
     if solved.housing is not None and solved.comparison is not None:
-        yield from draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)
+        yield from figures.draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)

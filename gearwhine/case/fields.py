@@ -233,7 +233,6 @@ Angle = Annotated[float, Quantity(units.ANGLE)]
 PositiveFrequency = Annotated[float, Quantity(units.FREQUENCY, above=0.0)]
 Speed = Annotated[float, Quantity(units.SPEED)]
 SpeedFromZero = Annotated[float, Quantity(units.SPEED, at_least=0.0)]
-PositiveSpeed = Annotated[float, Quantity(units.SPEED, above=0.0)]
 PlainNumber = Annotated[float, Quantity(units.RATIO)]
 DampingRatio = Annotated[float, Quantity(units.RATIO, at_least=0.0, below=1.0)]
 

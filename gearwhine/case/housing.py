@@ -17,7 +17,6 @@ from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
     CaseFile,
-    DampingFromZero,
     DampingRatio,
     Density,
     Direction,
@@ -28,14 +27,13 @@ from gearwhine.case.fields import (
     PositiveFrequency,
     PositiveLength,
     Quantity,
-    StiffnessFromZero,
     Table,
     UnitVector,
     Whole,
     unit_vector,
     wrong,
 )
-from gearwhine.case.fixtures import Joint, LumpedMass, Mount
+from gearwhine.case.fixtures import Dashpots, Joint, LumpedMass, Mount, Springs
 from gearwhine.case.units import QuantityError, parse_quantity
 
 if TYPE_CHECKING:
@@ -217,22 +215,6 @@ class Seat(Table):
         from housing import Seat as BuiltSeat
 
         return BuiltSeat(self.name, self.center)
-
-
-class Springs(Table):
-    """Stiffness to ground along x, y, z [N/m], in all, spread over the patch."""
-
-    x: StiffnessFromZero = 0.0
-    y: StiffnessFromZero = 0.0
-    z: StiffnessFromZero = 0.0
-
-
-class Dashpots(Table):
-    """Damping to ground along x, y, z [N s/m], in all, spread over the patch."""
-
-    x: DampingFromZero = 0.0
-    y: DampingFromZero = 0.0
-    z: DampingFromZero = 0.0
 
 
 class Support(Patch):

@@ -93,10 +93,6 @@ class Case(Table):
         """Return the gear of this name; KeyError where there is none."""
         return _named(self.gear, name)
 
-    def seat_named(self, name: str) -> Seat:
-        """Return the housing's seat of this name; KeyError where there is none."""
-        return _named(self.housing.seat if self.housing else (), name)
-
     def centre_distance(self, pair: GearPair) -> float | None:
         """Return the distance of a pair's shafts [m]: of the rotors' axes, else as given; None: without backlash."""
         rotors = self.gear_named(pair.driver).rotor, self.gear_named(pair.driven).rotor

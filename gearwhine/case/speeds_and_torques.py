@@ -11,7 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from gearwhine.case.gears import Gear, readable_pairs, shaft_of, train_of_pairs
+from gearwhine.case.gears import readable_pairs, train_of_pairs
 from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
 
@@ -109,11 +109,6 @@ def _speed(case: Case, speed: float | None = None) -> float:
         assert case.operation is not None
         speed = case.operation.speed
     return speed
-
-
-def gears_on(case: Case, shaft: str) -> tuple[Gear, ...]:
-    """Return the gears that turn with a shaft."""
-    return tuple(gear for gear in case.gear if shaft_of(gear) == shaft)
 
 
 BEYOND_OPERATION = 1.5

@@ -9,7 +9,7 @@ COMAC and enhanced COMAC are bars over the survey's degrees of freedom, the wors
 beside the model's at the survey's points, as wireframes of one scale and phase.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +48,9 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
-from housing.correlation.comparison import Comparison
+from gearwhine.results.comparison import coordinate_names
+from housing.correlation.comparison import Comparison, ShapeCorrelation
+from housing.measured import MeasuredGeometry
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -309,6 +311,83 @@ def _bars(axes: Axes, values: FloatArray, worst: npt.NDArray[np.int64]) -> None:
     axes.bar(places, np.nan_to_num(values), width=0.85, color=colors, lw=0.0)
     axes.set_xlim(0.5, len(values) + 0.5)
     axes.grid(visible=False, axis="x")
+
+
+def draw_comparison_figures(
+    title: str,
+    comparison: Comparison,
+    model_frequencies: FloatArray,
+    geometry: MeasuredGeometry | None = None,
+) -> Iterator[tuple[str, Figure]]:
+    """Draw measured and model modes beside each other; with shapes also the matrices, and COMAC at each point.
+
+    Parameters
+    ----------
+    title : str
+        Of the case.
+    comparison, geometry
+        See :func:`gearwhine.results.comparison.write_comparison`.
+    model_frequencies : ndarray, shape (n,)
+        Of all the model's modes [rad/s].
+
+    Yields
+    ------
+    str
+        Name of the figure: ``comparison``; ``mac`` with shapes, ``auto-mac`` of the measured ones,
+        ``cross-orthogonality`` where the survey allows it, ``comac`` where there are pairs.
+    matplotlib.figure.Figure
+    """
+    yield "comparison", draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
+    if comparison.shapes is not None:
+        yield from _draw_matrices(title, comparison, comparison.shapes)
+        if comparison.shapes.comac is not None:
+            yield "comac", _draw_coordinates(title, comparison.shapes, geometry)
+
+
+def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation) -> Iterator[tuple[str, Figure]]:
+    model, measured = shapes.model_frequencies / HERTZ, shapes.measured_frequencies / HERTZ
+    paired = {pair.mode - 1: pair.measured_mode - 1 for pair in comparison.pairs}
+    near = (model >= 0.9 * measured[0]) & (model <= 1.1 * measured[-1])
+    shown = [int(mode) for mode in range(len(model)) if near[mode] or mode in paired]
+    columns = _mode_names(range(len(measured)), measured)
+    if shown:
+        outlined = [(row, paired[mode]) for row, mode in enumerate(shown) if mode in paired]
+        note = "pairs outlined; close modes are paired by their span, not by the single values"
+        figure = draw_mac_matrix(
+            f"MAC: {title}", shapes.mac[shown], _mode_names(shown, model), columns, outlined=outlined, note=note
+        )
+        yield "mac", figure
+    note = "large values off the diagonal: modes found twice, or that the survey cannot tell apart"
+    named = ("measured mode", "measured mode")
+    figure = draw_mac_matrix(
+        f"Auto-MAC of the test: {title}", shapes.measured_auto_mac, columns, columns, axes_named=named, note=note
+    )
+    yield "auto-mac", figure
+    if shapes.cross_orthogonality is not None:
+        modes = [number - 1 for number in shapes.orthogonality_modes]
+        note = "in the model's mass, reduced to the survey by SEREP; squares of a column add up to 1"
+        outlined = [(row, paired[mode]) for row, mode in enumerate(modes) if mode in paired]
+        figure = draw_mac_matrix(
+            f"Cross-orthogonality: {title}",
+            shapes.cross_orthogonality,
+            _mode_names(modes, model),
+            columns,
+            outlined=outlined,
+            named="cross-orthogonality",
+            note=note,
+        )
+        yield "cross-orthogonality", figure
+
+
+def _draw_coordinates(title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> Figure:
+    assert shapes.comac is not None
+    assert shapes.enhanced_comac is not None
+    names = coordinate_names(len(shapes.comac), geometry)
+    return draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
+
+
+def _mode_names(modes: Iterable[int], hertz: FloatArray) -> list[str]:
+    return [f"{mode + 1}   {hertz[mode]:.0f} Hz" for mode in modes]
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
 :mod:`gearwhine.results`.
 
 - :mod:`~gearwhine.solve.case_summary`: check of a case, without solving.
-- :mod:`~gearwhine.solve.housing_modes`, :mod:`~gearwhine.solve.housing_health`: the housing's modes and their checks.
+- :mod:`~gearwhine.solve.housing_modes`: the housing's modes and their checks.
 - :mod:`~gearwhine.solve.comparison`, :mod:`~gearwhine.solve.updating`: measured modes beside the model's with the plan
   of a survey, and model updating.
 - :mod:`~gearwhine.solve.rotors`: each rotor alone.

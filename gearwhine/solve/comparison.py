@@ -15,10 +15,10 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import build_supports
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing, pair_modes
+from gearwhine.solve.housing_modes import SolvedHousing
 from housing import HousingError
 from housing.correlation import frac, synthesised_responses
-from housing.correlation.comparison import Comparison
+from housing.correlation.comparison import Comparison, compare_by_dominance, compare_by_shapes
 from housing.correlation.pairing import PairingRule
 from housing.measured import (
     Alignment,
@@ -43,6 +43,7 @@ from meshes import Mesh
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
+_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
 
 # Places looked at for each sensor, and in all at least: more of them stand closer, and the method takes neighbours,
 # which say the same twice.
@@ -226,6 +227,56 @@ def compare_responses_document(
         return compare_responses(case, solved, survey, responses)
     except HousingError as error:  # of the responses: the pairs of modes stand without them
         return str(error)
+
+
+def pair_modes(
+    solved: SolvedHousing,
+    measured: MeasuredModes,
+    shapes: FloatArray | None = None,
+    rule: PairingRule | None = None,
+) -> Comparison:
+    """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
+
+    Parameters
+    ----------
+    solved : SolvedHousing
+    measured : housing.measured.MeasuredModes
+    shapes : ndarray, shape (n_modes, n_dofs), optional
+        The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
+    rule : PairingRule, optional
+        Of the pairing by shape.
+
+    Raises
+    ------
+    CaseError
+        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
+        no seats to be driven at.
+    housing.HousingError
+        Where the model has too few modes in the band, or its shapes do not fit the measured ones.
+    """
+    if measured.shapes is None or shapes is None:
+        return _compare_by_dominance(solved, measured.frequencies)
+    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
+    return compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
+
+
+def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Comparison:
+    if solved.strengths is None:
+        raise CaseError(
+            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
+        )
+    comparison = compare_by_dominance(frequencies, solved.strengths)
+    _require_modes_up_to(solved, comparison.band[1], "dominant modes are looked for")
+    return comparison
+
+
+def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> None:
+    limit = solved.modes.certificate.limit
+    if limit < highest:
+        expected = (
+            f"at least {highest / _TWO_PI:.5g} Hz: {why} up to there, and the model's are known only below the limit"
+        )
+        raise CaseError([Problem("housing.frequency_limit", f"{limit / _TWO_PI:.5g} Hz", expected)])
 
 
 @dataclass(frozen=True)

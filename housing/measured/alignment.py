@@ -58,9 +58,6 @@ class RigidMotion:
         return float(np.rad2deg(np.arccos(np.clip((np.trace(self.rotation) - 1.0) / 2.0, -1.0, 1.0))))
 
 
-AT_REST = RigidMotion(np.eye(3), np.zeros(3))
-
-
 def fit_points(points: FloatArray, targets: FloatArray) -> tuple[RigidMotion, float]:
     """Fit points to their targets by a rigid motion, and return the scale of a similarity transformation too.
 

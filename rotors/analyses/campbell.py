@@ -21,7 +21,6 @@ from rotors.certificate import ACCEPTED
 from rotors.errors import IncompleteModesError, require, require_finite
 from rotors.model.bearing import Bearing
 from rotors.model.shaft import Rotor
-from rotors.modes.lateral import LateralModes
 from rotors.numerics.branch_following import (
     BranchPoint,
     along_branches,
@@ -392,7 +391,6 @@ def campbell(
     *,
     frequency_limit: float | None = None,
     count: int | None = None,
-    basis: LateralModes | None = None,
     prove_all: bool = False,
     solver: WhirlSolver | None = None,
 ) -> Campbell:
@@ -408,8 +406,6 @@ def campbell(
         rad/s: branches below it at some speed.
     count
         Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
-    basis
-        From `rotors.whirl.modal_projection.whirl_basis`, to avoid building it.
     prove_all
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
     solver
@@ -424,7 +420,7 @@ def campbell(
     """
     turning = finite_values("speeds", speeds)
     require(bool((np.diff(turning) > 0.0).all()), "speeds", turning.tolist(), "ascending speeds")
-    shared = WhirlSolver(rotor, bearings, basis) if solver is None else solver
+    shared = WhirlSolver(rotor, bearings) if solver is None else solver
     same = shared.rotor is rotor and shared.bearings == tuple(bearings)
     require(same, "rotor of the solver", shared.rotor.name, f"{rotor.name}, on the same bearings")
     chosen = shared.planar_basis(frequency_limit, count)

@@ -34,23 +34,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from rotors.errors import require, require_count, require_finite
 from rotors.model.bearing import Bearing
 from rotors.model.shaft import Rotor
-from rotors.modes.lateral import LateralModes, solve_lateral_modes
 from rotors.modes.modal_rotor import gyroscopic_matrix, section_motions
-from rotors.modes.residual_modes import add_attachment_modes
 from rotors.modes.torsional_and_axial import solve_axial_modes
-from rotors.transfer_matrix.rotor_shafts import bending_shaft, rod_shaft
+from rotors.transfer_matrix.rotor_shafts import rod_shaft
 from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
 from rotors.whirl.planar_basis import (
-    BASIS_REACH,
-    LEAST_MODES,
     PlanarBasis,
-    loaded_places,
-    mean_supports,
-    modes_needed,
-    planar_basis,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -126,66 +117,6 @@ class CoupledPlanes:
         undamped = self.frequencies, self.gyroscopic, speeds
         values, mixed = damped(squared, right, *undamped, self.damping_x, self.damping_y)
         return values, mixed > MOST_MIXED
-
-
-def whirl_basis(
-    rotor: Rotor,
-    bearings: Sequence[Bearing],
-    *,
-    frequency_limit: float | None = None,
-    count: int | None = None,
-) -> LateralModes:
-    """Planar basis for whirl: modes at averaged bearing stiffness, and attachment modes.
-
-    It holds every mode below 1.5 times ``frequency_limit``, or three more than half of ``count``, and at least six;
-    then the static responses to a force at each bearing and to a moment at each disc, where the compensation and
-    gyroscopic terms act. Tables over speed enter with the stiffness at the middle of the table.
-
-    Parameters
-    ----------
-    rotor, bearings
-        The rotor and what holds it.
-    frequency_limit
-        Highest whirl frequency of interest, rad/s.
-    count
-        Number of whirl modes of interest, instead.
-
-    Raises
-    ------
-    RotorError, IncompleteModesError
-        As `rotors.solve_lateral_modes`.
-    """
-    both = (frequency_limit, count)
-    require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
-    supports = mean_supports(bearings)
-    available = bending_shaft(rotor, supports).available_modes
-    if frequency_limit is None:
-        modes = solve_lateral_modes(rotor, supports, count=modes_needed(count, available))
-    else:
-        require_finite("frequency_limit", frequency_limit, positive=True)
-        modes = solve_lateral_modes(rotor, supports, frequency_limit=BASIS_REACH * frequency_limit)
-        if modes.count < min(LEAST_MODES, available):
-            modes = solve_lateral_modes(rotor, supports, count=int(min(LEAST_MODES, available)))
-    forces, moments = loaded_places(rotor, bearings)
-    return add_attachment_modes(modes, forces_at=forces, moments_at=moments)
-
-
-def basis_for(
-    rotor: Rotor,
-    bearings: Sequence[Bearing],
-    frequency_limit: float | None,
-    count: int | None,
-    basis: LateralModes | None,
-) -> PlanarBasis:
-    """Planar basis from the given modes, which must be on the bearings' averaged stiffness, or a new one."""
-    require_count("count of modes", count)
-    for bearing in bearings:
-        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
-    if basis is None:
-        return planar_basis(rotor, bearings, frequency_limit, count)
-    expected = mean_supports(bearings)
-    require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
-    return PlanarBasis.of_modes(basis, bearings)
 
 
 def slowest(bearing: Bearing) -> float:

@@ -23,7 +23,6 @@ from rotors import (
 )
 from rotors.model.material import shear_coefficient
 from rotors.modes.torsional_and_axial import solve_torsional_chain
-from rotors.whirl.modal_projection import whirl_basis
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 BAR = Segment(0.4, 0.03, 0.01, STEEL)
@@ -108,10 +107,6 @@ def test_wrong_input_is_named(build, message: str) -> None:
         (lambda r: rotors.solve_lateral_modes(r, count=2).evaluate([0.5]), "positions are [0.5]"),
         (lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 1.0, 1.0)], 0.0), "bearing 'b' position"),
         (lambda r: rotors.solve_whirl(r, [], math.inf), "speed is inf"),
-        (
-            lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 0.0, 1.0)], 0.0, basis=whirl_basis(r, [])),
-            "supports of the basis",
-        ),
         (lambda _: solve_torsional_chain([1.0, 2.0], [1.0, 1.0]), "one spring between each two"),
         (lambda _: solve_torsional_chain([1.0, 2.0], [0.0]), "stiffnesses"),
         (lambda _: solve_torsional_chain([1.0, 2.0], [1.0], ground=[1.0]), "one stiffness for each inertia"),
