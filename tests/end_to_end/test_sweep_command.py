@@ -26,8 +26,8 @@ UNSTABLE = "bearing.input-back.stiffness.xy=0,1e10 N/m"
 ROTORS = (
     *("sweep", "spur-pair", "-o", "out", "--workers", "2", "--json"),
     *("--over", "operation.speed=3000 rpm:4200 rpm:3", "--over", UNSTABLE),
-    # Points that take a second or two, so that there is something to interrupt.
-    *("--set", "transient.revolutions=40", "--set", "transient.discard=39", "--set", "transient.tolerance=1e-4"),
+    # Points that take a second or so, so that there is something to interrupt.
+    *("--set", "transient.revolutions=24", "--set", "transient.discard=23", "--set", "transient.tolerance=1e-4"),
 )
 HOUSED = (
     *("sweep", "small-gearbox", "-q", "--json", "--set", "housing.box.mesh_size=50 mm"),
