@@ -7,7 +7,7 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import copysign
@@ -51,7 +51,14 @@ from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
 from coupling.signals.histories import histories, transient_outputs
 from coupling.statics.operating_point import OperatingPoint, solve_operating_point
-from coupling.statics.static_model import StaticGear, StaticShaftPart, face_stations, static_bearing, static_pair
+from coupling.statics.static_model import (
+    StaticGear,
+    StaticPair,
+    StaticShaftPart,
+    face_stations,
+    static_bearing,
+    static_pair,
+)
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
@@ -301,16 +308,16 @@ class Machine:
         rotors.EquilibriumError
             Where a rolling bearing is loaded beyond its theory.
         """
-        gears = {one.name: self._static_gear(one) for one in self._meshing_gears}
         sense = 1 if self.speed >= 0.0 else -1
         pairs = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
-            pairs.append(static_pair(pair, geometry, (gears[driver.name], gears[driven.name]), axes, rotation, torque))
+            gears = self._static_gear(driver, geometry), self._static_gear(driven, geometry)
+            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
         return solve_operating_point(
-            [self._static_shaft(shaft, gears) for shaft in self.shafts],
+            [self._static_shaft(shaft, pairs) for shaft in self.shafts],
             [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
             pairs,
             self.housing_component,
@@ -524,35 +531,25 @@ class Machine:
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 
-    @property
-    def _meshing_gears(self) -> tuple[ShaftGear, ...]:
-        """Gears that are in a pair."""
-        return tuple({one.name: one for pair in self.gear_pairs for one in self._gears_of(pair)}.values())
-
-    def _static_gear(self, gear: ShaftGear) -> StaticGear:
-        """Place a gear with the stations of its face on its shaft; the face is the narrowest of its pairs."""
-        width = min(
-            geometry.face_width
-            for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True)
-            if gear.name in (pair.driver, pair.driven)
-        )
-        stations = gear.at + face_stations(width)
+    def _static_gear(self, gear: ShaftGear, geometry: GearPairGeometry) -> StaticGear:
+        """Place a gear with the stations of the common face of a pair on its shaft."""
+        stations = gear.at + face_stations(geometry.face_width)
         length = self.shaft(gear.shaft).rotor.length
         within = stations[0] >= 0.0 and stations[-1] <= length
         return StaticGear(gear.name, gear.shaft, gear.at, stations if within else None)
 
-    def _static_shaft(self, shaft: Shaft, gears: Mapping[str, StaticGear]) -> StaticShaftPart:
+    def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
         places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         bodies = []
-        for gear in self._meshing_gears:
-            static = gears[gear.name]
-            if gear.shaft != shaft.name:
-                continue
-            places.append(gear.at)
-            if static.stations is not None:
-                places += static.stations.tolist()
-                bodies.append((float(static.stations[0]), float(static.stations[-1]), 2 * gear.gear.root_circle_radius))
+        for pair in pairs:
+            for gear, made in ((pair.driver, pair.geometry.driver), (pair.driven, pair.geometry.driven)):
+                if gear.shaft != shaft.name:
+                    continue
+                places.append(gear.at)
+                if gear.stations is not None:
+                    places += gear.stations.tolist()
+                    bodies.append((float(gear.stations[0]), float(gear.stations[-1]), 2.0 * made.root_circle_radius))
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 
