@@ -394,6 +394,8 @@ class _StaticModel:
         values, vectors = np.linalg.eigh(whole)
         # Without any connector, every rigid motion is free.
         stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
+        # A spring as soft as the softest of the others leaves least rounding in the balance of forces.
+        spring = float(min(values[values > _FREE * stiff], default=stiff))
         found: list[str] = []
         extra = np.zeros((self.size, self.size))
         for value, vector in zip(values, vectors.T, strict=True):
@@ -409,7 +411,7 @@ class _StaticModel:
                     "that balance"
                 )
             found.append(word)
-            extra += stiff * np.outer(motion, motion) / float(motion @ motion) ** 2
+            extra += spring * np.outer(motion, motion) / float(motion @ motion) ** 2
         return extra, tuple(found)
 
     def _rigid_motions(self) -> tuple[FloatArray, list[str]]:

@@ -6,19 +6,81 @@ the seats, a gear mesh a spring at each slice of the face.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from coupling import Machine
+from coupling import Machine, MountedBearing, Shaft, ShaftGear
+from coupling.gears import ConstantStiffness, Gear
 from coupling.gears.loaded.gear_pair import GearPair
-from rotors import Segment
+from rotors import Bearing, Rotor, Segment, ShaftMaterial
 
 FloatArray = npt.NDArray[np.float64]
 
 SLICES, PHASES, STATIONS = 61, 48, 5
+
+STEEL = ShaftMaterial(2.06e11, 7.92e10, 7850.0)
+MODULE, PRESSURE, HELIX, WIDTH = 3e-3, math.radians(20.0), math.radians(15.0), 25e-3
+TEETH = 23, 41
+STIFFNESS = 4e8
+FULL = np.array(
+    [
+        [2.0e8, 3.0e7, 1.0e7, 2.0e5, -8.0e5],
+        [3.0e7, 1.6e8, -2.0e7, 6.0e5, 1.0e5],
+        [1.0e7, -2.0e7, 9.0e7, 1.0e5, -2.0e5],
+        [2.0e5, 6.0e5, 1.0e5, 4.0e4, 2.0e3],
+        [-8.0e5, 1.0e5, -2.0e5, 2.0e3, 5.0e4],
+    ]
+)
+"""Stiffness of a bearing with all cross terms, positive definite."""
+
+
+def toothed(name: str, teeth: int, hand: float = 0.0, width: float = WIDTH, **more: Any) -> Gear:
+    """Gear of these tests; `hand` is 1 for a right-hand helix, -1 for a left-hand one, 0 for none."""
+    return Gear(name, teeth, MODULE, PRESSURE, width, helix_angle=hand * HELIX, **more)
+
+
+def distance(first: int, second: int, hand: float) -> float:
+    """Centre distance of two gears of these numbers of teeth [m]."""
+    return 0.5 * MODULE * (first + second) / math.cos(hand * HELIX)
+
+
+def one_stage(hand: float = 1.0, stiffness: npt.ArrayLike = FULL, **changes: Any) -> Machine:
+    """Two shafts in steps with a gear pair of one mesh spring, on bearings of this stiffness, each 20 % stiffer."""
+    apart = distance(*TEETH, hand)
+    shafts = [
+        Shaft(Rotor("in", [Segment(0.06, 0.03, 0.0, STEEL), Segment(0.12, 0.04, 0.0, STEEL)]), start=-0.08),
+        Shaft(
+            Rotor("out", [Segment(0.05, 0.035, 0.0, STEEL), Segment(0.11, 0.05, 0.0, STEEL)]),
+            (apart * math.cos(0.4), apart * math.sin(0.4)),
+            start=-0.08,
+        ),
+    ]
+    held = [
+        MountedBearing(linear_bearing(f"{shaft} {at}", at, (1 + 0.2 * number) * np.asarray(stiffness)), shaft, None)
+        for number, (shaft, at) in enumerate([("in", 0.016), ("in", 0.164), ("out", 0.01), ("out", 0.154)])
+    ]
+    parts: dict[str, Any] = {
+        "shafts": shafts,
+        "bearings": held,
+        "gears": [
+            ShaftGear(toothed("pinion", TEETH[0], hand), "in", 0.07),
+            ShaftGear(toothed("wheel", TEETH[1], -hand), "out", 0.07),
+        ],
+        "gear_pairs": [GearPair("pinion", "wheel", ConstantStiffness(STIFFNESS), backlash=1e-4)],
+        "speed": 300.0,
+        "torque": 150.0,
+    }
+    return Machine(**parts | changes)
+
+
+def linear_bearing(name: str, at: float, stiffness: npt.ArrayLike, **more: Any) -> Bearing:
+    """Bearing of a stiffness (2, 2) or (5, 5) without damping."""
+    matrix = np.asarray(stiffness)
+    return Bearing(name, at, matrix, np.zeros(matrix.shape), **more)
 
 
 def element(part: Segment, diameter: float, length: float) -> FloatArray:
@@ -63,8 +125,6 @@ class OwnStatics:
         Of the housing at the bearings (5 b, 5 b), bearings in the order of ``seated``.
     seated
         Names of the bearings in seats.
-    nodes_over_face
-        Nodes on each face: between those at which the mesh takes hold the elements are exact.
     """
 
     def __init__(self, machine: Machine, *, compliance: FloatArray | None = None, seated: Sequence[str] = ()) -> None:
@@ -89,12 +149,12 @@ class OwnStatics:
             here = slice(self.seat_first, self.seat_first + 5 * len(self.seated))
             self.linear[here, here] = np.linalg.inv(compliance)
         for number, name in enumerate(self.feet):
-            pedestal = self._bearing(name).bearing.pedestal
+            pedestal = self.mounted(name).bearing.pedestal
             assert pedestal is not None
             here = slice(self.foot_first + 2 * number, self.foot_first + 2 * number + 2)
             self.linear[here, here] = pedestal.stiffness
 
-    def _bearing(self, name: str):  # type: ignore[no-untyped-def]
+    def mounted(self, name: str) -> MountedBearing:
         return next(one for one in self.machine.bearings if one.bearing.name == name)
 
     def width(self, pair: GearPair) -> float:
@@ -158,7 +218,7 @@ class OwnStatics:
 
     def bearing(self, name: str) -> FloatArray:
         """Deflection of a bearing by all coordinates, (5, n)."""
-        one = self._bearing(name)
+        one = self.mounted(name)
         return self.section(one.rotor, one.bearing.at)[:5] - self.seat(name)
 
     def loads(self, gravity: Sequence[float] | None = None) -> FloatArray:
@@ -197,7 +257,7 @@ class OwnStatics:
         return push, -sense * math.tan(base_helix), sense, line
 
     @staticmethod
-    def base_radius(gear):  # type: ignore[no-untyped-def]
+    def base_radius(gear: Gear) -> float:
         transverse = math.atan(math.tan(gear.pressure_angle) / math.cos(gear.helix_angle))
         return 0.5 * gear.module * gear.teeth / math.cos(gear.helix_angle) * math.cos(transverse)
 
@@ -267,9 +327,20 @@ class OwnStatics:
         part = (phases[:, None] + shift) % 1.0
         return -approach + part * (approach + recess)
 
-    def solve(self, connectors: Mapping[str, FloatArray], loads: FloatArray) -> FloatArray:
-        """Motions under loads, of least norm along motions that nothing holds."""
-        whole = self.linear + sum(connectors.values())
+    def springs(self) -> FloatArray:
+        """Stiffness (n, n) of the linear bearings and of gear pairs with a constant stiffness."""
+        found = np.zeros((self.size, self.size))
+        for one in self.machine.bearings:
+            rows = self.bearing(one.bearing.name)
+            found += rows.T @ one.bearing.spatial_stiffness @ rows
+        for pair in self.machine.gear_pairs:
+            assert isinstance(pair.stiffness, ConstantStiffness)
+            found += self.mesh(pair, pair.stiffness.value)
+        return found
+
+    def solve(self, loads: FloatArray) -> FloatArray:
+        """Motions under loads with all springs, of least norm along motions that nothing holds."""
+        whole = self.linear + self.springs()
         scale = 1.0 / np.sqrt(np.diag(whole))
         answer = np.linalg.lstsq(scale[:, None] * whole * scale, scale * loads, rcond=1e-13)[0]
         return scale * answer
