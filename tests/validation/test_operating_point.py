@@ -251,7 +251,7 @@ def overhung(width: float, torque_at: float, stiffness: float = 1e6, at: float =
     """A pinion beside two bearings as hard as a clamp, and a wheel on a shaft as hard as a wall."""
     apart = distance(20, 60, 0.0)
     shafts = [
-        Shaft(Rotor("in", [Segment(0.2, 0.02, 0.0, STEEL, shear_coefficient=1e6)])),
+        Shaft(Rotor("in", [Segment(0.2, 0.02, 0.0, STEEL)])),
         Shaft(Rotor("out", [Segment(0.2, 0.16, 0.0, STEEL)]), (0.0, apart)),
     ]
     clamp = np.diag([1e13, 1e13, 1e13, 1e11, 1e11])
@@ -274,14 +274,22 @@ def overhung(width: float, torque_at: float, stiffness: float = 1e6, at: float =
 
 
 def test_an_overhung_pinion_opens_its_free_end() -> None:
-    """Cantilever of length L under the force F in the plane of action: its end tilts by F L² / 2 E I."""
+    """Cantilever of length L under the force F in the plane of action: its end tilts by F L² / 2 E I.
+
+    F is spread over the face b, so that its bending moment ends at the face with the slope F (L² - b²/4) / 2 E I; the
+    thick pinion is sheared by F / 2 kappa G A in the middle.
+    """
     width, length = 3e-3, 0.11
     point = overhung(width, torque_at=0.0).operating_point()
     (pair,) = point.pairs
-    bent = pair.force * length**2 / (2.0 * STEEL.youngs_modulus * math.pi / 64 * 0.02**4)
+    bent = pair.force * (length**2 - width**2 / 4) / (2.0 * STEEL.youngs_modulus * math.pi / 64 * 0.02**4)
+    ratio = STEEL.poisson_ratio
+    root = MODULE * (20 - 2.5)
+    shear_stiffness = 6 * (1 + ratio) / (7 + 6 * ratio) * STEEL.shear_modulus * math.pi / 4 * root**2
+    bent += pair.force / (2.0 * shear_stiffness)
     # The flanks open towards +z, where the shaft ends.
-    assert pair.misalignment_by_cause["shafts"] == pytest.approx(bent, rel=2.0 * (0.5 * width / length))
-    assert pair.misalignment == pytest.approx(bent, rel=2e-2)
+    assert pair.misalignment_by_cause["shafts"] == pytest.approx(bent, rel=1e-3)
+    assert pair.misalignment == pytest.approx(bent + pair.misalignment_by_cause["bodies"], rel=1e-3)
     assert abs(pair.misalignment_by_cause["bearings"]) < 1e-4 * bent
     assert pair.misalignment_by_cause["housing"] == 0.0
     # On the other side of the bearings the same force opens the other end.
@@ -303,7 +311,12 @@ def test_the_wind_up_of_a_pinion(torque_at: float, side: float) -> None:
     has its slope in the middle, F r_b² / 2 G J. The end where the torque leaves the shaft lags.
     """
     width = 40e-3
-    (pair,) = overhung(width, torque_at).operating_point().pairs
+    machine = overhung(width, torque_at)
+    beside = [
+        replace(one, bearing=replace(one.bearing, at=z))
+        for one, z in zip(machine.bearings, (0.1, 0.16, 0.1, 0.16), strict=True)
+    ]
+    (pair,) = replace(machine, bearings=beside).operating_point().pairs
     gear = pair.pair.geometry.driver
     root = MODULE * (20 - 2.5)
     polar = math.pi / 32 * root**4
@@ -330,7 +343,7 @@ def test_the_face_load_factor_of_iso_6336(excess: float) -> None:
     factor = float(load.max() * width / force)
     iso = 1.0 + excess if excess <= 1.0 else 2.0 * math.sqrt(excess)
     half = 0.5 * width / pair.contact.z.size
-    assert factor == pytest.approx(iso - per_width * misalignment * half * width / force, rel=2e-4)
+    assert factor == pytest.approx(iso - per_width * misalignment * half * width / force, rel=5e-4)
     if excess < 1.0:
         exact = 1.0 + per_width * misalignment * (0.5 * width - half) * width / force
         assert factor == pytest.approx(exact, rel=1e-10)
