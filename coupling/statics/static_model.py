@@ -35,9 +35,15 @@ class ConnectorLaw(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class LinearLaw:
-    """Constant stiffness, (5, 5), perhaps unsymmetric; the energy is that of its symmetric part."""
+    """Constant stiffness (d, d), perhaps unsymmetric, with the energy of its symmetric part."""
 
     stiffness: FloatArray
+
+    @property
+    def nominal(self) -> FloatArray:
+        """The symmetric factor of the polar decomposition, which holds the same motions and is never indefinite."""
+        _, values, rows = np.linalg.svd(self.stiffness)
+        return np.asarray((rows.T * values) @ rows)
 
     def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Energy, force and tangent."""
@@ -107,10 +113,10 @@ def static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
     if rolling is not None:
         return StaticBearing(mounted, RollingElementLaw(RollingElements(rolling)), _nominal_rolling(rolling))
     if isinstance(mounted.law, GapLaw):
-        return StaticBearing(mounted, RadialGapLaw(mounted.law), np.zeros((5, 5)))
-    stiffness = mounted.bearing.at_speed(speed).spatial_stiffness
-    values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
-    return StaticBearing(mounted, LinearLaw(stiffness), (vectors * np.maximum(values, 0.0)) @ vectors.T)
+        secant = mounted.law.force / (mounted.law.gap + mounted.law.depth)
+        return StaticBearing(mounted, RadialGapLaw(mounted.law), np.diag([secant, secant, 0.0, 0.0, 0.0]))
+    law = LinearLaw(mounted.bearing.at_speed(speed).spatial_stiffness)
+    return StaticBearing(mounted, law, law.nominal)
 
 
 def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
@@ -144,8 +150,8 @@ class StaticGear:
     at : float
         Middle of the face from the shaft's left end [m].
     stations : ndarray, shape (j,), or None
-        Stations of the face on the shaft, from its left end [m]; None for a gear whose face reaches beyond the end of
-        the shaft, which is rigid on the section at ``at``.
+        Stations of the pair's common face on the shaft, from its left end [m]; None for a gear whose face reaches
+        beyond the end of the shaft, which is rigid on the section at ``at``.
     """
 
     name: str

@@ -130,8 +130,9 @@ class FaceContact:
         self._contact = contact
         self._faces = contact.faces
         self._axial = axial
-        self._to_pitch_point = geometry.pitch_point_position
-        self._base_pitch = geometry.base_pitch
+        # The spring of a whole mesh has a range of one base pitch, and its load lies on the teeth's whole path.
+        self._path = geometry.base_pitch * geometry.contact_ratio / contact.contact_ratio
+        self._pitch_point = geometry.base_pitch * geometry.pitch_point_position
         self.z = contact.faces.z
         """Slices of the face, from its middle [m], shape (s,)."""
         self.stations = stations
@@ -296,7 +297,7 @@ class _Prepared:
         self.base, self.meeting = states.faces.base, states.faces.meeting
         self.gap = states.faces.gap
         position = states.position[self.owner, columns][:, None] + faces.shift
-        along = (position - mesh._to_pitch_point) * mesh._base_pitch
+        along = position * mesh._path - mesh._pitch_point
         basis = np.empty((*position.shape, mesh.size))
         basis[:, :, :-1] = mesh.over_face
         basis[:, :, -1] = -mesh._axial * along
