@@ -3,9 +3,9 @@
     python scripts/make_two_stage_reducer.py [FILE]
 
 A cast housing of a two-stage helical reducer, split in the plane of its three shafts: a lower and an upper housing and
-the cover of an inspection opening, three solids that touch. They are separate because they are separate parts: a case
-may give each its own material, and tie them by joints instead of by common nodes (``glue = false``). Bolts of the split,
-their holes, bearing caps, plugs and seals are left out: a tightened joint is taken for one piece.
+the cover of an inspection opening. They are three solids that touch, because they are three parts: a case may give each
+its own material, and tie them by joints instead of by common nodes (``glue = false``). Bolts of the split and their
+holes, bearing caps, plugs and seals are left out: a tightened joint is taken for one piece.
 
 Lengths are in mm. The frame is the machine's: z along the shafts, y up, the feet's undersides at y = 0, the middle of
 the casting at x = z = 0. The same dimensions give the same file, byte for byte.
@@ -93,7 +93,7 @@ class Drawing:
         return next(e for e in self.occ.extrude([(2, face)], *along) if e[0] == 3)
 
     def rounded(self, solid: Entity, radius: Callable[[Any, Any], float]) -> Entity:
-        """A solid with edges rounded: the radius of each by the low and high corner of its bounds; 0 leaves it sharp."""
+        """A solid with rounded edges: the radius of each by the corners of its bounds; 0 leaves it sharp."""
         self.occ.synchronize()
         edges, radii = [], []
         faces = self.gmsh.model.getBoundary([solid], oriented=False)
@@ -292,8 +292,8 @@ def compact(text: str) -> str:
     """Shorten a STEP file of OpenCASCADE's: no curves in surfaces' parameters, no entity twice, a neutral header.
 
     An edge keeps its curve in space alone, from which a reader finds those in the parameters of its two surfaces. Equal
-    points, directions and curves are one entity, and points are rounded. The header's date is left empty so that the file depends on nothing
-    but the dimensions.
+    points, directions and curves are one entity, and points are rounded. The header has no date, so that the file
+    depends on nothing but the dimensions.
     """
     head, data = text.split("DATA;\n", 1)
     entities = {int(number): " ".join(body.split()) for number, body in _ENTITY.findall(data)}
@@ -320,9 +320,8 @@ def compact(text: str) -> str:
     used = _reached(entities)
     names = {number: place for place, number in enumerate((n for n in entities if n in used), start=1)}
     lines = [f"#{names[number]}={refer(body, names)};" for number, body in entities.items() if number in used]
-    head = re.sub(
-        r"FILE_NAME\(.*?\);", "FILE_NAME('two-stage-reducer','',(''),(''),'','gearwhine','');", head, flags=re.DOTALL
-    )
+    name = "FILE_NAME('two-stage-reducer','',(''),(''),'','gearwhine','');"
+    head = re.sub(r"FILE_NAME\(.*?\);", name, head, flags=re.DOTALL)
     return head + "DATA;\n" + "\n".join(lines) + "\nENDSEC;\nEND-ISO-10303-21;\n"
 
 

@@ -61,7 +61,7 @@ from gearwhine.case.gears import (
     shaft_of,
 )
 from gearwhine.case.housing import Boss, CadFile, Dashpots, Housing, Material, MeshFile, Seat, Sensor, Springs, Support
-from gearwhine.case.load import LoadedCase, bundled_case, bundled_cases, load_case, parse_case
+from gearwhine.case.load import LoadedCase, bundled_case, bundled_cases, bundled_files, load_case, parse_case
 from gearwhine.case.measured import Align, Landmark, Measured, ModelModes, Update, UpdateParameter
 from gearwhine.case.model import Case, case_document, dump_case, require
 from gearwhine.case.operation import (
@@ -196,6 +196,7 @@ __all__ = [
     "applied_torques",
     "bundled_case",
     "bundled_cases",
+    "bundled_files",
     "campbell_speeds",
     "case_document",
     "did_you_mean",
