@@ -20,6 +20,7 @@ from gearwhine.figures.housing import (
     draw_mac_matrix,
     draw_measured_shapes,
 )
+from gearwhine.figures.machine.operating_point import draw_load
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run, draw_run_up_waterfall
 from gearwhine.figures.machine.steady_state import draw_response_curve, draw_steady
 from gearwhine.figures.machine.sweep import draw_sweep
@@ -58,6 +59,7 @@ __all__ = [
     "draw_gear_pairs",
     "draw_harris_map",
     "draw_lateral_modes",
+    "draw_load",
     "draw_mac_matrix",
     "draw_measured_shapes",
     "draw_mesh_stiffness",

@@ -13,7 +13,7 @@ from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Output
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
 from coupling.machine.components import HousingComponent, housing_component
-from gearwhine.case import Case, Rotor, require
+from gearwhine.case import Case, RollingStiffness, Rotor, require
 from gearwhine.from_case.driving import driving
 from gearwhine.from_case.gear_pairs import build_pair, solve_gears
 from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear, gear_inertia
@@ -137,12 +137,18 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
         laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
         # Those of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
+        rolling = {
+            entry.name: entry.stiffness.rolling.build(entry.name)
+            for entry in case.bearing
+            if entry.rotor == given.name and isinstance(entry.stiffness, RollingStiffness)
+        }
         bearings += [
             MountedBearing(
                 bearing,
                 given.name,
                 None if grounded else seats.get(bearing.name),
                 laws.get(bearing.name),
+                rolling.get(bearing.name),
             )
             for bearing in build_bearings(case, given.name)
         ]
