@@ -421,11 +421,13 @@ class _StaticModel:
         stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
         found: list[str] = []
         extra = np.zeros((self.size, self.size))
+        # Rounding leaves parts of other motions in a free one, which the loads drive as well.
+        scale = float(np.abs(motions).max(axis=1) @ np.abs(self.load))
         for value, vector in zip(values, vectors.T, strict=True):
             if value > _FREE * stiff:
                 continue
             motion = motions @ vector
-            work, scale = float(motion @ self.load), float(np.abs(motion) @ np.abs(self.load))
+            work = float(motion @ self.load)
             word = words[int(np.argmax(np.abs(vector)))]
             if abs(work) > _CARRIED * scale:
                 raise CouplingError(

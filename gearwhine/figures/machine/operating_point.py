@@ -1,10 +1,11 @@
 """Operating point figures: deflected shafts with their forces, load over the gear faces, causes of misalignment."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -81,7 +82,8 @@ def draw_deflected_shaft(
     strongest = max((abs(part) for one in forces for part in one.force), default=0.0) or 1.0
     below, above = _extent(assembly, view, shaft, forces, factor, strongest)
     height = below + above
-    note = f"deflections {factor:g} times as large as lengths, {MICRO * across:.3g} µm at most; arrows: what acts on it"
+    note = f"deflections {factor:g} times as large as lengths, {MICRO * across:.3g} µm at most"
+    note += "; arrows: forces on the shaft"
     if view.stretch > 1:
         note += f"; diameters {view.stretch} times as large as lengths"
     figure = sheet(HEAD + 4.0 + height + FOOT, title, note)
@@ -245,8 +247,8 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     upper = panel(figure, FOOT + _LOAD_PANEL + _ROOM, _GAP_PANEL)
     lower = panel(figure, FOOT, _LOAD_PANEL)
     modified = np.ptp(pair.pair.contact.flank_gap) > 0.0
-    look = {"color": GREY, "lw": 1.2, "ls": "--"} if modified else {"color": BLUE, "lw": 1.4}
-    upper.plot(z, MICRO * (gap - gap.min()), label="by deflection", **look)
+    color, style = (GREY, "--") if modified else (BLUE, "-")
+    upper.plot(z, MICRO * (gap - gap.min()), color=color, lw=1.3, ls=style, label="by deflection")
     if modified:
         upper.plot(z, MICRO * (made - made.min()), color=BLUE, lw=1.4, label="with modifications")
     upper.fill_between(z, 0.0, MICRO * (made - made.min()), color="#dfe7ef", lw=0.0, zorder=1)
@@ -291,7 +293,7 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
     figure = sheet(HEAD + height + FOOT, title, note)
     axes = panel(figure, FOOT, height, left=_NAMES, width=SHEET_WIDTH - _NAMES - _SUMS)
     axes.grid(visible=False, axis="y")
-    handles = []
+    handles: list[Artist] = []
     for number, cause in enumerate(CAUSES):
         color = SERIES[number]
         for row, pair in enumerate(pairs):
@@ -331,7 +333,7 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
     """
     torques = np.array(list(solved.over_torque))
     rows = list(solved.over_torque.values())
-    shown = (
+    shown: tuple[tuple[str, Callable[[PairLoad], float]], ...] = (
         ("TE p-p [µm]", lambda pair: MICRO * float(np.ptp(pair.transmission_error))),
         ("stiffness [N/µm]", lambda pair: MEGA * pair.mean_stiffness),
         ("K_Hβ", lambda pair: pair.k_h_beta),
@@ -400,8 +402,8 @@ def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     if pairs:
         yield "load-misalignment", draw_misalignment("Misalignment of the flanks by cause", pairs)
     names = [f"{pair.pair.driver.name}-{pair.pair.driven.name}" for pair in pairs]
-    stems = zip(file_stems(names, "load-face-"), file_stems(names, "load-pattern-"), strict=True)
-    for (face, pattern), pair in zip(stems, pairs, strict=True):
+    faces, patterns = file_stems(names, "load-face-"), file_stems(names, "load-pattern-")
+    for face, pattern, pair in zip(faces, patterns, pairs, strict=True):
         name = f"{shortened(pair.pair.driver.name, 14)} → {shortened(pair.pair.driven.name, 14)}"
         yield face, draw_face_load(f"{name}: load over the face", pair)
         contact = pair.pair.contact.tooth_contact
