@@ -9,6 +9,7 @@ from gearwhine.analyses.result import Result
 from gearwhine.case import Case, swept_keys
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import basis_error, solve_machine
+from gearwhine.mode_pictures import draw_deflection
 from gearwhine.output.dataset import labelled
 from gearwhine.output.warnings import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
@@ -26,6 +27,7 @@ from gearwhine.solve.operating_point import SolvedLoad, load_warnings, require_l
 from gearwhine.solve.plausibility import add_uncertainty, machine_warnings, unstable_modes_warnings
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
+from housing.errors import RendererUnavailableError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -147,15 +149,26 @@ def operating_point(
 
         return draw_load(case, solved)
 
-    return Result(
+    def files(place: Path, *, pictures: bool) -> None:
+        if not pictures or housing is None or solved.point.housing is None:
+            return
+        try:
+            draw_deflection(housing, solved.point.housing, "iso", place, progress)
+        except RendererUnavailableError as error:
+            # The figures and numbers are there without it.
+            add_warnings(result.document, [warning("pictures", f"no picture of the housing: {error}")])
+
+    result = Result(
         "load",
         case,
         solved,
         joined(document, {} if housing is None else origin_document(housing)),
         _arrays=lambda: labelled(case, (LOAD, solved)),
         _figures=figures,
+        _files=files,
         _housing=housing,
     )
+    return result
 
 
 def system(

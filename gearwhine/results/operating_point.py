@@ -197,7 +197,9 @@ PAIR = (
     ),
     Quantity("contact_pressure_max_pa", lambda one: one.peak_pressure),
     Quantity("carrying_part", lambda one: one.carrying_part),
-    Quantity("", lambda one: one.z, "face_place", _SLICE, "m", "distance of the slice from the middle of the face"),
+    Quantity(
+        "", lambda one: one.z, "face_slice_place", _SLICE, "m", "distance of the slice from the middle of the face"
+    ),
     Quantity(
         "",
         lambda one: one.gap,
@@ -212,7 +214,7 @@ PAIR = (
     Quantity(
         "",
         lambda one: one.line_load,
-        "mean_line_load",
+        "face_mean_line_load",
         _SLICE,
         "N/m",
         "transverse load per face width, all tooth pairs together, mean over the mesh period",
@@ -220,7 +222,7 @@ PAIR = (
     Quantity(
         "",
         lambda one: one.fine.line_load,
-        "line_load",
+        "face_line_load",
         (*_PHASE, *_SLICE),
         "N/m",
         "transverse load per face width, all tooth pairs together",

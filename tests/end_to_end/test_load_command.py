@@ -26,7 +26,7 @@ def test_load_of_a_gearbox_on_its_housing(tmp_path: Path, capsys: pytest.Capture
     assert moved["input-front"][1] < 0.0 < moved["output-front"][1]
     assert document["warnings"] == []
     names = {path.name for path in out.iterdir()}
-    assert {"results.nc", "summary.json", "case.toml", "modes.nc", "load-shaft-input.png"} <= names
+    assert {"results.nc", "summary.json", "case.toml", "modes.nc", "load-shaft-input.png", "load-housing.png"} <= names
     with xr.open_dataset(out / "results.nc") as data:
         found = data["seat_displacement"].sel(loaded_bearing="input-front").values
         assert found == pytest.approx(moved["input-front"])

@@ -110,8 +110,8 @@ def test_arrays_have_axes_and_units(helical: Result[SolvedLoad]) -> None:
         "bearing_displacement": (("loaded_bearing", "direction"), "m"),
         "seat_displacement": (("loaded_bearing", "direction"), "m"),
         "misalignment_by_cause": (("loaded_pair", "cause"), "rad"),
-        "mean_line_load": (("loaded_pair", "face_slice"), "N/m"),
-        "line_load": (("loaded_pair", "load_phase", "face_slice"), "N/m"),
+        "face_mean_line_load": (("loaded_pair", "face_slice"), "N/m"),
+        "face_line_load": (("loaded_pair", "load_phase", "face_slice"), "N/m"),
         "face_gap": (("loaded_pair", "face_slice"), "m"),
         "loaded_transmission_error": (("loaded_pair", "load_phase"), "m"),
         "face_load_factor_over_torque": (("load_torque", "loaded_pair"), "1"),
@@ -121,7 +121,7 @@ def test_arrays_have_axes_and_units(helical: Result[SolvedLoad]) -> None:
         assert data[name].attrs["long_name"]
     assert data["bearing_tangent_stiffness"].dims == ("loaded_bearing", "motion", "other_motion")
     (pair,) = helical.document["gear_pairs"]
-    force = data["line_load"].values[0].mean(axis=0).sum() * 25e-3 / data.sizes["face_slice"]
+    force = data["face_line_load"].values[0].mean(axis=0).sum() * 25e-3 / data.sizes["face_slice"]
     assert force == pytest.approx(pair["force_n"], rel=1e-9)
     carried = data["bearing_mean_force"].sel(loaded_bearing="input-left", direction="z")
     assert float(carried) == pytest.approx(helical.document["bearings"][0]["force_n"][2])
