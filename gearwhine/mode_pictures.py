@@ -165,14 +165,15 @@ def draw_deflection(
         Where nothing here draws.
     """
     from gearwhine.drawing_process import draw_in_process
-    from housing.pictures.drawn_shapes import DrawnShape, drawn_housing
+    from housing.pictures.drawn_shapes import DRAWN_SCALE, DrawnShape, drawn_housing
 
     surface = drawn_housing(housing.mesh)
     motion = housing.modes.displacement(coordinates, surface.nodes)
     largest = _MICRO * float(np.linalg.norm(motion, axis=1).max())
     if largest == 0.0:
         return []
-    title, note = "Housing under the mean load", f"largest displacement {largest:.3g} µm"
+    factor = DRAWN_SCALE * surface.diagonal * _MICRO / largest
+    title, note = "Housing under the mean load", f"largest {largest:.3g} µm, drawn {factor:.2g} times as large"
     shape = DrawnShape("load-housing", title, note, motion, "Displacement [µm]", largest)
     return draw_in_process(surface, [shape], place, "png", view, progress)
 

@@ -240,8 +240,8 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     made = gap + pair.pair.contact.flank_gap
     load, phases = pair.line_load, pair.fine.line_load
     note = (
-        f"K_Hβ = {pair.k_h_beta:.3f}; flanks {MICRO * pair.misalignment * width:.3g} µm out of line over the face "
-        f"({MICRO * pair.misalignment:.3g} µrad), open towards +z where positive; mean mesh force {pair.force:.4g} N"
+        f"K_Hβ = {pair.k_h_beta:.3f}; flanks {MICRO * pair.misalignment * width:z.2f} µm out of line over the face, open "
+        f"towards +z where positive; mean mesh force {pair.force:.4g} N"
     )
     figure = sheet(HEAD + _GAP_PANEL + _ROOM + _LOAD_PANEL + FOOT, title, note)
     upper = panel(figure, FOOT + _LOAD_PANEL + _ROOM, _GAP_PANEL)
@@ -276,6 +276,7 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     return figure
 
 
+_NARROWEST = 1.0  # to either side of zero [µrad]
 _BAR = 11.0  # height of a pair's row [mm of paper]
 _NAMES, _SUMS = 26.0, 30.0  # for the pairs' names and their sums [mm of paper]
 
@@ -305,7 +306,7 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
     for row, pair in enumerate(pairs):
         whole = MICRO * pair.misalignment
         axes.plot([whole, whole], [-row - 0.34, -row + 0.34], color=INK, lw=1.8, zorder=5, label="_sum")
-        over = f"{whole * pair.pair.geometry.face_width:.3g} µm over the face"
+        over = f"{whole * pair.pair.geometry.face_width:z.2f} µm over the face"
         axes.annotate(over, (1.01, -row), xycoords=("axes fraction", "data"), size=NOTE, color=INK, va="center")
     handles.append(Line2D([], [], color=INK, lw=1.8, label="sum"))
     axes.axvline(0.0, color=GREY, lw=0.7, zorder=2)
@@ -314,6 +315,9 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
     for text in axes.get_yticklabels():
         text.set_parse_math(False)
     axes.set_ylim(-len(pairs) + 0.4, 0.6)
+    # Angles of nanoradians are rounding of the case, and look like it.
+    low, high = axes.get_xlim()
+    axes.set_xlim(min(low, -_NARROWEST), max(high, _NARROWEST))
     axes.set_xlabel("misalignment [µrad]")
     legend(figure, handles)
     return figure
