@@ -14,7 +14,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
 
     Wrong input is 2. A missing system library, or a result that failed its own proof, is 1 with its advice.
     """
-    from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
+    from coupling.errors import CouplingError, EquilibriumNotFoundError, ModesError, PeriodicError, TransientError
     from coupling.gears.errors import ContactAccuracyError, GearError
     from gearwhine.case import CaseError
     from housing.errors import (
@@ -40,6 +40,7 @@ def explain(error: Exception) -> tuple[int, str | None]:
         ContactAccuracyError,
         EncoderUnavailableError,
         EquilibriumError,
+        EquilibriumNotFoundError,
         FactorizationError,
         HealthError,
         IncompleteModesError,

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
+FloatArray = npt.NDArray[np.float64]
+
 _TWO_PI = 2.0 * np.pi
+_MICRO = 1e6
 _MOST_MODES = 5000
 _DOMINANT = 8
 
@@ -138,6 +142,40 @@ def draw_lines(
     shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
     draw_in_process(surface, shapes, place, mode_format, view, progress)
     return lines_document(lines, housing, surface)
+
+
+def draw_deflection(
+    housing: SolvedHousing, coordinates: FloatArray, view: str, place: Path, progress: Progress
+) -> list[str]:
+    """Draw the housing under a static load as ``load-housing.png``.
+
+    Parameters
+    ----------
+    housing : SolvedHousing
+    coordinates : ndarray, shape (n_modes + n_residual,)
+        Of its modes and its residual modes.
+    view : str
+        From where to look.
+    place : path
+    progress : callable
+
+    Raises
+    ------
+    housing.errors.RendererUnavailableError
+        Where nothing here draws.
+    """
+    from gearwhine.drawing_process import draw_in_process
+    from housing.pictures.drawn_shapes import DRAWN_SCALE, DrawnShape, drawn_housing
+
+    surface = drawn_housing(housing.mesh)
+    motion = housing.modes.displacement(coordinates, surface.nodes)
+    largest = _MICRO * float(np.linalg.norm(motion, axis=1).max())
+    if largest == 0.0:
+        return []
+    factor = DRAWN_SCALE * surface.diagonal * _MICRO / largest
+    title, note = "Housing under the mean load", f"largest {largest:.3g} µm, drawn {factor:.2g} times as large"
+    shape = DrawnShape("load-housing", title, note, motion, "Displacement [µm]", largest)
+    return draw_in_process(surface, [shape], place, "png", view, progress)
 
 
 def draw_measured(

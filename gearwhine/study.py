@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.steady_state import SolvedSteady
     from gearwhine.solve.updating import SolvedUpdate
@@ -208,6 +209,12 @@ class Study:
         from gearwhine.analyses import machine
 
         return machine.gears(self.case, progress=self.progress)
+
+    def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
+        """Find the static equilibrium under load; see :func:`gearwhine.analyses.machine.operating_point`."""
+        from gearwhine.analyses import machine
+
+        return machine.operating_point(self.case, over_torque=over_torque, housing=self.housing, progress=self.progress)
 
     def system(
         self, *, campbell: bool = False, sidebands: int = 0, mesh_phase: float | None = None

@@ -24,13 +24,16 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
 from coupling.errors import CouplingError, EquilibriumNotFoundError
+from coupling.gears.loaded.contact_pressure import mesh_pressure
 from coupling.gears.loaded.face_load import FaceLoad
+from coupling.gears.loaded.transmission_error import LoadedMesh
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing, RollingLaw
 from coupling.machine.loads import Torque
@@ -117,6 +120,11 @@ class BearingLoad:
     def name(self) -> str:
         """Name of the bearing."""
         return self.mounted.bearing.name
+
+    @property
+    def tilt(self) -> float:
+        """Angle between the shaft and the seat's axis [rad]."""
+        return float(np.hypot(*self.deflection[3:]))
 
     @property
     def linearised(self) -> MountedBearing:
@@ -208,6 +216,27 @@ class PairLoad:
     def transmission_error(self) -> FloatArray:
         """Static transmission error under load at ``fine.phases`` [m]: deflection of the teeth, without the shafts'."""
         return self.fine.deflection
+
+    @property
+    def thrust(self) -> float:
+        """Axial force on the driven gear along z [N]."""
+        return self.force * self.pair.axial
+
+    @cached_property
+    def mesh(self) -> LoadedMesh:
+        """The load of every tooth pair over its face at ``fine.phases``."""
+        return self.pair.contact.loaded_mesh(self.fine)
+
+    @cached_property
+    def peak_pressure(self) -> float:
+        """Greatest Hertzian pressure of the flanks on the path of contact over the mesh period [Pa]."""
+        pressure = mesh_pressure(self.pair.geometry, self.pair.contact.tooth_contact, self.mesh)
+        return float(np.nanmax(pressure, initial=0.0))
+
+    @property
+    def carrying_part(self) -> float:
+        """Part of the face that carries load at some phase of the mesh period, 0 to 1."""
+        return float(np.mean(self.fine.line_load.max(axis=0) > 0.0))
 
     @property
     def mean_stiffness(self) -> float:
@@ -426,11 +455,13 @@ class _StaticModel:
         spring = float(min(values[values > _FREE * stiff], default=stiff))
         found: list[str] = []
         extra = np.zeros((self.size, self.size))
+        # Rounding leaves parts of other motions in a free one, which the loads drive as well.
+        scale = float(np.abs(motions).max(axis=1) @ np.abs(self.load))
         for value, vector in zip(values, vectors.T, strict=True):
             if value > _FREE * stiff:
                 continue
             motion = motions @ vector
-            work, scale = float(motion @ self.load), float(np.abs(motions).max(axis=1) @ np.abs(self.load))
+            work = float(motion @ self.load)
             word = words[int(np.argmax(np.abs(vector)))]
             if abs(work) > _CARRIED * scale:
                 raise CouplingError(

@@ -8,20 +8,24 @@ from typing import TYPE_CHECKING
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require, swept_keys
 from gearwhine.from_case.machine import basis_error, solve_machine, solve_pairs
+from gearwhine.mode_pictures import draw_deflection
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
+from gearwhine.results.operating_point import LOAD, load_document
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.steady_state import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.coupled_system import SolvedSystem, solve_system
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
-from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.operating_point import SolvedLoad, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import add_uncertainty, machine_warnings, unstable_modes_warnings
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
+from housing.errors import RendererUnavailableError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -103,6 +107,67 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         _arrays=lambda: labelled(case, (GEARS, pairs)),
         _figures=figures,
     )
+
+
+def operating_point(
+    case: Case,
+    *,
+    over_torque: bool = False,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[SolvedLoad]:
+    """Find the static equilibrium of the machine: bearing loads, deflections, misalignment and load of the gear faces.
+
+    Parameters
+    ----------
+    case : Case
+        Without a housing its seats are rigid.
+    over_torque : bool
+        Whether to find it from 10 to 150 % of the torque as well.
+    housing, folder, fresh, progress
+        As :func:`gearwhine.analyses.housing.modes`.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError
+        Where the parts do not make a machine, nothing loads it, or a load drives a motion that nothing holds.
+    coupling.EquilibriumNotFoundError
+        Where no equilibrium is found.
+    """
+    require_load(case)
+    if housing is None and case.housing is not None:
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+    solved = solve_load(case, housing, progress, over_torque=over_torque)
+    document = load_document(case.title, solved)
+    add_warnings(document, load_warnings(case, solved))
+
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_load
+
+        return draw_load(case, solved)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        if not pictures or housing is None or solved.point.housing is None:
+            return
+        try:
+            draw_deflection(housing, solved.point.housing, "iso", place, progress)
+        except RendererUnavailableError as error:
+            # The figures and numbers are there without it.
+            add_warnings(result.document, [warning("pictures", f"no picture of the housing: {error}")])
+
+    result = Result(
+        "load",
+        case,
+        solved,
+        joined(document, {} if housing is None else origin_document(housing)),
+        _arrays=lambda: labelled(case, (LOAD, solved)),
+        _figures=figures,
+        _files=files,
+        _housing=housing,
+    )
+    return result
 
 
 def system(

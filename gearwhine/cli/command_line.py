@@ -25,6 +25,7 @@ for _command in (
     housing.modes,
     machine.rotors,
     machine.gears,
+    machine.load,
     machine.system,
     machine.steady,
     machine.sweep,

@@ -1,4 +1,4 @@
-"""Commands on rotors, gear pairs and the coupled machine: rotors, gears, system, steady, sweep."""
+"""Commands on rotors, gear pairs and the coupled machine: rotors, gears, load, system, steady, sweep."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -45,6 +45,30 @@ def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return written(analyses.gears(given, folder=common.output, progress=progress), common.output, progress)
+
+    on_case(case, common, work, shown_by(sections))
+
+
+def load(
+    case: CaseName,
+    *,
+    over_torque: Annotated[
+        bool,
+        Parameter(name=["--over-torque"], negative=(), help="Also solve from 10 to 150 % of the torque."),
+    ] = False,
+    fresh: Fresh = False,
+    common: Common = NONE_GIVEN,
+) -> None:
+    """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces."""
+    from gearwhine.analyses import machine as analyses
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.operating_point import sections
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        found = analyses.operating_point(
+            given, over_torque=over_torque, folder=common.output, fresh=fresh, progress=progress
+        )
+        return written(found, common.output, progress)
 
     on_case(case, common, work, shown_by(sections))
 

@@ -152,6 +152,7 @@ COMMANDS = (
     "modes",
     "rotors",
     "gears",
+    "load",
     "system",
     "steady",
     "sweep",

@@ -11,7 +11,7 @@ __all__ = ["chapters_of", "write_shapes"]
 
 def chapters_of(document: Document) -> tuple[Section, ...]:
     """Return the chapters of a command's document in the report, leaving out empty ones."""
-    from gearwhine.results import check, comparison, gears, housing, rotors, run, sweep, system, update
+    from gearwhine.results import check, comparison, gears, housing, operating_point, rotors, run, sweep, system, update
     from gearwhine.results import steady_state as steady
 
     if document.get("command") == "check":
@@ -23,6 +23,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (update.report, document if "parameters" in document else {}),
         (rotors.report, document if document.get("rotors") else {}),
         (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
+        (operating_point.report, document if "gear_pairs" in document and "seats" in document else {}),
         (system.report, document.get("system", document if "stability" in document else {})),
         (run.report, document if "steps" in document else {}),
         (sweep.report, document if "points" in document and "axes" in document else {}),

@@ -25,7 +25,9 @@ _DIFFERENCE = 0.1  # part of the larger of both forces by which they may differ 
 _ROUNDING = 1e-6  # part of the load below which a component is none
 
 
-def bearing_load_warnings(case: Case, mean_force: Mapping[str, FloatArray]) -> list[dict[str, Any]]:
+def bearing_load_warnings(
+    case: Case, mean_force: Mapping[str, FloatArray], found_by: str = "the run"
+) -> list[dict[str, Any]]:
     """Warn of bearings whose stiffness was made for another load than the mean force of the shaft on them.
 
     The stiffness of rolling bearings and stops depends on the load that the case gives. Radial forces are compared as
@@ -36,6 +38,8 @@ def bearing_load_warnings(case: Case, mean_force: Mapping[str, FloatArray]) -> l
     ----------
     mean_force
         x, y, z of the mean force on each bearing [N], shape (3,) each.
+    found_by
+        What found it, for the message.
     """
     found = []
     for given in case.bearing:
@@ -56,7 +60,8 @@ def bearing_load_warnings(case: Case, mean_force: Mapping[str, FloatArray]) -> l
             warning(
                 "bearing load",
                 f'bearing "{given.name}": its stiffness was made for a load of {sizes[0][0]:.4g} N radial and '
-                f"{sizes[0][1]:.4g} N axial, the run finds {sizes[1][0]:.4g} N radial and {sizes[1][1]:.4g} N axial; "
+                f"{sizes[0][1]:.4g} N axial, {found_by} finds {sizes[1][0]:.4g} N radial and "
+                f"{sizes[1][1]:.4g} N axial; "
                 f"give it the load {{ x = {actual[0]:.4g}, y = {actual[1]:.4g}, z = {actual[2]:.4g} }} N",
                 bearing=given.name,
                 assumed_force_n=assumed.tolist(),

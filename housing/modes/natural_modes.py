@@ -72,6 +72,14 @@ class ModeSet:
         modes = self.project(port)
         return modes if self.residual_modes is None else np.vstack([modes, self.residual_modes.project(port)])
 
+    def displacement(self, coordinates: FloatArray, nodes: npt.NDArray[np.int64]) -> FloatArray:
+        """Displacement of nodes by coordinates of the modes, then of the residual modes [m], shape (n_nodes, 3)."""
+        count = len(self.shapes)
+        moved = np.tensordot(coordinates[:count], self.shapes[:, nodes], axes=1)
+        if self.residual_modes is not None:
+            moved = moved + np.tensordot(coordinates[count:], self.residual_modes.shapes[:, nodes], axes=1)
+        return np.asarray(moved)
+
 
 def solve_modes(
     matrices: Matrices,

@@ -25,6 +25,7 @@ CALLS: list[tuple[Any, str, str, dict[str, Any], dict[str, Any]]] = [
         {"curve": False, "down": True, "points": 7, "exact": True},
         {"curve": False, "down": True, "points": 7, "exact": True},
     ),
+    (machine, "operating_point", "operating_point", {"over_torque": True}, {"over_torque": True}),
     (machine, "steady", "steady", {"curve": True}, {"curve": True, "down": False, "exact": False}),
     (housing, "update", "update", {"null": 5, "held_back": True}, {"null": 5, "held_back": True}),
     (housing, "survey", "survey", {"sensors": 4, "modes": 2}, {"sensors": 4, "modes": 2}),

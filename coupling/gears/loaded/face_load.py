@@ -35,6 +35,7 @@ from coupling.gears.contact.contact_law import ToothContact
 from coupling.gears.contact.face_slices import face_equilibrium, face_yield, lagrange
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.geometry.pair import GearPairGeometry
+from coupling.gears.loaded.transmission_error import LoadedMesh
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -61,10 +62,10 @@ class FaceLoad:
         Derivatives of the loads by the approach, the shared compliance excluded.
     energy : ndarray, shape (n,)
         U [J].
-    line_load : ndarray, shape (n, s)
-        Load per width over the face, all pairs together [N/m].
-    peak_line_load : float
-        Largest load per width on any one pair [N/m].
+    positions : ndarray, shape (n, p)
+        Positions of the tooth pairs along the path of contact [base pitches].
+    pair_line_loads : ndarray, shape (n, p, s)
+        Load per width over the face of each tooth pair [N/m].
     """
 
     force: float
@@ -73,8 +74,18 @@ class FaceLoad:
     loads: FloatArray
     tangents: FloatArray
     energy: FloatArray
-    line_load: FloatArray
-    peak_line_load: float
+    positions: FloatArray
+    pair_line_loads: FloatArray
+
+    @property
+    def line_load(self) -> FloatArray:
+        """Load per width over the face, all pairs together [N/m], shape (n, s)."""
+        return np.asarray(self.pair_line_loads.sum(axis=1))
+
+    @property
+    def peak_line_load(self) -> float:
+        """Largest load per width on any one pair [N/m]."""
+        return float(self.pair_line_loads.max(initial=0.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,6 +153,16 @@ class FaceContact:
         self._last: tuple[float, float] | None = None
 
     @property
+    def tooth_contact(self) -> ToothContact:
+        """The contact of the loaded flanks, its slices not misaligned."""
+        return self._contact
+
+    @property
+    def flank_gap(self) -> FloatArray:
+        """Gap that the flanks' own helix modifications leave over the face [m], shape (s,)."""
+        return self._faces.gap
+
+    @property
     def size(self) -> int:
         """Number of components of the approach, m: the stations and the tilt."""
         return self.stations.size + 1
@@ -198,7 +219,8 @@ class FaceContact:
         width, shared = self._faces.width, self._contact.shared_compliance
         energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
         each = width * np.einsum("pnm,pn->pm", prepared.basis, loads.line_load)
-        line = np.add.reduceat(loads.line_load, prepared.first, axis=0)
+        line_loads = np.zeros((*prepared.positions.shape, self.z.size))
+        line_loads[prepared.owner, prepared.column] = loads.line_load
         return FaceLoad(
             force=force,
             phases=prepared.phases,
@@ -206,8 +228,22 @@ class FaceContact:
             loads=np.add.reduceat(each, prepared.first, axis=0),
             tangents=self._tangents(prepared, touching),
             energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
-            line_load=line,
-            peak_line_load=float(loads.line_load.max(initial=0.0)),
+            positions=prepared.positions,
+            pair_line_loads=line_loads,
+        )
+
+    def loaded_mesh(self, load: FaceLoad) -> LoadedMesh:
+        """Return a load as one of :mod:`coupling.gears.loaded.transmission_error`, for pressure and contact pattern."""
+        stiffness = self.stiffness_of(load)
+        return LoadedMesh(
+            force=load.force,
+            phases=load.phases,
+            transmission_error=load.deflection,
+            positions=load.positions,
+            pair_forces=load.pair_line_loads.sum(axis=2) * self._faces.width,
+            tangent_stiffness=stiffness,
+            secant_stiffness=stiffness,
+            line_loads=load.pair_line_loads,
         )
 
     def at(self, approach: FloatArray) -> MeanContactState:
@@ -292,11 +328,12 @@ class _Prepared:
         states = contact.pairs(phases)
         assert states.faces is not None
         self.phases = phases
-        self.owner, columns = np.nonzero(states.present)
+        self.positions = states.position
+        self.owner, self.column = np.nonzero(states.present)
         self.first = np.searchsorted(self.owner, np.arange(phases.size))
         self.base, self.meeting = states.faces.base, states.faces.meeting
         self.gap = states.faces.gap
-        position = states.position[self.owner, columns][:, None] + faces.shift
+        position = states.position[self.owner, self.column][:, None] + faces.shift
         along = position * mesh._path - mesh._pitch_point
         basis = np.empty((*position.shape, mesh.size))
         basis[:, :, :-1] = mesh.over_face

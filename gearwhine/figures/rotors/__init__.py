@@ -28,7 +28,7 @@ from gearwhine.from_case.rotors import build_gear, gear_inertia
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.rotors import SolvedRotor
-from rotors import Disc
+from rotors import Bearing, Disc, Rotor
 from rotors import Segment as RotorSegment
 
 FloatArray = npt.NDArray[np.float64]
@@ -64,9 +64,9 @@ def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = 
             yield f"{stem}-{kind}", figure
 
 
-def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
-    """Return the assembly of a solved rotor as it is drawn: its gears by their size rather than as discs."""
-    name = one.rotor.name
+def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> RotorAssembly:
+    """Return the assembly of a rotor of a case as it is drawn: its gears by their size rather than as discs."""
+    name = rotor.name
     given = case.rotor_named(name)
     gears = []
     for gear in case.gear:
@@ -87,10 +87,10 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
         )
     on_it = [bearing for bearing in case.bearing if bearing.rotor == name]
     # The materials of a rotor's own file have no names in the case.
-    rows = zip(one.rotor.segments, given.segments, strict=True) if given.saved is None else ()
+    rows = zip(rotor.segments, given.segments, strict=True) if given.saved is None else ()
     return RotorAssembly(
-        rotor=one.rotor,
-        bearings=one.bearings,
+        rotor=rotor,
+        bearings=bearings,
         gears=gears,
         unbalances=[DrawnUnbalance(one.at, one.moment, one.phase) for one in given.unbalance],
         rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
@@ -104,7 +104,7 @@ def rotor_assembly(case: Case, one: SolvedRotor) -> RotorAssembly:
 
 
 def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
-    assembly = rotor_assembly(case, one)
+    assembly = rotor_assembly(case, one.rotor, one.bearings)
     figures = [
         ("shaft", draw_shaft(assembly)),
         ("modes", draw_lateral_modes(assembly, one.lateral, most=_MODES)),

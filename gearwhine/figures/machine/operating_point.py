@@ -1,0 +1,419 @@
+"""Operating point figures: deflected shafts with their forces, load over the gear faces, causes of misalignment."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Polygon
+
+from coupling.statics.operating_point import CAUSES, PairLoad
+from gearwhine.case import Case
+from gearwhine.figures.gears.contact import draw_contact_pattern
+from gearwhine.figures.rotors import rotor_assembly
+from gearwhine.figures.rotors.assembly import RotorAssembly
+from gearwhine.figures.rotors.shaft import MM, ShaftView
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    GREY,
+    HEAD,
+    INK,
+    LABEL,
+    MEGA,
+    MICRO,
+    MILLI,
+    NOTE,
+    RED,
+    SERIES,
+    SHEET_WIDTH,
+    legend,
+    name_in_legend,
+    panel,
+    sheet,
+    shortened,
+)
+from gearwhine.output import file_stems
+from gearwhine.solve.operating_point import DeflectedShaft, SolvedLoad
+from rotors import Segment
+
+FloatArray = npt.NDArray[np.float64]
+
+_TALLEST, _SLIMMEST = 34.0, 7.0  # of a shaft with its gears between the largest diameters [mm of paper]
+_BESIDE, _BETWEEN = 6.0, 6.0  # margins and room between the two planes [mm of paper]
+_LARGEST, _ARROW, _WORDS = 5.0, 13.0, 5.0  # deflection, arrow of the largest force and its number [mm of paper]
+_STEPS = (1, 2, 5)
+_LEAST = 1e-3  # part of the largest force below which none is drawn
+_BODY, _SHAFT = "#d9cfb4", "#c9d5e0"
+_N_PER_MM = 1e-3
+
+
+@dataclass(frozen=True)
+class DrawnForce:
+    """A force on a shaft: its place from the left end [m], components along x and y [N], and whether a gear's."""
+
+    at: float
+    force: tuple[float, float]
+    of_gear: bool
+
+
+def draw_deflected_shaft(
+    title: str, assembly: RotorAssembly, shaft: DeflectedShaft, forces: Sequence[DrawnForce]
+) -> Figure:
+    """Draw a shaft to scale in both planes, its deflection exaggerated, with the forces on it as arrows.
+
+    Parameters
+    ----------
+    title : str
+    assembly : RotorAssembly
+        The shaft with its gears.
+    shaft : DeflectedShaft
+    forces : sequence of DrawnForce
+        Of bearings and gears.
+    """
+    width = 0.5 * (SHEET_WIDTH - 2.0 * _BESIDE - _BETWEEN)
+    view = _view(assembly, width)
+    across = float(np.hypot(shaft.motion[0], shaft.motion[1]).max())
+    factor = _exaggeration(across, view)
+    strongest = max((abs(part) for one in forces for part in one.force), default=0.0) or 1.0
+    below, above = _extent(assembly, view, shaft, forces, factor, strongest)
+    height = below + above
+    note = f"deflections {factor:g} times as large as lengths, {MICRO * across:.3g} µm at most"
+    note += "; arrows: forces on the shaft"
+    if view.stretch > 1:
+        note += f"; diameters {view.stretch} times as large as lengths"
+    figure = sheet(HEAD + 4.0 + height + FOOT, title, note)
+    for plane, name in enumerate("xy"):
+        axes = panel(figure, FOOT, height, left=_BESIDE + plane * (width + _BETWEEN), width=width)
+        axes.grid(visible=False)
+        axes.spines["left"].set_visible(False)
+        axes.set_yticks([])
+        view.apply(axes, below)
+        view.show_length(axes, assembly.rotor.length)
+        axes.set_xlabel("z from the left end [mm]")
+        axes.set_title(f"{name}–z plane, {name} upwards", size=LABEL, color=INK, pad=2.0)
+        moved = MM * factor * shaft.motion[plane]
+        _draw_bodies(axes, assembly, view, shaft.at, np.zeros(shaft.at.size), at_rest=True)
+        _draw_bodies(axes, assembly, view, shaft.at, moved, at_rest=False)
+        axes.plot(MM * shaft.at, moved, color=BLUE, lw=1.3, zorder=5, label="deflection")
+        for one in forces:
+            _draw_force(axes, assembly, view, one, plane, strongest, float(np.interp(one.at, shaft.at, moved)))
+    handles = [
+        Line2D([], [], color=GREY, lw=0.8, ls="--", label="without load"),
+        Line2D([], [], color=BLUE, lw=1.3, label="centre line"),
+        Line2D([], [], color=INK, lw=1.2, label="by bearings"),
+        Line2D([], [], color=RED, lw=1.2, label="by gears"),
+    ]
+    legend(figure, handles)
+    return figure
+
+
+def _view(assembly: RotorAssembly, width: float) -> ShaftView:
+    left, right = (MM * end for end in assembly.reach)
+    radius = MM * assembly.largest_radius
+    per_paper = max((right - left) / (width - 6.0), 2.0 * radius / _TALLEST)
+    stretch = next((step for step in (1, 2, 5, 10, 20, 50) if 2.0 * radius * step / per_paper >= _SLIMMEST), 50)
+    middle, half = 0.5 * (left + right), 0.5 * width * per_paper
+    return ShaftView(middle - half, middle + half, per_paper, stretch, radius * stretch / per_paper)
+
+
+def _extent(
+    assembly: RotorAssembly,
+    view: ShaftView,
+    shaft: DeflectedShaft,
+    forces: Sequence[DrawnForce],
+    factor: float,
+    strongest: float,
+) -> tuple[float, float]:
+    """Room below and above the axis that shaft and arrows take in either plane [mm of paper]."""
+    moved = MM * factor * shaft.motion[:2] / view.per_paper
+    room = [view.half_height + max(0.0, float((sense * moved).max())) for sense in (-1.0, 1.0)]
+    for one in forces:
+        for value, shift in zip(one.force, moved, strict=True):
+            if abs(value) < _LEAST * strongest:
+                continue
+            side, sense = (0, -1.0) if value > 0.0 else (1, 1.0)
+            surface = view.across(_surface(assembly, one)) / view.per_paper
+            arrow = _arrow_length(value, strongest) + _WORDS
+            room[side] = max(room[side], surface + arrow + sense * float(np.interp(one.at, shaft.at, shift)))
+    return room[0] + 2.0, room[1] + 2.0
+
+
+def _surface(assembly: RotorAssembly, one: DrawnForce) -> float:
+    """Radius at which a force's arrow ends [m]."""
+    return assembly.outer_radius(one.at) if one.of_gear else assembly.shaft_radius(one.at)
+
+
+def _arrow_length(value: float, strongest: float) -> float:
+    return max(_ARROW * abs(value) / strongest, 2.5)
+
+
+def _exaggeration(largest: float, view: ShaftView) -> float:
+    """Round factor at which the largest deflection [m] has about `_LARGEST` on paper; 1 without a deflection."""
+    if largest == 0.0:
+        return 1.0
+    wanted = _LARGEST * view.per_paper / (MM * largest)
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step * power for step in _STEPS if step * power <= wanted * (1.0 + 1e-9)))
+
+
+def _draw_bodies(
+    axes: Axes, assembly: RotorAssembly, view: ShaftView, at: FloatArray, moved: FloatArray, *, at_rest: bool
+) -> None:
+    """Draw the outlines of segments, discs and gears, every section shifted by the deflection there."""
+    bodies = []
+    for part, left, right in zip(assembly.parts, assembly.rotor.joints, assembly.rotor.joints[1:], strict=False):
+        if isinstance(part, Segment):
+            (outer, _), (right_outer, _) = part.end_diameters
+            bodies.append((float(left), float(right), 0.5 * outer, 0.5 * right_outer, _SHAFT))
+    for disc in assembly.discs:
+        if (ring := assembly.ring(disc)) is not None:
+            bodies.append((disc.at - 0.5 * ring[1], disc.at + 0.5 * ring[1], ring[0], ring[0], _BODY))
+    for gear in assembly.gears:
+        radius, half = 0.5 * gear.tip_diameter, 0.5 * gear.face_width
+        bodies.append((gear.at - half, gear.at + half, radius, radius, _BODY))
+    for left, right, first, last, color in bodies:
+        places = np.unique(np.concatenate([[left, right], at[(at > left) & (at < right)]]))
+        shift = np.interp(places, at, moved)
+        edge = view.stretch * MM * np.interp(places, [left, right], [first, last])
+        corners = np.column_stack(
+            [MM * np.concatenate([places, places[::-1]]), np.concatenate([shift + edge, (shift - edge)[::-1]])]
+        )
+        look = (
+            {"facecolor": "none", "edgecolor": GREY, "lw": 0.5, "ls": "--", "zorder": 4}
+            if at_rest
+            else {"facecolor": color, "edgecolor": INK, "lw": 0.5, "zorder": 2}
+        )
+        axes.add_patch(Polygon(corners, closed=True, label="at rest" if at_rest else "loaded", **look))
+
+
+def _draw_force(
+    axes: Axes,
+    assembly: RotorAssembly,
+    view: ShaftView,
+    one: DrawnForce,
+    plane: int,
+    strongest: float,
+    moved: float,
+) -> None:
+    """Draw a force's component in a plane as an arrow that pushes the surface, with its number at the tail."""
+    value = one.force[plane]
+    if abs(value) < _LEAST * strongest:
+        return
+    sense = 1.0 if value > 0.0 else -1.0
+    tip = moved - sense * view.across(_surface(assembly, one))
+    tail = tip - sense * view.length(_arrow_length(value, strongest))
+    color = RED if one.of_gear else INK
+    arrow = {"arrowstyle": "-|>,head_width=0.16,head_length=0.4", "color": color, "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (MM * one.at, tip), (MM * one.at, tail), arrowprops=arrow, zorder=6)
+    axes.annotate(
+        f"{abs(value):.4g} N",
+        (MM * one.at, tail),
+        (0.0, -2.0 * sense),
+        textcoords="offset points",
+        fontsize=NOTE,
+        color=color,
+        ha="center",
+        va="top" if sense > 0.0 else "bottom",
+        zorder=7,
+    )
+
+
+_GAP_PANEL, _LOAD_PANEL, _ROOM = 34.0, 46.0, 4.0  # heights [mm of paper]
+
+
+def draw_face_load(title: str, pair: PairLoad) -> Figure:
+    """Draw the gap of the flanks before the load, and the load per width, over the face.
+
+    Parameters
+    ----------
+    title : str
+    pair : PairLoad
+        Under a force.
+    """
+    width = pair.pair.geometry.face_width
+    z, gap = MILLI * pair.z, pair.gap
+    made = gap + pair.pair.contact.flank_gap
+    load, phases = pair.line_load, pair.fine.line_load
+    note = (
+        f"K_Hβ = {pair.k_h_beta:.3f}; flanks {MICRO * pair.misalignment * width:z.2f} µm out of line over the face, "
+        f"open towards +z where positive; mean mesh force {pair.force:.4g} N"
+    )
+    figure = sheet(HEAD + _GAP_PANEL + _ROOM + _LOAD_PANEL + FOOT, title, note)
+    upper = panel(figure, FOOT + _LOAD_PANEL + _ROOM, _GAP_PANEL)
+    lower = panel(figure, FOOT, _LOAD_PANEL)
+    modified = np.ptp(pair.pair.contact.flank_gap) > 0.0
+    color, style = (GREY, "--") if modified else (BLUE, "-")
+    upper.plot(z, MICRO * (gap - gap.min()), color=color, lw=1.3, ls=style, label="by deflection")
+    if modified:
+        upper.plot(z, MICRO * (made - made.min()), color=BLUE, lw=1.4, label="with modifications")
+    upper.fill_between(z, 0.0, MICRO * (made - made.min()), color="#dfe7ef", lw=0.0, zorder=1)
+    # Gaps of nanometres are no gaps.
+    upper.set_ylim(0.0, max(1.15 * MICRO * float(max(np.ptp(made), np.ptp(gap))), 0.1))
+    upper.set_ylabel("gap before the load [µm]")
+    upper.tick_params(labelbottom=False)
+    lower.fill_between(
+        z,
+        _N_PER_MM * phases.min(axis=0),
+        _N_PER_MM * phases.max(axis=0),
+        color="#e6ebf1",
+        lw=0.0,
+        zorder=1,
+        label="over the mesh period",
+    )
+    lower.plot(z, _N_PER_MM * load, color=BLUE, lw=1.5, label="mean")
+    lower.axhline(_N_PER_MM * load.mean(), color=GREY, lw=0.9, ls="--", label="even")
+    lower.set_ylim(0.0, 1.12 * _N_PER_MM * float(phases.max()))
+    lower.set(xlabel="z from the middle of the face [mm]", ylabel="load per width [N/mm]")
+    for axes in (upper, lower):
+        axes.set_xlim(-0.5 * MILLI * width, 0.5 * MILLI * width)
+    for axes in (upper, lower):
+        axes.legend(loc="best", ncols=3, fontsize=NOTE, framealpha=0.85, edgecolor="none", handlelength=1.8)
+    return figure
+
+
+_NARROWEST = 1.0  # to either side of zero [µrad]
+_BAR = 11.0  # height of a pair's row [mm of paper]
+_NAMES, _SUMS = 26.0, 30.0  # for the pairs' names and their sums [mm of paper]
+
+
+def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
+    """Draw the misalignment of every gear pair as a stack of bars by cause, and their sum.
+
+    Parameters
+    ----------
+    title : str
+    pairs : sequence of PairLoad
+    """
+    height = _BAR * len(pairs) + 4.0
+    note = "parts with opposite signs stand on either side of zero; the flanks open towards +z where positive"
+    figure = sheet(HEAD + height + FOOT, title, note)
+    axes = panel(figure, FOOT, height, left=_NAMES, width=SHEET_WIDTH - _NAMES - _SUMS)
+    axes.grid(visible=False, axis="y")
+    handles: list[Artist] = []
+    for number, cause in enumerate(CAUSES):
+        color = SERIES[number]
+        for row, pair in enumerate(pairs):
+            part = MICRO * pair.misalignment_by_cause[cause]
+            before = [MICRO * pair.misalignment_by_cause[one] for one in CAUSES[:number]]
+            start = sum(one for one in before if (one > 0.0) == (part > 0.0))
+            axes.barh(-row, part, left=start, height=0.5, color=color, lw=0.0, zorder=3, label=f"_{cause}")
+        handles.append(Patch(color=color, label=cause))
+    for row, pair in enumerate(pairs):
+        whole = MICRO * pair.misalignment
+        axes.plot([whole, whole], [-row - 0.34, -row + 0.34], color=INK, lw=1.8, zorder=5, label="_sum")
+        over = f"{whole * pair.pair.geometry.face_width:z.2f} µm over the face"
+        axes.annotate(over, (1.01, -row), xycoords=("axes fraction", "data"), size=NOTE, color=INK, va="center")
+    handles.append(Line2D([], [], color=INK, lw=1.8, label="sum"))
+    axes.axvline(0.0, color=GREY, lw=0.7, zorder=2)
+    names = [f"{shortened(pair.pair.driver.name, 14)}\n→ {shortened(pair.pair.driven.name, 14)}" for pair in pairs]
+    axes.set_yticks([-row for row in range(len(pairs))], names)
+    for text in axes.get_yticklabels():
+        text.set_parse_math(False)
+    axes.set_ylim(-len(pairs) + 0.4, 0.6)
+    # Angles of nanoradians are rounding of the case, and look like it.
+    low, high = axes.get_xlim()
+    axes.set_xlim(min(low, -_NARROWEST), max(high, _NARROWEST))
+    axes.set_xlabel("misalignment [µrad]")
+    legend(figure, handles)
+    return figure
+
+
+_SMALL, _SMALL_ROOM = 30.0, 4.0  # height of a panel over torque and the room between two [mm of paper]
+
+
+def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
+    """Draw misalignment, face load factor, stiffness and transmission error of every gear pair over torque.
+
+    Parameters
+    ----------
+    title : str
+    solved : SolvedLoad
+        With equilibria over torque.
+    """
+    torques = np.array(list(solved.over_torque))
+    rows = list(solved.over_torque.values())
+    shown: tuple[tuple[str, Callable[[PairLoad], float]], ...] = (
+        ("TE p-p [µm]", lambda pair: MICRO * float(np.ptp(pair.transmission_error))),
+        ("stiffness [N/µm]", lambda pair: MEGA * pair.mean_stiffness),
+        ("K_Hβ", lambda pair: pair.k_h_beta),
+        ("misalignment [µrad]", lambda pair: MICRO * pair.misalignment),
+    )
+    figure = sheet(HEAD + len(shown) * (_SMALL + _SMALL_ROOM) + FOOT, title, "dashed: torque of operation")
+    handles: list[Line2D] = []
+    for number, (what, of) in enumerate(shown):
+        axes = panel(figure, FOOT + number * (_SMALL + _SMALL_ROOM), _SMALL)
+        for place, pair in enumerate(solved.point.pairs):
+            name = f"{name_in_legend(pair.pair.driver.name)} → {name_in_legend(pair.pair.driven.name)}"
+            values = [of(row.pairs[place]) for row in rows]
+            color = SERIES[place % len(SERIES)]
+            (line,) = axes.plot(torques, values, color=color, lw=1.3, marker=".", ms=3, label=name)
+            handles += [line] if number == 0 else []
+        axes.axvline(solved.machine.torque, color=GREY, lw=0.8, ls="--", zorder=1)
+        if number in (0, 3):
+            axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
+        axes.set_ylabel(what)
+        axes.set_xlim(*sorted((0.0, float(torques[np.abs(torques).argmax()]))))
+        if number == 0:
+            axes.set_xlabel("torque of the first driver [N m]")
+        else:
+            axes.tick_params(labelbottom=False)
+    legend(figure, handles[:4])
+    return figure
+
+
+def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
+    """Draw the operating point of a case.
+
+    Parameters
+    ----------
+    case : Case
+    solved : SolvedLoad
+        Of the case.
+
+    Yields
+    ------
+    str
+        Name of the figure: ``load-shaft-NAME``, ``load-misalignment``, ``load-face-PAIR``, ``load-pattern-PAIR`` and
+        ``load-over-torque``.
+    matplotlib.figure.Figure
+    """
+    bearings: dict[str, list[DrawnForce]] = {shaft.name: [] for shaft in solved.shafts}
+    for one in solved.point.bearings:
+        x, y = (-one.force[:2]).tolist()
+        bearings[one.mounted.rotor].append(DrawnForce(one.mounted.bearing.at, (x, y), of_gear=False))
+    gears: dict[tuple[str, float], FloatArray] = {}
+    for pair in solved.point.pairs:
+        for gear, side in ((pair.pair.driver, -1.0), (pair.pair.driven, 1.0)):
+            push = side * pair.force * np.array(pair.pair.push)
+            gears[gear.shaft, gear.at] = gears.get((gear.shaft, gear.at), np.zeros(2)) + push
+    stems = file_stems([shaft.name for shaft in solved.shafts], "load-shaft-")
+    for stem, shaft in zip(stems, solved.shafts, strict=True):
+        held = [one.mounted.bearing for one in solved.point.bearings if one.mounted.rotor == shaft.name]
+        assembly = rotor_assembly(case, solved.machine.rotor(shaft.name), held)
+        forces = bearings[shaft.name] + [
+            DrawnForce(at, (float(force[0]), float(force[1])), of_gear=True)
+            for (name, at), force in gears.items()
+            if name == shaft.name
+        ]
+        title = f"Shaft {shortened(shaft.name, 20)} under load"
+        yield stem, draw_deflected_shaft(title, assembly, shaft, forces)
+    pairs = [pair for pair in solved.point.pairs if pair.force > 0.0]
+    if pairs:
+        yield "load-misalignment", draw_misalignment("Misalignment of the flanks by cause", pairs)
+    names = [f"{pair.pair.driver.name}-{pair.pair.driven.name}" for pair in pairs]
+    faces, patterns = file_stems(names, "load-face-"), file_stems(names, "load-pattern-")
+    for face, pattern, pair in zip(faces, patterns, pairs, strict=True):
+        name = f"{shortened(pair.pair.driver.name, 14)} → {shortened(pair.pair.driven.name, 14)}"
+        yield face, draw_face_load(f"{name}: load over the face", pair)
+        contact = pair.pair.contact.tooth_contact
+        yield (
+            pattern,
+            draw_contact_pattern(f"{name}: contact pattern of the machine", pair.pair.geometry, contact, pair.mesh),
+        )
+    if solved.over_torque and solved.point.pairs:
+        yield "load-over-torque", draw_over_torque("Gear pairs over torque", solved)

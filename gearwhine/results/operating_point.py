@@ -1,0 +1,398 @@
+"""Operating point: quantities of bearings, gear pairs and shafts under the mean load, and how they are shown."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coupling.statics.operating_point import CAUSES
+from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Section, Table, columns_of, table_of
+
+if TYPE_CHECKING:
+    from gearwhine.solve.operating_point import SolvedLoad
+
+_AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
+_MICRO, _MEGA = 1e6, 1e-6
+_DIRECTION, _ROTATION, _MOTION = ("direction",), ("rotation",), ("motion", "other_motion")
+_MOTIONS = (*_AXES, *_TILTS)
+
+
+def _along(values: Any) -> dict[str, float]:
+    """Components along x, y, z."""
+    return dict(zip(_AXES, values[:3].tolist(), strict=True))
+
+
+def _about(values: Any) -> dict[str, float]:
+    """Components about x and y."""
+    return dict(zip(_TILTS, values[3:5].tolist(), strict=True))
+
+
+def _list(values: dict[str, float]) -> list[float]:
+    return list(values.values())
+
+
+def _of_bearing(key: str, of: str, name: str, unit: str, what: str) -> Quantity:
+    """Declare components along x, y, z of an attribute of a bearing's load."""
+    return Quantity(key, lambda one: _along(getattr(one.load, of)), name, _DIRECTION, unit, what, document=_list)
+
+
+def _turns_of_bearing(key: str, of: str, name: str, unit: str, what: str) -> Quantity:
+    """Declare components about x and y of an attribute of a bearing's load."""
+    return Quantity(key, lambda one: _about(getattr(one.load, of)), name, _ROTATION, unit, what, document=_list)
+
+
+def _force(axis: int) -> Column:
+    return Column(f"{_AXES[axis]} [N]", lambda row: f"{row['force_n'][axis]:z.0f}")
+
+
+BEARING = (
+    Quantity("name", lambda one: one.load.name, "loaded_bearing", heading="bearing"),
+    Quantity("shaft", lambda one: one.load.mounted.rotor),
+    Quantity("seat", lambda one: one.load.mounted.seat or "ground"),
+    _of_bearing("force_n", "force", "bearing_mean_force", "N", "force of the shaft on the bearing"),
+    _turns_of_bearing("moment_n_m", "force", "bearing_mean_moment", "N m", "moment of the shaft on the bearing"),
+    _of_bearing("displacement_m", "deflection", "bearing_displacement", "m", "displacement of the shaft in its seat"),
+    _turns_of_bearing("rotation_rad", "deflection", "bearing_rotation", "rad", "rotation of the shaft in its seat"),
+    _of_bearing("seat_displacement_m", "seat_motion", "seat_displacement", "m", "displacement of the seat"),
+    _turns_of_bearing("seat_rotation_rad", "seat_motion", "seat_rotation", "rad", "rotation of the seat"),
+    Quantity(
+        "tilt_rad",
+        lambda one: one.load.tilt,
+        "bearing_tilt",
+        (),
+        "rad",
+        "angle between the shaft and its seat",
+        heading="tilt [µrad]",
+        shown=".0f",
+        scale=_MICRO,
+    ),
+    Quantity(
+        "stiffness",  # over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad
+        lambda one: one.load.stiffness,
+        "bearing_tangent_stiffness",
+        _MOTION,
+        "",
+        "tangent stiffness over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad",
+        heading="stiffness x, y [N/µm]",
+        shown=lambda row: ", ".join(f"{_MEGA * row['stiffness'][motion][motion]:.3g}" for motion in range(2)),
+    ),
+    Quantity(
+        "peak_pressure_pa",
+        lambda one: one.peak_pressure,
+        "bearing_peak_pressure",
+        (),
+        "Pa",
+        "greatest pressure of the rolling elements",
+        heading="pressure [GPa]",
+        shown=".3g",
+        scale=1e-9,
+    ),
+    Quantity("most_loaded_element", lambda one: one.most_loaded),
+    Quantity(
+        "",
+        lambda one: one.element_loads,
+        "bearing_element_load",
+        ("rolling_element",),
+        "N",
+        "load of the rolling element on the outer ring, row after row",
+    ),
+    Quantity("equivalent_load_n", lambda one: one.equivalent_load),
+    Quantity(
+        "life_h",
+        lambda one: one.life,
+        "bearing_life",
+        (),
+        "h",
+        "basic rating life L10 by ISO 281 at the speed of operation",
+        heading="life L10 [h]",
+        shown=".3g",
+    ),
+)
+"""Of a bearing at the operating point."""
+
+_BEARING_COLUMNS = (
+    columns_of(BEARING)[0],
+    *(_force(axis) for axis in range(3)),
+    *columns_of(BEARING)[1:],
+)
+
+_SLICE, _PHASE = ("face_slice",), ("load_phase",)
+PAIR = (
+    Quantity("", lambda one: f"{one.pair.driver.name} -> {one.pair.driven.name}", "loaded_pair"),
+    Quantity("driver", lambda one: one.pair.driver.name, heading="driver"),
+    Quantity("driven", lambda one: one.pair.driven.name, heading="driven"),
+    Quantity(
+        "force_n",
+        lambda one: one.force,
+        "mesh_mean_force",
+        (),
+        "N",
+        "mean mesh force along the line of action",
+        heading="force [N]",
+        shown=".0f",
+    ),
+    Quantity("thrust_n", lambda one: one.thrust, "mesh_thrust", (), "N", "axial force on the driven gear along z"),
+    Quantity("face_width_m", lambda one: one.pair.geometry.face_width),
+    Quantity(
+        "misalignment_rad",
+        lambda one: one.misalignment,
+        "misalignment",
+        (),
+        "rad",
+        "angle between the flanks in the plane of action, open towards +z",
+    ),
+    Quantity(
+        "misalignment_by_cause_rad",
+        lambda one: {cause: one.misalignment_by_cause[cause] for cause in CAUSES},
+        "misalignment_by_cause",
+        ("cause",),
+        "rad",
+        "part of the misalignment",
+    ),
+    Quantity(
+        "misalignment_over_face_m",
+        lambda one: one.misalignment * one.pair.geometry.face_width,
+        heading="misaligned [µm]",
+        shown="z.2f",
+        scale=_MICRO,
+    ),
+    Quantity(
+        "k_h_beta",
+        lambda one: one.k_h_beta,
+        "face_load_factor",
+        (),
+        "1",
+        "face load factor K_Hbeta of ISO 6336-1",
+        heading="K_Hβ",
+        shown=".3f",
+    ),
+    Quantity(
+        "mean_stiffness_n_per_m",
+        lambda one: one.mean_stiffness,
+        "mesh_mean_stiffness",
+        (),
+        "N/m",
+        "mean mesh stiffness under load over the mesh period",
+        heading="stiffness [N/µm]",
+        shown=".1f",
+        scale=_MEGA,
+    ),
+    Part(
+        "transmission_error_m",
+        lambda one: one.transmission_error,
+        (
+            Quantity("mean", np.mean),
+            Quantity("peak_to_peak", np.ptp),
+        ),
+    ),
+    Part(
+        "line_load_n_per_m",
+        lambda one: one,
+        (
+            Quantity("mean", lambda one: one.line_load.mean()),
+            Quantity("max_of_mean", lambda one: one.line_load.max()),
+            Quantity("max", lambda one: one.fine.peak_line_load),
+        ),
+    ),
+    Quantity("contact_pressure_max_pa", lambda one: one.peak_pressure),
+    Quantity("carrying_part", lambda one: one.carrying_part),
+    Quantity(
+        "", lambda one: one.z, "face_slice_place", _SLICE, "m", "distance of the slice from the middle of the face"
+    ),
+    Quantity(
+        "",
+        lambda one: one.gap,
+        "face_gap",
+        _SLICE,
+        "m",
+        "gap of the flanks by the deflection of the machine, its mean taken off",
+    ),
+    Quantity(
+        "", lambda one: one.pair.contact.flank_gap, "flank_gap", _SLICE, "m", "gap of the flanks by their modifications"
+    ),
+    Quantity(
+        "",
+        lambda one: one.line_load,
+        "face_mean_line_load",
+        _SLICE,
+        "N/m",
+        "transverse load per face width, all tooth pairs together, mean over the mesh period",
+    ),
+    Quantity(
+        "",
+        lambda one: one.fine.line_load,
+        "face_line_load",
+        (*_PHASE, *_SLICE),
+        "N/m",
+        "transverse load per face width, all tooth pairs together",
+    ),
+    Quantity("", lambda one: one.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
+    Quantity(
+        "",
+        lambda one: one.transmission_error,
+        "loaded_transmission_error",
+        _PHASE,
+        "m",
+        "static transmission error under the mean load: deflection of the teeth along the line of action",
+    ),
+)
+"""Of a gear pair at the operating point."""
+
+_PAIR_COLUMNS = (
+    *columns_of(PAIR),
+    Column("TE p-p [µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
+)
+_CAUSE_COLUMNS = (
+    *columns_of(PAIR)[:2],
+    Column("misaligned [µrad]", "misalignment_rad", "z.2f", _MICRO),
+    *(Column(f"by {cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
+)
+
+_PLACE = ("shaft_place",)
+SHAFT = (
+    Quantity("name", lambda one: one.name, "deflected_shaft", heading="shaft"),
+    Quantity("largest_deflection_m", lambda one: one.largest[0], heading="largest [µm]", shown=".3g", scale=_MICRO),
+    Quantity(
+        "largest_deflection_at_m",
+        lambda one: one.largest[1],
+        heading="at, from its left end [mm]",
+        shown=".4g",
+        scale=1e3,
+    ),
+    Quantity("twist_rad", lambda one: one.twist, heading="twist [µrad]", shown=".3g", scale=_MICRO),
+    Quantity("", lambda one: one.at, "shaft_position", _PLACE, "m", "distance from the left end of the shaft"),
+    Quantity("", lambda one: one.z, "shaft_z", _PLACE, "m", "z of the machine"),
+    Quantity(
+        "",
+        lambda one: dict(zip(_AXES, one.motion[:3], strict=True)),
+        "shaft_displacement",
+        (*_DIRECTION, *_PLACE),
+        "m",
+        "displacement of the shaft",
+    ),
+    Quantity(
+        "",
+        lambda one: dict(zip((*_TILTS, "about z"), one.motion[3:], strict=True)),
+        "shaft_rotation",
+        ("shaft_rotation_axis", *_PLACE),
+        "rad",
+        "rotation of the shaft",
+    ),
+)
+"""Of a deflected shaft."""
+
+TORQUE = (
+    Quantity("torque_n_m", lambda row: row[0], "operating_torque", (), "N m", "torque of the first driver"),
+    Rows(
+        "gear_pairs",
+        lambda row: row[1].pairs,
+        (
+            Quantity("driver", lambda one: one.pair.driver.name),
+            Quantity("driven", lambda one: one.pair.driven.name),
+            Quantity("misalignment_rad", lambda one: one.misalignment),
+            Quantity("k_h_beta", lambda one: one.k_h_beta),
+            Quantity("mean_stiffness_n_per_m", lambda one: one.mean_stiffness),
+            Quantity("transmission_error_peak_to_peak_m", lambda one: np.ptp(one.transmission_error)),
+        ),
+    ),
+)
+"""Of a torque and the operating point under it."""
+
+
+def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
+    """Declare a quantity of every gear pair over torque, for the file."""
+
+    def taken(solved: "SolvedLoad") -> Any:
+        if not solved.over_torque or not solved.point.pairs:
+            return None
+        return np.array([[of(pair) for pair in point.pairs] for point in solved.over_torque.values()])
+
+    return Quantity("", taken, f"{name}_over_torque", ("load_torque", "loaded_pair"), unit, f"{what} over torque")
+
+
+LOAD = (
+    Quantity("speed_rpm", lambda solved: solved.machine.speed * 30.0 / np.pi),
+    Quantity("torque_n_m", lambda solved: solved.machine.torque),
+    Quantity("gravity_m_per_s2", lambda solved: ABSENT if solved.gravity is None else solved.gravity),
+    Quantity("seats", lambda solved: "rigid" if solved.housing is None else "housing"),
+    Quantity("residual", lambda solved: solved.point.residual),
+    Quantity("iterations", lambda solved: solved.point.iterations),
+    Quantity("free_motions", lambda solved: solved.point.free),
+    Quantity("", lambda solved: list(_MOTIONS), "motion", ("motion",)),
+    Quantity("", lambda solved: list(_MOTIONS), "other_motion", ("other_motion",)),
+    Rows("shafts", lambda solved: solved.shafts, SHAFT, "deflected_shaft"),
+    Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
+    Rows("gear_pairs", lambda solved: solved.point.pairs, PAIR, "loaded_pair"),
+    Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
+    Quantity(
+        "",
+        lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
+        "load_torque",
+        ("load_torque",),
+        "N m",
+        "torque of the first driver",
+    ),
+    _over_torque("misalignment", "rad", "angle between the flanks", lambda pair: pair.misalignment),
+    _over_torque("face_load_factor", "1", "face load factor K_Hbeta", lambda pair: pair.k_h_beta),
+    _over_torque("mesh_mean_stiffness", "N/m", "mean mesh stiffness", lambda pair: pair.mean_stiffness),
+    _over_torque(
+        "transmission_error_peak_to_peak",
+        "m",
+        "peak-to-peak static transmission error",
+        lambda pair: np.ptp(pair.transmission_error),
+    ),
+)
+"""Of the operating point."""
+
+
+def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
+    """Return the operating point as the command's JSON."""
+    return {"title": title} | document_of(LOAD, solved)
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Return the loads of bearings and gear pairs, and the proof of equilibrium."""
+    return (Section("", tuple(_content(document))),)
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report: as on the terminal, with the pictures."""
+    return Section("Operating point", tuple(_content(document)), pictures=("load",))
+
+
+_TORQUE_COLUMNS = (
+    Column("torque [N m]", "torque_n_m", ".4g"),
+    Column("pair", "pair"),
+    Column("misaligned [µrad]", "misalignment_rad", "z.2f", _MICRO),
+    Column("K_Hβ", "k_h_beta", ".3f"),
+    Column("stiffness [N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
+    Column("TE p-p [µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
+)
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    seats = "on its housing" if document["seats"] == "housing" else "in rigid seats (no housing)"
+    yield f"Static equilibrium at {document['torque_n_m']:.5g} N m, {seats}; friction of the teeth is left out"
+    yield from table_of(_BEARING_COLUMNS, document["bearings"], "Force of the shafts on their bearings")
+    yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period")
+    yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
+    rows = [
+        {"torque_n_m": point["torque_n_m"], "pair": f"{pair['driver']} → {pair['driven']}"} | pair
+        for point in document.get("over_torque", ())
+        for pair in point["gear_pairs"]
+    ]
+    yield from table_of(_TORQUE_COLUMNS, rows, "Over torque")
+    yield from table_of(columns_of(SHAFT), document["shafts"], "Deflection of the shafts")
+    yield f"Forces balance to {document['residual']:.0e} of the largest load"
+    if document["free_motions"]:
+        yield f"Nothing holds, and no load drives: {_grouped(document['free_motions'])}"
+
+
+def _grouped(motions: list[str]) -> str:
+    """Return free motions by their kind: ``the rotation of shaft 'a'; the axial motion of shaft 'a', 'b'``."""
+    kinds: dict[str, list[str]] = {}
+    for motion in motions:
+        kind, _, shaft = motion.partition(" of shaft ")
+        kinds.setdefault(kind, []).append(shaft)
+    return "; ".join(f"{kind} of {', '.join(shafts)}" if any(shafts) else kind for kind, shafts in kinds.items())

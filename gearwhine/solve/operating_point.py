@@ -1,0 +1,355 @@
+"""Operating point of a case: static equilibrium of the whole machine under its mean load, and its plausibility.
+
+The equilibrium is that of :meth:`coupling.Machine.operating_point`. Here stand the lives of its bearings, and warnings:
+bearings beyond their ratings or tilts, faces that carry unevenly, and numbers of the case that differ from what the
+equilibrium finds.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import Machine
+from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
+from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
+from gearwhine.from_case.machine import describe_machine, reduce_housing, require_machine
+from gearwhine.output.quantity import warning
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.plausibility import bearing_load_warnings
+from rotors.rolling_bearings import BallRow, RollerRow
+from rotors.rolling_bearings.life import equivalent_load, rated_revolutions
+
+FloatArray = npt.NDArray[np.float64]
+
+TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
+"""Parts of the torque of operation at which the equilibrium is found over torque."""
+
+_PLACES = 201  # along a shaft, where its deflection is told
+_HOUR = 3600.0
+_DIFFERENCE = 0.1  # part of the larger of two numbers by which they may differ without a word
+_UNEVEN = 2.0  # K_Hβ beyond which a face is said to carry unevenly
+_SHORT_LIFE = 1000.0  # [h]
+_ARC_MINUTE = math.radians(1.0 / 60.0)
+# Largest angles between shaft and seat (SKF, Rolling Bearings, 2018: deep groove ball bearings 2' to 10', cylindrical
+# roller bearings 3' or 4' by their series), and the pressures of the static rating (ISO 76) [Pa].
+_BALL_TILT, _ROLLER_TILT = 10.0 * _ARC_MINUTE, 4.0 * _ARC_MINUTE
+_BALL_PRESSURE, _ROLLER_PRESSURE = 4.2e9, 4.0e9
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedBearing:
+    """A bearing at the operating point.
+
+    Attributes
+    ----------
+    load : BearingLoad
+    rating : float or None
+        Dynamic rating C that the case gives [N].
+    speed : float
+        Of its shaft [rad/s].
+    """
+
+    load: BearingLoad
+    rating: float | None
+    speed: float
+
+    @property
+    def peak_pressure(self) -> float | None:
+        """Greatest pressure of the rolling elements [Pa]; None for other bearings."""
+        return None if self.load.rolling is None else self.load.rolling.peak_pressure
+
+    @property
+    def equivalent_load(self) -> float | None:
+        """Equivalent dynamic load P by ISO 281 [N]; None where it is not defined."""
+        return None if self.load.rolling is None else equivalent_load(self.load.rolling)
+
+    @property
+    def life(self) -> float | None:
+        """Basic rating life L10 by ISO 281 at the speed of operation [h]; None without a rating or a speed."""
+        state = self.load.rolling
+        if state is None or self.rating is None or self.speed == 0.0:
+            return None
+        revolutions = rated_revolutions(state, self.rating)
+        return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
+
+    @property
+    def most_loaded(self) -> dict[str, float] | None:
+        """Row and number of the most loaded element from 1, its azimuth [rad] and load on the outer ring [N]."""
+        if self.load.rolling is None:
+            return None
+        loads = [row.outer_load for row in self.load.rolling.rows]
+        row = int(np.argmax([load.max() for load in loads]))
+        place = int(np.argmax(loads[row]))
+        azimuth = float(self.load.rolling.rows[row].azimuths[place])
+        return {"row": row + 1, "element": place + 1, "azimuth_rad": azimuth, "load_n": float(loads[row][place])}
+
+    @property
+    def element_loads(self) -> FloatArray | None:
+        """Loads of all elements on the outer ring, row after row [N]; None for bearings that are no rolling ones."""
+        state = self.load.rolling
+        return None if state is None else np.concatenate([row.outer_load for row in state.rows])
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedLoad:
+    """The operating point of a case.
+
+    Attributes
+    ----------
+    machine : Machine
+    point : OperatingPoint
+    bearings : tuple of LoadedBearing
+    housing : SolvedHousing or None
+        Whose compliance acts; seats are rigid without.
+    gravity : tuple of float or None
+        [m/s²].
+    over_torque : dict of float to OperatingPoint
+        Equilibria by the torque of the first driver [N m], where they are asked for.
+    """
+
+    machine: Machine
+    point: OperatingPoint
+    bearings: tuple[LoadedBearing, ...]
+    housing: SolvedHousing | None
+    gravity: tuple[float, ...] | None
+    over_torque: dict[float, OperatingPoint]
+
+    @cached_property
+    def shafts(self) -> tuple["DeflectedShaft", ...]:
+        """Deflection of each shaft along it."""
+        return tuple(_deflected(one, self.machine) for one in self.point.shafts)
+
+
+@dataclass(frozen=True, eq=False)
+class DeflectedShaft:
+    """Deflection of a shaft at places along it.
+
+    Attributes
+    ----------
+    name : str
+    at : ndarray, shape (n,)
+        Places from the left end [m].
+    z : ndarray, shape (n,)
+        The same in the machine [m].
+    motion : ndarray, shape (6, n)
+        Displacements along x, y, z [m] and rotations about them [rad].
+    """
+
+    name: str
+    at: FloatArray
+    z: FloatArray
+    motion: FloatArray
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Largest displacement across the axis [m], and its place from the left end [m]."""
+        across = np.hypot(self.motion[0], self.motion[1])
+        place = int(across.argmax())
+        return float(across[place]), float(self.at[place])
+
+    @property
+    def twist(self) -> float:
+        """Largest difference of the rotation about z along the shaft [rad]."""
+        return float(np.ptp(self.motion[5]))
+
+
+def _deflected(one: ShaftDeflection, machine: Machine) -> DeflectedShaft:
+    at = np.linspace(0.0, machine.shaft(one.name).rotor.length, _PLACES)
+    return DeflectedShaft(one.name, at, one.part.start + at, one.motions(at))
+
+
+def solve_load(
+    case: Case, housing: SolvedHousing | None, progress: Progress = silent, *, over_torque: bool = False
+) -> SolvedLoad:
+    """Find the static equilibrium of a case's machine under its torques and its weight.
+
+    Parameters
+    ----------
+    case : Case
+    housing : SolvedHousing or None
+        Of the case; without it seats are rigid.
+    progress : callable
+    over_torque : bool
+        Whether to find it at `TORQUES` as well.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no rotors or nothing loads them.
+    coupling.CouplingError
+        Where the parts make no machine, or a load drives a motion that nothing holds.
+    coupling.EquilibriumNotFoundError
+        Where no equilibrium is found.
+    """
+    require_load(case)
+    operation = case.operation
+    assert operation is not None
+    machine = describe_machine(case, None if housing is None else reduce_housing(case, housing, progress).component)
+    progress("static equilibrium of the machine")
+    point = machine.operating_point(operation.gravity)
+    found: dict[float, OperatingPoint] = {}
+    for number, part in enumerate(TORQUES if over_torque and operation.torque != 0.0 else ()):
+        progress("static equilibrium over torque", number / len(TORQUES))
+        outputs = [one if one.torque is None else replace(one, torque=part * one.torque) for one in machine.outputs]
+        loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
+        found[part * operation.torque] = loaded.operating_point(operation.gravity)
+    ratings = {
+        given.name: given.stiffness.rolling.dynamic_rating
+        for given in case.bearing
+        if isinstance(given.stiffness, RollingStiffness)
+    }
+    bearings = tuple(
+        LoadedBearing(one, ratings.get(one.name), machine.speeds[one.mounted.rotor]) for one in point.bearings
+    )
+    return SolvedLoad(machine, point, bearings, housing, operation.gravity, found)
+
+
+def require_load(case: Case) -> None:
+    """Refuse a case whose machine nothing loads, before anything is solved.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError
+        As :func:`solve_load`.
+    """
+    require(case, "rotor", "bearing", "operation", command="load")
+    assert case.operation is not None
+    if case.operation.torque == 0.0 and case.operation.gravity is None:
+        expected = "a torque, or gravity: without a load the machine stays as it is"
+        raise CaseError([Problem("operation.torque", 0.0, expected)])
+    require_machine(case)
+
+
+def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
+    """Warnings of an operating point that is formally right and physically doubtful."""
+    told = bearing_load_warnings(case, {one.name: one.force[:3] for one in solved.point.bearings}, "the equilibrium")
+    loads = {entry["bearing"] for entry in told}
+    return [
+        *told,
+        *(found for one in solved.bearings for found in _bearing_warnings(one)),
+        *_stiffness_warnings(case, solved, loads),
+        *(found for one in solved.point.pairs for found in _face_warnings(one)),
+        *_misalignment_warnings(case, solved),
+        *_free_motion_warnings(solved),
+    ]
+
+
+def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
+    """Warn of a rolling bearing beyond its static rating, its tilt, or with a short life."""
+    state, name = one.load.rolling, one.load.name
+    if state is None:
+        return
+    rollers = isinstance(state.bearing.rows[0], RollerRow)
+    most = _ROLLER_PRESSURE if rollers else _BALL_PRESSURE
+    if state.peak_pressure > most:
+        yield warning(
+            "static rating",
+            f'bearing "{name}": its elements are pressed with {1e-9 * state.peak_pressure:.3g} GPa, beyond the '
+            f"{1e-9 * most:.2g} GPa of a static rating (ISO 76)",
+            bearing=name,
+            peak_pressure_pa=state.peak_pressure,
+        )
+    row = state.bearing.rows[0]
+    deep_groove = isinstance(row, BallRow) and row.contact_angle == 0.0
+    limit = _ROLLER_TILT if rollers else _BALL_TILT
+    if (rollers or deep_groove) and len(state.bearing.rows) == 1 and one.load.tilt > limit:
+        kind = "cylindrical roller" if rollers else "deep groove ball"
+        yield warning(
+            "bearing tilt",
+            f'bearing "{name}": shaft and seat are {one.load.tilt / _ARC_MINUTE:.3g}\' out of line; {kind} bearings '
+            f"usually take {limit / _ARC_MINUTE:.0f}' at most",
+            bearing=name,
+            tilt_rad=one.load.tilt,
+        )
+    if one.life is not None and one.life < _SHORT_LIFE:
+        yield warning(
+            "bearing life",
+            f'bearing "{name}": a rated life L10 of {one.life:.3g} h, below {_SHORT_LIFE:.0f} h',
+            bearing=name,
+            life_h=one.life,
+        )
+
+
+def _stiffness_warnings(case: Case, solved: SolvedLoad, told: set[str]) -> Iterator[dict[str, Any]]:
+    """Warn of bearings whose stiffness in the linear analyses differs from the tangent at the equilibrium.
+
+    A bearing made for another load is told of that instead.
+    """
+    depend = {one.name for one in case.bearing if isinstance(one.stiffness, RollingStiffness | StopStiffness)}
+    for one in solved.bearings:
+        mounted, name = one.load.mounted, one.load.name
+        if name not in depend - told or mounted.needs_load:
+            continue
+        taken = np.diag(mounted.bearing.at_speed(one.speed).spatial_stiffness)[:3]
+        found = np.diag(one.load.stiffness)[:3]
+        apart = np.abs(taken - found) > _DIFFERENCE * np.maximum(taken, found)
+        # A direction in which the bearing is soft beside the others holds nothing there.
+        apart &= np.maximum(taken, found) > _DIFFERENCE * max(taken.max(), found.max())
+        if apart.any():
+            texts = [", ".join(f"{1e-6 * value:.4g}" for value in values.tolist()) for values in (taken, found)]
+            yield warning(
+                "bearing stiffness",
+                f'bearing "{name}": linear analyses take {texts[0]} N/µm along x, y, z, the equilibrium finds '
+                f"{texts[1]} N/µm",
+                bearing=name,
+                taken_n_per_m=taken.tolist(),
+                found_n_per_m=found.tolist(),
+            )
+
+
+def _face_warnings(one: PairLoad) -> Iterator[dict[str, Any]]:
+    label = one.pair.label
+    if one.force == 0.0:
+        return
+    if one.k_h_beta > _UNEVEN:
+        yield warning(
+            "uneven face",
+            f"{label}: the face carries unevenly, K_Hβ = {one.k_h_beta:.3g}; its flanks are "
+            f"{1e6 * one.misalignment * one.pair.geometry.face_width:.3g} µm out of line over the face: a helix "
+            "modification or stiffer shafts and seats even it out",
+            driver=one.pair.driver.name,
+            driven=one.pair.driven.name,
+            k_h_beta=one.k_h_beta,
+        )
+    if one.carrying_part < 1.0:
+        yield warning(
+            "part of the face",
+            f"{label}: {100.0 * (1.0 - one.carrying_part):.3g} % of the face never touches under the mean load",
+            driver=one.pair.driver.name,
+            driven=one.pair.driven.name,
+            carrying_part=one.carrying_part,
+        )
+
+
+def _misalignment_warnings(case: Case, solved: SolvedLoad) -> Iterator[dict[str, Any]]:
+    """Warn where the misalignment that the case gives is not the one that the deflections make."""
+    for given, pair, one in zip(case.gear_pair, solved.machine.gear_pairs, solved.point.pairs, strict=True):
+        if "misalignment" not in given.model_fields_set:
+            continue
+        typed, found = pair.misalignment, one.misalignment
+        if typed is None or abs(typed - found) <= _DIFFERENCE * max(abs(typed), abs(found)):
+            continue
+        yield warning(
+            "misalignment",
+            f"{one.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, the equilibrium finds "
+            f"{1e6 * found:.4g} µrad and takes that",
+            driver=given.driver,
+            driven=given.driven,
+            given_rad=typed,
+            found_rad=found,
+        )
+
+
+def _free_motion_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
+    """Warn of motions that nothing holds; shafts without thrust may float along and rotate about their axis."""
+    for motion in solved.point.free:
+        if not motion.startswith(("the rotation", "the axial motion")):
+            yield warning(
+                "free motion", f"nothing holds {motion}; no load drives it, and it stays at zero", motion=motion
+            )

@@ -1,0 +1,88 @@
+"""Figures of the operating point show the forces, deflections and loads that were found."""
+
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+
+import gearwhine as gw
+from gearwhine.analyses.result import Result
+from gearwhine.solve.operating_point import SolvedLoad
+
+
+@pytest.fixture(scope="module")
+def loaded() -> Result[SolvedLoad]:
+    """The helical pair over torque."""
+    return gw.load("helical-pair").operating_point(over_torque=True)
+
+
+@pytest.fixture(scope="module")
+def figures(loaded: Result[SolvedLoad]) -> dict[str, Figure]:
+    return dict(loaded.figures())
+
+
+def test_there_is_one_figure_of_each_shaft_pair_and_cause(figures: dict[str, Figure]) -> None:
+    assert list(figures) == [
+        "load-shaft-input",
+        "load-shaft-output",
+        "load-misalignment",
+        "load-face-pinion-wheel",
+        "load-pattern-pinion-wheel",
+        "load-over-torque",
+    ]
+
+
+def test_shafts_show_their_forces_and_deflection(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
+    figure, (shaft, _) = figures["load-shaft-input"], loaded.solved.shafts
+    for plane, axes in enumerate(figure.axes):
+        told = {text.get_text() for text in axes.texts if isinstance(text, Annotation) and text.get_text()}
+        forces = [abs(one.force[plane]) for one in loaded.solved.point.bearings if one.mounted.rotor == "input"]
+        assert {f"{force:.4g} N" for force in (*forces, sum(forces))} == told
+        (line,) = [line for line in axes.lines if line.get_label() == "deflection"]
+        drawn = np.asarray(line.get_ydata())
+        factor = drawn[np.abs(drawn).argmax()] / (1e3 * shaft.motion[plane][np.abs(drawn).argmax()])
+        assert factor == pytest.approx(500.0)
+        assert drawn == pytest.approx(500e3 * shaft.motion[plane])
+        # Both directions have one scale.
+        box, (low, high), (left, right) = axes.get_window_extent(), axes.get_ylim(), axes.get_xlim()
+        assert box.height / (high - low) == pytest.approx(box.width / (right - left), rel=1e-9)
+    assert "deflections 500 times as large as lengths" in figure.texts[1].get_text()
+
+
+def test_faces_show_gap_and_load(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
+    (pair,) = loaded.solved.point.pairs
+    upper, lower = figures["load-face-pinion-wheel"].axes
+    lines = {line.get_label(): np.asarray(line.get_ydata()) for line in (*upper.lines, *lower.lines)}
+    assert lines["mean"] == pytest.approx(1e-3 * pair.line_load)
+    assert lines["even"] == pytest.approx(1e-3 * pair.force / 25e-3)
+    # Crowned by 6 µm at the ends, of which the middles of the outermost slices have 60 of 61 parts.
+    crown = 6.0 * (pair.z / 12.5e-3) ** 2
+    assert lines["with modifications"] - lines["by deflection"] == pytest.approx(
+        crown - (crown + 1e6 * pair.gap).min() + 1e6 * pair.gap.min(), abs=1e-6
+    )
+    assert (upper.get_ylabel(), lower.get_ylabel()) == ("gap before the load [µm]", "load per width [N/mm]")
+    (band,) = [one for one in lower.collections if isinstance(one, PolyCollection)]
+    heights = band.get_paths()[0].vertices[:, 1]
+    assert heights.max() == pytest.approx(1e-3 * pair.fine.line_load.max())
+
+
+def test_bars_of_the_causes_add_up(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
+    (pair,) = loaded.solved.point.pairs
+    (axes,) = figures["load-misalignment"].axes
+    widths = [patch.get_width() for patch in axes.patches]
+    assert widths == pytest.approx([1e6 * part for part in pair.misalignment_by_cause.values()])
+    (line,) = [line for line in axes.lines if line.get_label() == "_sum"]
+    assert np.asarray(line.get_xdata()) == pytest.approx(sum(widths))
+    ends = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axes.patches]
+    assert min(map(min, ends)) == pytest.approx(sum(width for width in widths if width < 0.0))
+    assert max(map(max, ends)) == pytest.approx(sum(width for width in widths if width > 0.0))
+    assert axes.get_xlabel() == "misalignment [µrad]"
+
+
+def test_curves_over_torque(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
+    by_name = {axes.get_ylabel(): axes for axes in figures["load-over-torque"].axes}
+    drawn = np.asarray(by_name["K_Hβ"].lines[0].get_ydata())
+    told = [point["gear_pairs"][0]["k_h_beta"] for point in loaded.document["over_torque"]]
+    assert drawn == pytest.approx(told)
+    assert set(by_name) == {"misalignment [µrad]", "K_Hβ", "stiffness [N/µm]", "TE p-p [µm]"}
