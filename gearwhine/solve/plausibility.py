@@ -43,7 +43,8 @@ def bearing_load_warnings(
     """
     found = []
     for given in case.bearing:
-        if not isinstance(given.stiffness, RollingStiffness | StopStiffness) or given.name not in mean_force:
+        depends = isinstance(given.stiffness, RollingStiffness | StopStiffness) and not case.finds_load(given)
+        if not depends or given.name not in mean_force:
             continue
         load = given.load
         assumed = np.zeros(3) if load is None else np.array([load.x, load.y, load.z])
