@@ -60,6 +60,16 @@ def test_lines_at_frequencies_of_the_record_are_those_of_its_spectrum(window: st
     np.testing.assert_allclose(found, spectrum.lines[:, places], rtol=1e-9)
 
 
+@pytest.mark.parametrize("count", [1, 2, 17, 900, 1000])
+def test_lines_are_the_sum_that_they_stand_for(count: int) -> None:
+    signal = np.random.default_rng(count).normal(size=(2, 3, count))
+    frequencies = np.array([31.7, 444.4])
+    turning = np.exp(-2j * np.pi * INTERVAL * np.outer(np.arange(count), frequencies))
+    expected = (signal - signal.mean(axis=-1, keepdims=True)) @ turning * (2.0 / count)
+    np.testing.assert_allclose(lines_at(signal, INTERVAL, frequencies), expected, rtol=0.0, atol=1e-12)
+    assert lines_at(signal, INTERVAL, np.empty(0)).shape == (2, 3, 0)
+
+
 def test_a_line_between_two_of_the_record() -> None:
     """Under Hann's window a sine's height is read at its own frequency wherever that lies: only its image leaks in."""
     signal = 5.0 + 2.0 * np.cos(2 * np.pi * 1234.37 * TIMES + 0.4)

@@ -79,7 +79,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Written]:
     folder = tmp_path_factory.mktemp("lopsided")
     case = folder / "lopsided.toml"
     transient = (
-        f"[transient]\nrevolutions = {TURNS}\ndiscard = {DISCARDED}\npoints_per_revolution = 200\n"
+        f"[transient]\nrevolutions = {TURNS}\ndiscard = {DISCARDED}\npoints_per_revolution = 200\ntolerance = 1e-3\n"
         "modal_coordinates = 2\n"
     )
     case.write_text(lopsided(spatial=True, more=transient), encoding="utf-8")
