@@ -22,11 +22,10 @@ from meshes import Mesh
 
 __all__ = ["VIEWS", "render_gallery", "render_modes", "render_shapes", "render_sheet"]
 
-_COLUMNS = 4  # of a sheet
-
 FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
 
+_COLUMNS = 4  # of a sheet
 _FRAMES = 24  # of one period; even, so that half of them mirror the others where the motion has one phase
 _FRAME = 80  # duration of each [ms]
 _PAPER = 240  # all three colours of a pixel above it: the background and its soft edges
