@@ -40,13 +40,13 @@ from rotors.modes.modal_rotor import gyroscopic_matrix, section_motions
 from rotors.modes.torsional_and_axial import solve_axial_modes
 from rotors.transfer_matrix.rotor_shafts import rod_shaft
 from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
-from rotors.whirl.planar_basis import PlanarBasis
+from rotors.whirl.planar_basis import (
+    PlanarBasis,
+)
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
-NumberArray = npt.NDArray[Any]
 
 # Most that damping may couple modes, squared, relative to their distance: starting values then err by a thousandth of
 # the distance. Checked for the lower half: above are responses to loads, which stand for all higher modes and start no
@@ -56,6 +56,9 @@ MOST_MIXED = 0.01
 LEAST_SQUARED = 1e-10
 # Stiffness may lack this part of its size to be symmetric, from rounding.
 ROUNDING = 1e-12
+IntArray = npt.NDArray[np.intp]
+NumberArray = npt.NDArray[Any]
+
 AXIAL_MODES = 8
 # Mass of a massless pedestal in the projection, as a part of the rotor's: every coordinate needs a mass.
 PEDESTAL_MASS = 1e-6
