@@ -39,6 +39,7 @@ from rotors.numerics.branch_following import (
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
+Point = BranchPoint[ComplexArray]
 
 _ALIKE = 0.8  # likeness from which two modes are one beyond doubt
 _ONE = 1e-6  # eigenvalues nearer to each other than this part of them are not told apart
@@ -46,6 +47,11 @@ _JUMP = 0.05  # a step of an eigenvalue by this part of it weighs as much as no 
 _MOST_JUMPS = 4.0  # such steps, beyond which the length of a step makes no further difference
 _FARTHEST = 0.3  # a branch that would have to jump by this part of its frequency has ended
 _HALVINGS = 6  # of a step of speed
+_CROSSING = 1e-10  # of a frequency, to which a crossing is found
+_STEPS = 40
+_RESIDUAL = 1e-9
+_AT_REST = 1e-6  # of the highest speed, in place of zero: forward and backward whirl of a round shaft are then apart
+_ABOVE = 1.15  # modes up to this over the limit are followed, so that none is lost that dips below it
 
 
 @dataclass(frozen=True)
@@ -121,13 +127,6 @@ def matched(
     return np.where(first >= 0, second[first], -1)
 
 
-Point = BranchPoint[ComplexArray]
-
-_CROSSING = 1e-10  # of a frequency, to which a crossing is found
-_STEPS = 40
-_RESIDUAL = 1e-9
-
-
 def order_crossing(
     machine: CoupledMachine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
 ) -> tuple[float, complex] | None:
@@ -172,10 +171,6 @@ def _between(value: complex, ends: Sequence[complex]) -> bool:
     """Whether an eigenvalue is near two on its branch, and not one of another branch."""
     reach = 2.0 * abs(ends[1] - ends[0]) + 1e-3 * abs(ends[0])
     return min(abs(value - end) for end in ends) <= reach
-
-
-_AT_REST = 1e-6  # of the highest speed, in place of zero: forward and backward whirl of a round shaft are then apart
-_ABOVE = 1.15  # modes up to this over the limit are followed, so that none is lost that dips below it
 
 
 @dataclass(frozen=True)

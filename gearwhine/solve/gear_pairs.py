@@ -49,8 +49,7 @@ FloatArray = npt.NDArray[np.float64]
 HARMONICS = 8
 _PHASES = 400  # of the mesh period, evenly, for curves that pairs have in common
 _PLACES = 200  # along a flank
-
-_HARMONICS = 8  # of the mesh frequency, where the case does not name them
+_AIMED_AT = 8  # harmonics of the mesh frequency, where the case does not name them
 
 
 @dataclass(frozen=True, eq=False)
@@ -367,7 +366,7 @@ def relief_aims(
         key = f"gear_pair[{number}].relief_aim"
         if not pair.mesh_frequency:
             raise CaseError([Problem(key, NOTHING, "a speed: the level at a sensor is of gears that turn")])
-        given = aim.weights or dict.fromkeys(range(1, _HARMONICS + 1), 1.0)
+        given = aim.weights or dict.fromkeys(range(1, _AIMED_AT + 1), 1.0)
         weights = {n: weight for n, weight in given.items() if weight and n * pair.mesh_frequency <= limit}
         if not weights:
             expected = f"multiples of the mesh frequency of {pair.mesh_frequency:.5g} Hz below {limit:.5g} Hz"

@@ -25,7 +25,6 @@ from meshes.lengths import UNITS, length_text
 FloatArray = npt.NDArray[np.float64]
 
 _ON_A_LINE = 1e-6  # second largest spread of points as a part of the largest, below which they turn about their line
-
 _SMALLEST = 20.0  # times as large as its survey a housing may be; a millionth of it lies near any surface
 _TOLERANCE = 0.02  # of the housing's diagonal: beyond it a point is not one of this surface
 

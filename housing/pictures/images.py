@@ -16,17 +16,14 @@ import numpy.typing as npt
 from housing.errors import EncoderUnavailableError
 from housing.modes.natural_modes import ModeSet
 from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
-from housing.pictures.scene import STRIP, VIEWS, Scene, check_view, colour_strip
+from housing.pictures.scene import STRIP, Scene, check_view, colour_strip
 from housing.storage.atomic_file import atomic_file
 from meshes import Mesh
-
-__all__ = ["VIEWS", "render_gallery", "render_modes", "render_shapes", "render_sheet"]
-
-_COLUMNS = 4  # of a sheet
 
 FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
 
+_COLUMNS = 4  # of a sheet
 _FRAMES = 24  # of one period; even, so that half of them mirror the others where the motion has one phase
 _FRAME = 80  # duration of each [ms]
 _PAPER = 240  # all three colours of a pixel above it: the background and its soft edges
@@ -57,7 +54,7 @@ def render_modes(
     notes : mapping of int to str, optional
         A second line under a mode's title.
     view : str
-        One of :data:`VIEWS`.
+        One of :data:`housing.pictures.scene.VIEWS`.
     size : tuple of int
         Width and height of a picture [pixels].
     progress : callable

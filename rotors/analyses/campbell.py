@@ -41,12 +41,25 @@ from rotors.whirl.whirl_modes import NEUTRAL, START_REACH, ComplexFrequencies, W
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
 
 # A jump by this part of the eigenvalue weighs as much as no likeness at all; no jump weighs more than so many of these.
 JUMP_SCALE = 0.1
 MOST_JUMPS = 100.0
 # A branch that would have to jump further than this part of its frequency has ended.
 LONGEST_JUMP = 0.5
+# Damped sets are proved at this many speeds, spread over the range.
+PROOFS = 3
+# Branches are followed this far beyond the limit at every speed.
+WINDOW = 1.1
+# Narrower gaps between starting values may vanish between the roots.
+WIDE_GAP = 1e-3
+# With whirl direction and axial share in place of the shape.
+Point = BranchPoint[tuple[float, float]]
+# A root further from its starting value than this part of it belongs to another branch.
+CROSSING_JUMP = 0.1
+CROSSING_STEPS = 30
+CROSSING_TOLERANCE = 1e-11
 
 
 @dataclass(frozen=True)
@@ -129,16 +142,6 @@ def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray)
         values = roots[1].eigenvalues[last]
         expected[last] = values + part * (values - roots[0].eigenvalues[before])
     return expected
-
-
-BoolArray = npt.NDArray[np.bool_]
-
-# Damped sets are proved at this many speeds, spread over the range.
-PROOFS = 3
-# Branches are followed this far beyond the limit at every speed.
-WINDOW = 1.1
-# Narrower gaps between starting values may vanish between the roots.
-WIDE_GAP = 1e-3
 
 
 def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None, count: int | None) -> FloatArray:
@@ -227,15 +230,6 @@ def _expected(
         for equations, limit, speed in zip(equation_sets, limits, speeds, strict=True)
     ]
     return np.array([row[0] - row[1] for row in rows])
-
-
-# With whirl direction and axial share in place of the shape.
-Point = BranchPoint[tuple[float, float]]
-
-# A root further from its starting value than this part of it belongs to another branch.
-CROSSING_JUMP = 0.1
-CROSSING_STEPS = 30
-CROSSING_TOLERANCE = 1e-11
 
 
 @dataclass(frozen=True)

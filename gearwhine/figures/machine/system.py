@@ -55,6 +55,10 @@ KIND_COLORS = {
 _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # of the panel [mm]
 _LARGEST = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
+_MICROMETRE = 1e-6
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 4.0  # of a panel and the room between two [mm]
+_DECADES = 4.0  # of amplitude that a panel shows at most
+_NAMED = 8  # curves that a panel tells apart by colour
 
 
 def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_speed: float | None = None) -> Figure:
@@ -147,12 +151,6 @@ def _mark_crossings(axes: Axes, campbell: SystemCampbell) -> None:
             axes.scatter(
                 *place, s=14.0, facecolors="white", edgecolors=color, linewidths=0.9, zorder=4, label="crossing"
             )
-
-
-_MICROMETRE = 1e-6
-_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 4.0  # of a panel and the room between two [mm]
-_DECADES = 4.0  # of amplitude that a panel shows at most
-_NAMED = 8  # curves that a panel tells apart by colour
 
 
 def draw_transmissibility(

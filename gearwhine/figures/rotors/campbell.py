@@ -42,6 +42,10 @@ FloatArray = npt.NDArray[np.float64]
 
 # Below this part of a circular whirl the sense is no longer that of the mode as a whole.
 PLANAR = 0.05
+_HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
+_BRANCHES = 6  # lowest branches that are shown at least
+_ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
+_ALMOST_ALL = 0.9  # of the decrements are on their axis
 
 
 @dataclass(frozen=True)
@@ -54,8 +58,14 @@ class Sense:
 
 
 FORWARD = Sense("forward", BLUE, "-")
+
+
 BACKWARD = Sense("backward", RED, (0, (5, 2)))
+
+
 MIXED = Sense("planar or mixed", "#6b747c", (0, (6, 2, 1.2, 2)))
+
+
 AXIAL = Sense("along the axis", SERIES[3], (0, (1.2, 1.8)))
 
 
@@ -85,12 +95,6 @@ def legend_lines(senses: Sequence[Sense], *, solid: bool = False) -> list[Line2D
         for sense in (FORWARD, BACKWARD, MIXED, AXIAL)
         if sense in senses
     ]
-
-
-_HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
-_BRANCHES = 6  # lowest branches that are shown at least
-_ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
-_ALMOST_ALL = 0.9  # of the decrements are on their axis
 
 
 def draw_campbell(

@@ -38,14 +38,12 @@ from rotors.modes.torsional_and_axial import TorsionalModes
 from rotors.whirl.whirl_modes import MOSTLY_AXIAL
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _PLACES = 201  # along a shaft, besides what it carries
 _HIGHEST, _LOWEST = 20.0, 7.0  # a mode's share of the height, where modes are few and where they are many [mm]
 _TOGETHER = 150.0  # height of all modes, as long as none gets lower than that [mm]
 _SWING = 0.42  # of a shape to either side, in shares of its mode
-
-ComplexArray = npt.NDArray[np.complex128]
-
 _MODE_HEIGHT = 23.0  # of a mode [mm of paper]
 _REACH = 8.5  # of its largest displacement [mm of paper]
 _ORBITS, _ALONG = 17, 121  # orbits drawn, and places of the shaft's own line
@@ -53,6 +51,10 @@ _ORBITS, _ALONG = 17, 121  # orbits drawn, and places of the shaft's own line
 _BACK = 0.6 * np.exp(1j * np.radians(35.0))
 # An orbit ends short of its start, so that its sense is seen without colours too.
 _TURN = np.linspace(0.0, 0.86 * 2.0 * np.pi, 60)
+_HEIGHT = 60.0  # of the panel [mm of paper]
+_ARROW = 0.26  # of the panel's height, for the largest load
+_WORD, _EDGE = 0.08, 0.03  # ... for what a load is called, and beside all [of the height]
+_NEGLIGIBLE = 1e-6  # of the deflection in y: less in x is not drawn
 
 
 def draw_lateral_modes(assembly: RotorAssembly, modes: LateralModes, *, most: int | None = None) -> Figure:
@@ -155,12 +157,6 @@ def _frequency(value: float) -> str:
     if value == 0.0:
         return "rigid"
     return f"{value:.4g} Hz" if value < 1e4 else f"{1e-3 * value:.4g} kHz"
-
-
-_HEIGHT = 60.0  # of the panel [mm of paper]
-_ARROW = 0.26  # of the panel's height, for the largest load
-_WORD, _EDGE = 0.08, 0.03  # ... for what a load is called, and beside all [of the height]
-_NEGLIGIBLE = 1e-6  # of the deflection in y: less in x is not drawn
 
 
 def draw_static_deflection(
