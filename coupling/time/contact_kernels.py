@@ -23,10 +23,10 @@ FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 
 @inner()
-def flank_deviation(
+def flank_gap(
     clearance: FloatArray, errors: FloatArray, k: int, nominal_time: float, speed: float
 ) -> tuple[float, float]:
-    """Runout error and clearance of a contact, which reduce its compression [m], and their rate [m/s]."""
+    """Gap of a contact, its clearance (backlash) and runout error, which reduces its compression [m]; its rate."""
     value, rate = clearance[k], 0.0
     for m in range(errors.shape[1]):
         amplitude, w = errors[k, m, 0], errors[k, m, 1]

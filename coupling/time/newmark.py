@@ -34,7 +34,7 @@ from coupling.time.contact_kernels import (
     PHASE_SLOPE,
     evaluate_contact,
     evaluate_forces,
-    flank_deviation,
+    flank_gap,
     solve_contact_forces,
 )
 from coupling.time.dense_kernels import SUMS, add_rows, project
@@ -229,7 +229,7 @@ def write_samples(
             project(teeth, x, samples.compression[row])
             project(teeth, y, work)
             for k in range(contacts.phase.size):
-                gone, slip = flank_deviation(contacts.clearance, contacts.errors, k, nominal_time, speed)
+                gone, slip = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
                 samples.compression[row, k] -= gone
                 evaluate_contact(contacts, k, nominal_time, samples.compression[row, k], work[k] - slip, laws, k)
                 samples.force[row, k] = laws[k, FORCE]
@@ -367,7 +367,7 @@ def _start_segment(
     project(contacts.direction, q, dq)
     project(contacts.direction, v, dv)
     for k in range(c):
-        gone, scratch.slip[k] = flank_deviation(contacts.clearance, contacts.errors, k, nominal_time, speed)
+        gone, scratch.slip[k] = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
         delta[k], rate[k] = dq[k] - gone, dv[k] - scratch.slip[k]
     for k in range(c, delta.size):
         delta[k] = dq[k]
@@ -501,7 +501,7 @@ def _contact_response(
     c, flexibility = contacts.phase.size, matrices.flexibility[slot]
     project(contacts.direction, a_end, da)
     for k in range(c):
-        gone, scratch.slip[k] = flank_deviation(contacts.clearance, contacts.errors, k, nominal_time, speed)
+        gone, scratch.slip[k] = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
         delta[k] = scratch.dq_predicted[k] + displaced * da[k] - gone
         rate[k] = scratch.dv_predicted[k] + moved * da[k] - scratch.slip[k]
     for k in range(c, delta.size):

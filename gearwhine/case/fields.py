@@ -1,4 +1,4 @@
-"""Field types of a case: quantities with unit and range, names, files, and the base class of all tables.
+"""Field types of the case keys: quantities with unit and range, names, files, and the base class of all tables.
 
 Further types are a direction, an axis by its letter or a vector of any length; a coefficient over speed, one quantity
 or a list with one for each speed of a table; and a patch of the housing's surface, which is a named surface, or the

@@ -77,15 +77,15 @@ class PairPositions:
         Position along the path of contact, base pitches.
     present : ndarray of bool, shape (n, m)
         Whether the pair is in the range of contact.
-    kind : ndarray of int, shape (n, m)
-        Number of the kind of pair.
+    variant : ndarray of int, shape (n, m)
+        Number of the variant of pair.
     entered : ndarray of int, shape (n, m)
         Phase at which the pair entered.
     """
 
     position: FloatArray
     present: npt.NDArray[np.bool_]
-    kind: IntArray
+    variant: IntArray
     entered: IntArray
 
 
@@ -309,7 +309,7 @@ class ToothContact:
         for number, curves in enumerate(self.variant_curves[:1] if sound else self.variant_curves):
             these = part > 0.0
             if not sound:
-                these &= (places.kind == number)[..., None]
+                these &= (places.variant == number)[..., None]
             total += np.bincount(np.nonzero(these)[0], part[these] * curves.stiffness(at[these]), total.size)
         total /= shift.size
         return np.asarray(total / (1.0 + self.shared_compliance * total), dtype=np.float64)
@@ -383,25 +383,25 @@ class ToothContact:
         position = fraction[:, None] + behind
         present = (position >= start) & (position < end)
         entered = number.astype(np.int64)[:, None] - behind
-        kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
-        return PairPositions(position, present, kind, entered)
+        variant = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
+        return PairPositions(position, present, variant, entered)
 
     def pairs(self, phases: npt.ArrayLike) -> PairStates:
         """Positions, stiffness and deviation of the pairs at `phases` (n,)."""
         places = self.pair_positions(phases)
-        position, present, kind, entered = places.position, places.present, places.kind, places.entered
+        position, present, variant, entered = places.position, places.present, places.variant, places.entered
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
         state = None
         if self.faces is None:
-            for variant, curves in enumerate(self.variant_curves):
-                these = present & (kind == variant)
+            for number, curves in enumerate(self.variant_curves):
+                these = present & (variant == number)
                 stiffness[these] = curves.stiffness(position[these])
                 deviation[these] = curves.deviation(position[these])
         else:
-            state = face_slice_states(self.faces, self.variant_curves, position[present], kind[present])
+            state = face_slice_states(self.faces, self.variant_curves, position[present], variant[present])
             deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
-        return PairStates(position, present, kind, entered, stiffness, deviation + gap, gap, state)
+        return PairStates(position, present, variant, entered, stiffness, deviation + gap, gap, state)
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
@@ -452,20 +452,20 @@ def tooth_contact(
     """
     variants = pair_variants(geometry)
     stiffness = model.pair_stiffness(geometry)
-    kinds = tooth_pair_curves(geometry, stiffness, variants.faults, corner_contact)
+    curves = tooth_pair_curves(geometry, stiffness, variants.faults, corner_contact)
     none = np.zeros(0)
     deviating = any(geometry.driver.pitch_deviations) or any(geometry.driven.pitch_deviations)
     return ToothContact(
         float(stiffness.knots[-1]),
-        kinds[0].stiffness,
-        kinds[0].deviation,
+        curves[0].stiffness,
+        curves[0].deviation,
         damping,
         geometry.back_flank_offset,
         pitch_gaps(geometry) if deviating else none,
         back_flank_pitch_gaps(geometry) if deviating else none,
-        variants=kinds[1:],
-        pair_variants=variants.of_pair if len(kinds) > 1 else none.astype(np.int64),
-        back_pair_variants=variants.of_back_pair if len(kinds) > 1 else none.astype(np.int64),
+        variants=curves[1:],
+        pair_variants=variants.of_pair if len(curves) > 1 else none.astype(np.int64),
+        back_pair_variants=variants.of_back_pair if len(curves) > 1 else none.astype(np.int64),
         faces=faces,
         module=geometry.driver.module,
         shared_compliance=shared_compliance(model, geometry),

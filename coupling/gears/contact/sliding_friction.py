@@ -52,7 +52,7 @@ class SlidingFriction:
         End of the path of contact, where corners slide [base pitches].
     shares : ndarray
         Numbers of `coupling.gears.contact.lookup_tables` for the three integrals over a line of contact that reverses
-        slice by slice, in three kinds of pairs for each kind; empty where lines of contact reverse as a whole.
+        slice by slice, in three variants of pairs for each variant; empty where lines of contact reverse as a whole.
     """
 
     coefficient: float

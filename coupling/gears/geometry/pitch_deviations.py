@@ -83,7 +83,7 @@ class PairVariants:
     Attributes
     ----------
     faults : tuple
-        Of every kind, the driver's tooth's and the driven's; the first kind is that of sound teeth.
+        Of every variant, the driver's tooth's and the driven's; the first variant is that of sound teeth.
     of_pair, of_back_pair : ndarray of int, shape (h,)
         Kind of the pair that enters at phase n, at n mod h, on the working and on the back flanks; empty where all
         teeth are alike.
@@ -97,7 +97,7 @@ class PairVariants:
 def pair_variants(geometry: GearPairGeometry) -> PairVariants:
     """Faults of every pair of teeth over the hunting period."""
     everywhere: PairFaults = (_faults_of(geometry.driver, None), _faults_of(geometry.driven, None))
-    kinds: dict[tuple[int, int], int] = {(-1, -1): 0}
+    variants: dict[tuple[int, int], int] = {(-1, -1): 0}
     faults = [everywhere]
     damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
 
@@ -106,10 +106,10 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
         for n, teeth in enumerate(zip(driver_teeth.tolist(), driven_teeth.tolist(), strict=True)):
             key = tuple(tooth if tooth in bad else -1 for tooth, bad in zip(teeth, damaged, strict=True))
             pair = (key[0], key[1])
-            if pair not in kinds:
-                kinds[pair] = len(faults)
+            if pair not in variants:
+                variants[pair] = len(faults)
                 faults.append((_faults_of(geometry.driver, pair[0]), _faults_of(geometry.driven, pair[1])))
-            found[n] = kinds[pair]
+            found[n] = variants[pair]
         return found
 
     numbers = hunting_numbers(geometry)
