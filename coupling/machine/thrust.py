@@ -71,12 +71,19 @@ def axially_held(
     bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str] | None = None
 ) -> set[str]:
     """Rotors that a bearing with axial stiffness holds at their speeds [rad/s]; only ``among`` these are looked at."""
+    looked_at = speeds if among is None else among
     return {
         mounted.rotor
         for mounted in bearings
-        if mounted.rotor in (speeds if among is None else among)
-        and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
+        if mounted.rotor in looked_at and _holds_axially(mounted, speeds[mounted.rotor])
     }
+
+
+def _holds_axially(mounted: MountedBearing, speed: float) -> bool:
+    if mounted.needs_load:
+        assert mounted.rolling is not None
+        return mounted.rolling.has_axial_stiffness
+    return bool(mounted.bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0)
 
 
 def axial_forces(
