@@ -604,8 +604,9 @@ class _StaticModel:
         causes = self._causes(x, bearings)
         count = len(self.bearings)
         meshes = states[count : count + len(self.pairs)]
-        least = _IDLE * max((float(np.abs(force).sum()) for _, force, _ in meshes), default=0.0)
-        if self.pairs and least == 0.0:
+        pressed = max((float(loads[:-1].sum()) for _, loads, _ in meshes), default=0.0)
+        least = _IDLE * pressed
+        if self.pairs and pressed <= RESIDUAL_BAR * float(np.abs(self.load).max(initial=0.0)):
             names = ", ".join(pair.label for pair in self.pairs)
             turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())
             raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
