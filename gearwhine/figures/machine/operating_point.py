@@ -240,8 +240,8 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     made = gap + pair.pair.contact.flank_gap
     load, phases = pair.line_load, pair.fine.line_load
     note = (
-        f"K_Hβ = {pair.k_h_beta:.3f}; flanks {MICRO * pair.misalignment * width:z.2f} µm out of line over the face, open "
-        f"towards +z where positive; mean mesh force {pair.force:.4g} N"
+        f"K_Hβ = {pair.k_h_beta:.3f}; flanks {MICRO * pair.misalignment * width:z.2f} µm out of line over the face, "
+        f"open towards +z where positive; mean mesh force {pair.force:.4g} N"
     )
     figure = sheet(HEAD + _GAP_PANEL + _ROOM + _LOAD_PANEL + FOOT, title, note)
     upper = panel(figure, FOOT + _LOAD_PANEL + _ROOM, _GAP_PANEL)
