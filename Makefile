@@ -14,6 +14,8 @@ OUT    ?= results/nasa-gear-noise-rig
 # Two cores are the rule; BLAS threads on top of worker processes cost far more than they give.
 export OMP_NUM_THREADS ?= 2
 export OPENBLAS_NUM_THREADS ?= 2
+# Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: demo test lint types unit validation stiffness-page install install-dev system format constraints clean
 

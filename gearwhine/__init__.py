@@ -37,11 +37,12 @@ if TYPE_CHECKING:
     from gearwhine.analyses.result import Result as Result
     from gearwhine.case import Case as Case
     from gearwhine.case import CaseError as CaseError
+    from gearwhine.case.units import rpm as rpm
+    from gearwhine.case.units import to_rpm as to_rpm
     from gearwhine.study import Study as Study
     from gearwhine.study import build as build
     from gearwhine.study import load as load
-    from gearwhine.units import rpm as rpm
-    from gearwhine.units import to_rpm as to_rpm
+    from housing import STEEL as STEEL
     from housing import Housing as Housing
     from housing import HousingError as HousingError
     from housing import Joint as Joint
@@ -70,9 +71,20 @@ _HOMES = {
     "coupling.gears.loaded.gear_pair": ("GearPair",),
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
+    "gearwhine.case.units": ("rpm", "to_rpm"),
     "gearwhine.study": ("Study", "build", "load"),
-    "gearwhine.units": ("rpm", "to_rpm"),
-    "housing": ("Housing", "HousingError", "Joint", "LumpedMass", "Material", "Mount", "Seat", "Sensor", "Support"),
+    "housing": (
+        "Housing",
+        "HousingError",
+        "Joint",
+        "LumpedMass",
+        "Material",
+        "Mount",
+        "STEEL",
+        "Seat",
+        "Sensor",
+        "Support",
+    ),
     "meshes": ("GeometryError",),
     "rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
 }

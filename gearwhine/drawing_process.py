@@ -85,13 +85,13 @@ def _follow(lines: IO[str], progress: Progress) -> dict[str, Any]:
     """Forward progress up to the answer; empty where there is none."""
     for line in lines:
         try:
-            told = json.loads(line)
+            report = json.loads(line)
         except ValueError:  # a library's own chatter
             continue
-        if isinstance(told, dict):
-            if "files" in told or "failed" in told:
-                return told
-            progress(str(told.get("progress", "drawing")))
+        if isinstance(report, dict):
+            if "files" in report or "failed" in report:
+                return report
+            progress(str(report.get("progress", "drawing")))
     return {}
 
 
@@ -121,8 +121,7 @@ def _tell(document: dict[str, Any]) -> None:
 
 def _draw(desk: Path) -> list[str]:
     """Do the task that lies on the desk."""
-    from housing.pictures.animations import animate_shapes
-    from housing.pictures.images import render_shapes, render_sheet
+    from housing.pictures.images import animate_shapes, render_shapes, render_sheet
 
     task = json.loads((desk / "task.json").read_text(encoding="utf-8"))
     with np.load(desk / "arrays.npz", allow_pickle=False) as arrays:

@@ -20,7 +20,7 @@ ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _MOST_MODES = 5000
 _DOMINANT = 8
@@ -60,7 +60,7 @@ def check_request(
 
         find_renderer()
     if mode_format == "mp4":
-        from housing.pictures.animations import find_encoder
+        from housing.pictures.images import find_encoder
 
         find_encoder()
 
@@ -93,7 +93,7 @@ def draw_modes(
     notes = {}
     if comparison is not None:
         notes = {
-            pair.mode: f"measured {pair.measured / _HERTZ:.0f} Hz ({pair.error_percent:+.1f} %"
+            pair.mode: f"measured {pair.measured / _TWO_PI:.0f} Hz ({pair.error_percent:+.1f} %"
             + (")" if pair.mac is None else f", MAC {pair.mac:.2f})")
             for pair in comparison.pairs
         }
@@ -195,8 +195,8 @@ def draw_measured(
     """
     from gearwhine.figures import ShapePair, draw_measured_shapes, save
     from gearwhine.solve.comparison import mapped_shapes, read_measured
+    from housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
     from housing.pictures.scene import viewing_direction
-    from housing.pictures.survey_wireframe import laid_over, point_motions, wireframe
 
     measured = read_measured(case)
     if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:
@@ -209,7 +209,7 @@ def draw_measured(
         likeness = "" if pair.mac is None else f", MAC {pair.mac:.2f}"
         drawn.append(
             ShapePair(
-                f"{pair.measured / _HERTZ:.0f} Hz measured, mode {pair.mode} at {pair.model / _HERTZ:.0f} Hz "
+                f"{pair.measured / _TWO_PI:.0f} Hz measured, mode {pair.mode} at {pair.model / _TWO_PI:.0f} Hz "
                 f"({pair.error_percent:+.1f} %{likeness})",
                 point_motions(geometry, laid),
                 # What was not measured is left out of both.

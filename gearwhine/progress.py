@@ -67,11 +67,11 @@ def _live() -> Iterator[Progress]:
 
 def _lines() -> Progress:
     start = time.perf_counter()
-    last, told, said = "", 0, start
+    last, printed, said = "", 0, start
     begun = (start, 0.0)
 
     def progress(message: str, fraction: float | None = None) -> None:
-        nonlocal last, told, said, begun
+        nonlocal last, printed, said, begun
         tenths = 0 if fraction is None else int(10 * fraction)
         now = time.perf_counter()
         news = message != last and _work(message) == _work(last)
@@ -79,10 +79,10 @@ def _lines() -> Progress:
             if not news:
                 # Work that goes on from where it was left does not begin at 0.
                 begun = (now, fraction or 0.0)
-            last, told = message, 0
-        elif (tenths <= told or tenths % 5) and (fraction is None or now - said < _OFTEN):
+            last, printed = message, 0
+        elif (tenths <= printed or tenths % 5) and (fraction is None or now - said < _OFTEN):
             return
-        told, said = tenths, now
+        printed, said = tenths, now
         part = ""
         if fraction is not None and fraction >= 0.005 and not news:
             part = f" {100 * fraction:.0f} %{_time_left(begun, now, fraction)}"

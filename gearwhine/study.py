@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from gearwhine.analyses.run import RunSolution
     from gearwhine.mode_pictures import ModeFormat
     from gearwhine.solve.case_summary import CheckedCase
+    from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.steady_state import SolvedSteady
-    from gearwhine.solve.survey_plan import PlannedSurvey
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
     from housing.correlation.comparison import Comparison

@@ -27,11 +27,12 @@ from housing.model.bolted_joints import bolted_joint as bolted_joint
 from housing.model.bushings import Bushing as Bushing
 from housing.model.bushings import Joint as Joint
 from housing.model.bushings import Mount as Mount
+from housing.model.fixtures import LumpedMass as LumpedMass
 from housing.model.fixtures import attach_fixtures as attach_fixtures
 from housing.model.housing import Housing as Housing
 from housing.model.housing import HousingModes as HousingModes
 from housing.model.housing import cover_joints as cover_joints
-from housing.model.lumped_mass import LumpedMass as LumpedMass
+from housing.model.material import STEEL as STEEL
 from housing.model.material import Material as Material
 from housing.model.patches import Patch as Patch
 from housing.model.seats import Seat as Seat

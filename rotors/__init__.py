@@ -44,6 +44,7 @@ from rotors.model.bearing import Bearing as Bearing
 from rotors.model.bearing import Pedestal as Pedestal
 from rotors.model.bearing import RadialSupport as RadialSupport
 from rotors.model.loads import Unbalance as Unbalance
+from rotors.model.material import ElasticMaterial as ElasticMaterial
 from rotors.model.material import ShaftMaterial as ShaftMaterial
 from rotors.model.segment import Coupling as Coupling
 from rotors.model.segment import Segment as Segment

@@ -61,7 +61,7 @@ def tables() -> str:
     for name, model in models().items():
         contact = tooth_contact(PAIR, model)
         stiffness = mesh_stiffness(contact, mesh_period_phases(contact))
-        mean, single = contact.mean_mesh_stiffness, float(contact.stiffness(0.5 * eps))
+        mean, single = contact.unloaded_mean_mesh_stiffness, float(contact.stiffness(0.5 * eps))
         values = " | ".join(f"{1e-6 * value:.1f}" for value in (single, stiffness.min(), stiffness.max(), mean))
         lines.append(f"| {name} | {values} | {100.0 * (mean / norm - 1.0):+.1f} % |")
     return "\n".join(lines)

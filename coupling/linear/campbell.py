@@ -17,7 +17,6 @@ ten digits.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -28,11 +27,19 @@ from coupling.linear.eigenpairs import refine_pair
 from coupling.machine.assembly import CoupledMachine
 from coupling.signals.excitation import ExcitationLine, excitation_lines
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
-from rotors.numerics.branch_following import BranchPoint, extended_branches, paired_modes, refined_crossing
+from rotors.numerics.branch_following import (
+    BranchPoint,
+    along_branches,
+    extended_branches,
+    order_intervals,
+    paired_modes,
+    refined_crossing,
+)
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
+Point = BranchPoint[ComplexArray]
 
 _ALIKE = 0.8  # likeness from which two modes are one beyond doubt
 _ONE = 1e-6  # eigenvalues nearer to each other than this part of them are not told apart
@@ -40,6 +47,11 @@ _JUMP = 0.05  # a step of an eigenvalue by this part of it weighs as much as no 
 _MOST_JUMPS = 4.0  # such steps, beyond which the length of a step makes no further difference
 _FARTHEST = 0.3  # a branch that would have to jump by this part of its frequency has ended
 _HALVINGS = 6  # of a step of speed
+_CROSSING = 1e-10  # of a frequency, to which a crossing is found
+_STEPS = 40
+_RESIDUAL = 1e-9
+_AT_REST = 1e-6  # of the highest speed, in place of zero: forward and backward whirl of a round shaft are then apart
+_ABOVE = 1.15  # modes up to this over the limit are followed, so that none is lost that dips below it
 
 
 @dataclass(frozen=True)
@@ -115,13 +127,6 @@ def matched(
     return np.where(first >= 0, second[first], -1)
 
 
-Point = BranchPoint[ComplexArray]
-
-_CROSSING = 1e-10  # of a frequency, to which a crossing is found
-_STEPS = 40
-_RESIDUAL = 1e-9
-
-
 def order_crossing(
     machine: CoupledMachine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
 ) -> tuple[float, complex] | None:
@@ -166,10 +171,6 @@ def _between(value: complex, ends: Sequence[complex]) -> bool:
     """Whether an eigenvalue is near two on its branch, and not one of another branch."""
     reach = 2.0 * abs(ends[1] - ends[0]) + 1e-3 * abs(ends[0])
     return min(abs(value - end) for end in ends) <= reach
-
-
-_AT_REST = 1e-6  # of the highest speed, in place of zero: forward and backward whirl of a round shaft are then apart
-_ABOVE = 1.15  # modes up to this over the limit are followed, so that none is lost that dips below it
 
 
 @dataclass(frozen=True)
@@ -310,17 +311,17 @@ def system_campbell(
         branches = extended_branches(branches, partner, here.modes.values.size)
         known.append(here)
         progress((number + 1) / stand_in.size)
-    sizes = np.abs(_along(branches, [one.modes.values for one in known], np.nan))
+    sizes = np.abs(along_branches(branches, [one.modes.values for one in known], np.nan))
     table = branches[:, np.any(sizes < frequency_limit, axis=0)]
-    eigenvalues = _along(table, [one.modes.values for one in known], complex(np.nan, np.nan))
-    kinds, where = (_along(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where"))
-    whirl, teeth = (_along(table, [getattr(one, key) for one in known], np.nan) for key in ("whirl", "teeth"))
+    eigenvalues = along_branches(table, [one.modes.values for one in known], complex(np.nan, np.nan))
+    kinds, where = (
+        along_branches(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where")
+    )
+    whirl = along_branches(table, [one.whirl for one in known], np.nan)
+    teeth = along_branches(table, [one.teeth for one in known], np.nan)
     crossings, unsettled = [], []
     for line in chosen:
-        gap = eigenvalues.imag - line.order * np.abs(stand_in)[:, None]
-        for left, branch in np.argwhere((gap[:-1] > 0.0) != (gap[1:] > 0.0)):
-            if not np.all(np.isfinite(gap[left : left + 2, branch])):
-                continue
+        for left, branch in order_intervals(eigenvalues.imag, line.order, stand_in):
             ends = [(known[i].modes, int(table[i, branch])) for i in (left, left + 1)]
             found = order_crossing(machine, line.order, ends, state)
             if found is None:
@@ -332,9 +333,9 @@ def system_campbell(
                 continue
             speed, value = found
             if abs(value) < frequency_limit:
-                at = int(left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1)
+                at = left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1
                 named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
-                crossings.append(SystemCrossing(speed, line, value, int(branch), *named))
+                crossings.append(SystemCrossing(speed, line, value, branch, *named))
     return SystemCampbell(
         speeds=leading_speeds,
         eigenvalues=eigenvalues,
@@ -376,12 +377,3 @@ def _described(machine: CoupledMachine, speed: float, limit: float, contact: Con
         whirl=modes.whirl[chosen, most],
         teeth=modes.shares.strain[chosen][:, contacts].sum(axis=1),
     )
-
-
-def _along(table: npt.NDArray[np.intp], values: Sequence[npt.NDArray[Any]], missing: Any) -> npt.NDArray[Any]:
-    """Values of the modes at each speed along the branches, (s, b)."""
-    columns = [
-        np.where(row >= 0, of[np.maximum(row, 0)] if of.size else missing, missing)
-        for row, of in zip(table, values, strict=True)
-    ]
-    return np.array(columns).reshape(table.shape)

@@ -35,6 +35,12 @@ FloatArray = npt.NDArray[np.float64]
 _RANK = 1e-11  # of a damping's rank: its singular values below this, relative to its largest terms, are rounding
 _ROUNDING = 32.0  # roundings in an entry of a stiffness, one for each connector that adds to it
 _PRECISION = float(np.finfo(np.float64).eps)
+ComplexArray = npt.NDArray[np.complex128]
+
+_RESIDUAL = 1e-9  # largest residual of a pair, relative to the terms of its equation
+_REFINE = 1e-12  # pairs with a larger residual are refined
+_DOUBLE = 1e-9  # relative distance within which two eigenvalues are one double eigenvalue
+_INDEPENDENT = 1e-6  # singular value below which their vectors are one as well
 
 
 @dataclass(frozen=True)
@@ -128,14 +134,6 @@ def _null(matrix: FloatArray, bound: float) -> FloatArray:
     """Orthonormal basis of the directions that a square matrix shrinks to a bound or less."""
     _, singular, vectors = np.linalg.svd(matrix)
     return np.asarray(vectors[singular <= bound].T)
-
-
-ComplexArray = npt.NDArray[np.complex128]
-
-_RESIDUAL = 1e-9  # largest residual of a pair, relative to the terms of its equation
-_REFINE = 1e-12  # pairs with a larger residual are refined
-_DOUBLE = 1e-9  # relative distance within which two eigenvalues are one double eigenvalue
-_INDEPENDENT = 1e-6  # singular value below which their vectors are one as well
 
 
 @dataclass(frozen=True)

@@ -302,15 +302,15 @@ def unbalance_response(
     """
     if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.unbalances):
         raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
-    turned = [machine.at_speed(float(speed)) for speed in speeds]
-    frequencies = np.array([one.speeds[rotor] for one in turned])
+    at_speeds = [machine.at_speed(float(speed)) for speed in speeds]
+    frequencies = np.array([one.speeds[rotor] for one in at_speeds])
     if np.any(frequencies == 0.0):
         raise CouplingError("a speed of 0, where an unbalance has no force; expected others")
-    state = mean_contact(turned[0].system) if contact is None else contact
+    state = mean_contact(at_speeds[0].system) if contact is None else contact
     number = [part.name for part in machine.system.components].index(rotor)
     rows = _rows_of(machine.system, number)
     parts = []
-    for one, w in zip(turned, frequencies, strict=True):
+    for one, w in zip(at_speeds, frequencies, strict=True):
         # Other rotors of the same speed have loads of that frequency too, on their own coordinates.
         load = sum(
             (each.amplitude for each in one.system.harmonic_loads if each.frequency == w),

@@ -18,6 +18,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.gears import ToothContact
 from coupling.gears.contact.sliding_friction import sliding_friction
+from coupling.gears.geometry.pair import mesh_frequency
 from coupling.machine.components import (
     Component,
     HousingComponent,
@@ -51,7 +52,7 @@ from coupling.machine.loads import (
     constant_torques,
     gravity_load,
 )
-from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried, shuttling_loads
+from coupling.machine.thrust import ThrustPair, require_thrust_carried, shuttling_loads
 from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from coupling.statics.mean_mesh import mean_meshes
 from coupling.statics.static_equilibrium import with_loaded_flanks
@@ -248,6 +249,9 @@ def assemble_machine(
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
     loads = _loads(coordinates, bearings, unbalances, bows, torques, base, gravity)
+    for linear, _ in held:
+        if linear.offset is not None:
+            loads.constant -= linear.directions @ linear.offset
     system = CoupledSystem(
         components=components,
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
@@ -323,14 +327,17 @@ def _bearing(
     among = np.ix_(held, held)
     stiffness, damping = law.spatial_stiffness[among], law.spatial_damping[among]
     axes = tuple(held.tolist())
-    return LinearConnector(law.name, relative[held].T, stiffness, damping, over_speed=table, axes=axes), nonlinear
+    # A law of its own has its force from the elements.
+    offset = None if mounted.offset is None or mounted.law is not None else mounted.offset[held]
+    linear = LinearConnector(law.name, relative[held].T, stiffness, damping, table, axes, offset)
+    return linear, nonlinear
 
 
 def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
     """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
-    rate = abs(coordinates.speeds[mesh.driver.rotor]) * mesh.geometry.driver.teeth / (2.0 * np.pi)
+    rate = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
     name, law, clearance = mesh.name, mesh.contact, 0.0
     if back:
         name, law, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
@@ -424,10 +431,10 @@ def _require_thrust_carried(
         ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
         for mesh in meshes
     ]
-    held = axially_held(bearings, speeds)
-    carriers = {rotor.name: rotor.modal.axial is not None and rotor.name in held for rotor in rotors}
-    if all(name in carriers for pair in pairs for name in pair.rotors):
-        require_thrust_carried(axial_forces(pairs, speeds, constant_torques(torques)), carriers)
+    names = {rotor.name for rotor in rotors}
+    movable = {rotor.name for rotor in rotors if rotor.modal.axial is not None}
+    if all(name in names for pair in pairs for name in pair.rotors):
+        require_thrust_carried(pairs, bearings, speeds, constant_torques(torques), movable)
 
 
 def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:

@@ -84,7 +84,10 @@ class HousingComponent(Component):
     seat_axes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def seat_motions(self, seat: str, z: float) -> FloatArray:
-        """Return a seat's rigid motion at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n)."""
+        """Return a seat's rigid motion at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n).
+
+        The transpose projects a bearing force onto the housing's modes (modal force).
+        """
         x, y, along, about_x, about_y = self.seats[seat].T[:5]
         arm = z - self.seat_z[seat]
         # A rotation about y moves a point above the centre towards +x, one about x towards -y.
@@ -118,35 +121,37 @@ class RotorComponent(Component):
 
     def motions(self, at: float) -> FloatArray:
         """Motion of a section: x, y, z, rotations about x and y, shape (5, n), not to be written to."""
-        if at not in self._sections:
-            self._sections[at] = self._motions(at)
-            self._sections[at].setflags(write=False)
-        return self._sections[at]
+        return self._section(at)[:5]
 
     @cached_property
     def _sections(self) -> dict[float, FloatArray]:
         # A machine is put together anew at every speed, with its bearings and gears at the same places.
         return {}
 
-    def _motions(self, at: float) -> FloatArray:
-        rows, m = self.modal.motions(at), self.modal.lateral.count
-        for plane in (slice(0, m), slice(m, 2 * m)):
-            rows[:, plane] = rows[:, plane] @ self.mixture
-        return rows
+    def _section(self, at: float) -> FloatArray:
+        """Motions of a section and its rotation about z, shape (6, n)."""
+        if at not in self._sections:
+            rows, m = self.modal.motions(at), self.modal.lateral.count
+            for plane in (slice(0, m), slice(m, 2 * m)):
+                rows[:, plane] = rows[:, plane] @ self.mixture
+            self._sections[at] = np.vstack([rows, self.modal.rotation(at)])
+            self._sections[at].setflags(write=False)
+        return self._sections[at]
 
     def rotation(self, at: float) -> FloatArray:
-        """Rotation about z at a distance from the left end [m], shape (n,)."""
-        return self.modal.rotation(at)
+        """Rotation about z at a distance from the left end [m], shape (n,), not to be written to."""
+        return np.asarray(self._section(at)[5])
 
-    @property
+    @cached_property
     def turning(self) -> FloatArray:
         """Coordinates of a rotation of the whole rotor about z by one radian, shape (n,).
 
         Its first torsional mode, to which the others are orthogonal: as a row, the same is ∫ dI_p of their rotations,
-        and its square the rotor's polar inertia [kg m²].
+        and its square the rotor's polar inertia [kg m²]; not to be written to.
         """
         row = np.zeros(self.size)
         row[2 * self.modal.lateral.count] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
+        row.setflags(write=False)
         return row
 
 

@@ -23,7 +23,7 @@ Dynamics of Rotating Systems, 2005, section 4.4).
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2
 
 import numpy as np
@@ -34,7 +34,7 @@ from coupling.gears import GearPairGeometry, ToothContact
 from coupling.gears.contact.sliding_friction import SlidingFriction
 from coupling.machine.components import RotorComponent
 from rotors import Bearing
-from rotors.rolling_bearings import RollingBearing, RollingState
+from rotors.rolling_bearings import FourPointRow, RollerRow, RollingBearing, RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,10 +53,26 @@ class RollingLaw:
         in which the shaft cannot move.
     cage_angle : float
         Azimuth of the first element of every row at t = 0 [rad].
+
+    Raises
+    ------
+    CouplingError
+        Balls in four-point contact, or cylindrical rollers with flanges, which have no law in the time domain.
     """
 
     state: RollingState
     cage_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Require rows whose elements have a law in the time domain."""
+        for row in self.state.bearing.rows:
+            flanged = isinstance(row, RollerRow) and row.flanges != "none"
+            if flanged or isinstance(row, FourPointRow):
+                kind = "cylindrical rollers between flanges" if flanged else "balls in four-point contact"
+                raise CouplingError(
+                    f"{self.state.bearing.name} has {kind}; expected other elements where a law follows each of them: "
+                    'linearise it, law = "linear" of a case'
+                )
 
     @property
     def reference(self) -> FloatArray:
@@ -127,6 +143,17 @@ class MountedBearing:
     With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take. With
     ``rolling``, the machine's static equilibrium goes by the bearing's elements; one whose ``bearing`` has no stiffness
     gets it from there.
+
+    Attributes
+    ----------
+    bearing : rotors.Bearing
+    rotor : str
+    seat : str or None
+        None for the ground.
+    law : BearingLaw or None
+    rolling : RollingBearing or None
+    offset : ndarray, shape (5,), or None
+        Force of the linear law without deflection [N, N m]: that of the operating point less K times its deflection.
     """
 
     bearing: Bearing
@@ -134,6 +161,7 @@ class MountedBearing:
     seat: str | None
     law: BearingLaw | None = None
     rolling: RollingBearing | None = None
+    offset: FloatArray | None = field(default=None, compare=False)
 
     @property
     def elements(self) -> RollingBearing | None:
@@ -145,7 +173,7 @@ class MountedBearing:
     @property
     def needs_load(self) -> bool:
         """Whether its stiffness has still to follow from its load at the operating point."""
-        return self.rolling is not None and not np.any(self.bearing.stiffness)
+        return self.elements is not None and not np.any(self.bearing.stiffness)
 
 
 @dataclass(frozen=True)
@@ -201,7 +229,7 @@ _JUST_AFTER = 1e-9  # mesh periods
 
 @dataclass(frozen=True)
 class LinearConnector:
-    """A connector whose law is f = K δ + C δ': a bearing, a coupling, a mount.
+    """A connector whose law is f = f₀ + K δ + C δ': a bearing, a coupling, a mount.
 
     Attributes
     ----------
@@ -216,6 +244,8 @@ class LinearConnector:
         K and C at other speeds than the nominal one, where they depend on it.
     axes : tuple of int
         Of a bearing, the axis of each direction: x, y, z and the rotations about x and y (0 to 4); empty otherwise.
+    offset : ndarray, shape (d,), or None
+        f₀ of a law that is linearised about a deflection [N]; among the system's constant loads as -D f₀.
     """
 
     name: str
@@ -224,6 +254,7 @@ class LinearConnector:
     damping: FloatArray
     over_speed: "SpeedTable | None" = None
     axes: tuple[int, ...] = ()
+    offset: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Require stiffness and damping of shape (d, d) for d directions."""
@@ -322,6 +353,9 @@ class Sliding:
 class ContactConnector:
     """A connector whose law is a tooth contact: one line of action of a gear pair.
 
+    Backlash is two one-sided contacts: a gear pair has one such connector for its drive flanks and, where it has a
+    backlash, one for its back flanks with the backlash as ``clearance``.
+
     With the mesh phase p(t) = phase + rate t and the runout error e(t) = Σ a cos(w t + c), the compression is
     δ = dᵀ q - e(t) - clearance and the force is :func:`coupling.gears.contact.tooth_force_kernels.tooth_force`.
 
@@ -338,7 +372,7 @@ class ContactConnector:
     errors : ndarray, shape (h, 3)
         a [m], w [rad/s] and c [rad] of each harmonic of the runout error.
     clearance : float
-        Gap to close before the flanks touch [m]: 0 for the drive flanks, the backlash for the back flanks.
+        Backlash, for the back flanks; 0 for the drive flanks [m].
     drives : bool
         Whether these flanks carry the mean load.
     compression_limit : float

@@ -186,7 +186,9 @@ class CoupledSystem:
     @cached_property
     def drive_stiffness(self) -> FloatArray:
         """Mean mesh stiffness of every drive flank, 0 of the others [N/m], shape (c,)."""
-        return np.array([one.contact.mean_mesh_stiffness * one.drives for one in self.contacts], dtype=np.float64)
+        return np.array(
+            [one.contact.unloaded_mean_mesh_stiffness * one.drives for one in self.contacts], dtype=np.float64
+        )
 
     @cached_property
     def drive_damping(self) -> FloatArray:

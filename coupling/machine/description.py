@@ -7,8 +7,8 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import copysign
 
@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry
+from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
@@ -25,15 +26,16 @@ from coupling.machine.assembly import CoupledMachine, assemble_machine
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
-    LARGEST_IMBALANCE,
+    AppliedTorque,
     GearedShafts,
     GearTrain,
     Output,
+    carrying_flanks,
     gear_train,
     geometry_on_axes,
+    imbalances_of_shafts,
     require_balanced_outputs,
     require_one_plane,
-    shared_torques,
 )
 from coupling.machine.loads import BowReactions, Torque, Unbalance, constant_torques
 from coupling.machine.parts import (
@@ -41,29 +43,30 @@ from coupling.machine.parts import (
     Driving,
     Shaft,
     ShaftGear,
+    inertia_with_discs,
     pair_label,
     require_names,
     require_seats,
     require_stations,
+    rotor_with_gears,
 )
-from coupling.machine.thrust import ThrustPair, axial_forces, axially_held, require_thrust_carried
+from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
 from coupling.signals.histories import histories, transient_outputs
 from coupling.statics.operating_point import OperatingPoint, solve_operating_point
-from coupling.statics.static_model import StaticGear, StaticShaftPart, face_stations, static_bearing, static_pair
+from coupling.statics.static_model import StaticGear, StaticShaftPart, static_bearing, static_pair
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
-from rotors import Coupling, Disc, Rotor, modal_rotor
+from rotors import Coupling, Rotor, modal_rotor
 from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
-_LATERAL_LIMIT = 2.0 * np.pi * 8000.0  # of the bending modes of a shaft that says nothing of its own [rad/s]
-_SAME_STATION = 1e-6  # part of the rotor's length
-_NO_TORQUE = 1e-9  # part of the input torque below which a gear pair carries none but for rounding
+LATERAL_LIMIT_HZ = 8000.0
+"""Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
 
 
 @dataclass(frozen=True)
@@ -132,25 +135,23 @@ class Machine:
     def train(self) -> GearTrain:
         """The gear train."""
         geared = [self._gears_of(pair) for pair in self.gear_pairs]
-        return gear_train(
+        pairs = [
             GearedShafts(driver.shaft, driven.shaft, (driver.gear.teeth, driven.gear.teeth))
             for driver, driven in geared
-        )
+        ]
+        return gear_train(pairs, [shaft.name for shaft in self.shafts])
 
     @cached_property
     def speeds(self) -> dict[str, float]:
         """Signed speed of each shaft [rad/s]."""
         names = [shaft.name for shaft in self.shafts]
-        if not self.gear_pairs:
-            return dict.fromkeys(names, self.speed)
         ratios = self.train.require_turning(names, [pair_label(pair) for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
 
     @cached_property
     def mesh_frequencies(self) -> tuple[float, ...]:
         """Tooth-mesh frequency of each gear pair [Hz]."""
-        drivers = [self._gears_of(pair)[0] for pair in self.gear_pairs]
-        return tuple(abs(self.speeds[one.shaft]) * one.gear.teeth / (2.0 * np.pi) for one in drivers)
+        return self.train.mesh_frequencies(self.speed)
 
     @cached_property
     def pair_geometries(self) -> tuple[GearPairGeometry, ...]:
@@ -166,37 +167,23 @@ class Machine:
     def constant_torques(self) -> tuple[Torque, ...]:
         """Torques about z that act from outside: the input first, then the outputs, by default at right ends."""
         if not self.gear_pairs:
-            ratios = dict.fromkeys((shaft.name for shaft in self.shafts), 1.0)
-            first = self.outputs[0].shaft if self.outputs else None
             self._require_balance_of_each_shaft()
-        else:
-            ratios = {name: float(ratio) for name, ratio in self.train.ratios.items()}
-            first = next(iter(ratios))
-            if any(output.shaft == first for output in self.outputs):
+        for output in self.outputs if self.gear_pairs else ():
+            if output.shaft == self.train.pairs[0].driver:
                 raise CouplingError(
-                    f"an output on shaft {first!r}; expected a shaft other than {first!r}, where the torque comes in"
+                    f"an output on shaft {output.shaft!r}; expected a shaft other than {output.shaft!r}, where the "
+                    "torque comes in"
                 )
-        require_balanced_outputs(ratios, self.torque, self.outputs)
-        if first is None or self.torque == 0.0:
-            return ()
-        sense = copysign(1.0, self.speed)
-        found = [Torque(first, self.torque_at, sense * self.torque)]
-        for output, torque in shared_torques(self.train, ratios, self.torque, self.outputs):
-            at = self.shaft(output.shaft).rotor.length if output.at is None else output.at
-            against = -sense * copysign(1.0, ratios[output.shaft])
-            found.append(Torque(output.shaft, at, against * torque))
-        return tuple(found)
+        require_balanced_outputs(self.train, self.torque, self.outputs)
+        ends = {shaft.name: shaft.rotor.length for shaft in self.shafts}
+        applied = self.train.applied_torques(self.torque, self.speed, self.outputs, self.torque_at)
+        return tuple(Torque(one.shaft, ends[one.shaft] if one.at is None else one.at, one.torque) for one in applied)
 
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
         """Mean torque that each pair takes off its driver [N m], positive where power flows to the driven gear."""
-        if not self.gear_pairs:
-            return ()
-        sense = copysign(1.0, self.speed)
-        along = dict.fromkeys(self.train.ratios, 0.0)
-        for torque in self.constant_torques:
-            along[torque.rotor] += torque.value * sense * copysign(1.0, self.train.ratios[torque.rotor])
-        return self.train.pair_torques(along)
+        applied = [AppliedTorque(one.rotor, one.at, one.value) for one in self.constant_torques]
+        return self.train.mean_pair_torques(applied, self.speed)
 
     def shaft(self, name: str) -> Shaft:
         """Return the shaft of this name."""
@@ -204,34 +191,33 @@ class Machine:
 
     def rotor(self, name: str) -> Rotor:
         """Return a shaft's rotor with its gears as discs."""
-        rotor = self.shaft(name).rotor
-        rigid = [(gear.at, *gear.mass_and_inertias) for gear in self.gears if gear.shaft == name]
-        discs = [Disc(*one) for one in rigid if any(one[1:])]
-        return Rotor(rotor.name, rotor.segments, [*rotor.discs, *discs], rotor.mass_model)
+        return rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
 
     def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
         """Contact law of every gear pair, and its static mesh under the mean torque."""
         found = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
-            driver, driven = self._gears_of(pair)
-            inertias = self._inertia_at(driver), self._inertia_at(driven)
-            speed = self.speeds[driver.shaft]
-            found.append(load_gear_pair(pair, geometry, torque=torque, inertias=inertias, speed=speed))
+            driver, driven = (
+                inertia_with_discs(gear, self.shaft(gear.shaft).rotor, self._gears_on(gear.shaft))
+                for gear in self._gears_of(pair)
+            )
+            speed = self.speeds[self._gears_of(pair)[0].shaft]
+            found.append(load_gear_pair(pair, geometry, torque=torque, inertias=(driver, driven), speed=speed))
         return tuple(found)
 
     def rotor_components(
-        self, *, reach: float = 1.0, progress: Callable[[str], None] = lambda text: None
+        self, *, limit_factor: float = 1.0, progress: Callable[[str], None] = lambda text: None
     ) -> tuple[RotorComponent, ...]:
         """Shafts with their gears, reduced to modes on the bearings' mean stiffness.
 
         Parameters
         ----------
-        reach : float
+        limit_factor : float
             Multiplies the frequency limit, or the number, of the retained modes of the shafts.
         progress : callable
             Called with a line of text for each shaft.
         """
-        return tuple(self._component(shaft, reach, progress) for shaft in self.shafts)
+        return tuple(self._component(shaft, limit_factor, progress) for shaft in self.shafts)
 
     def assemble(
         self,
@@ -301,16 +287,20 @@ class Machine:
         rotors.EquilibriumError
             Where a rolling bearing is loaded beyond its theory.
         """
-        gears = {one.name: self._static_gear(one) for one in self._meshing_gears}
         sense = 1 if self.speed >= 0.0 else -1
         pairs = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             driver, driven = self._gears_of(pair)
+            gears = self._static_gear(driver, geometry.face_width), self._static_gear(driven, geometry.face_width)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
-            pairs.append(static_pair(pair, geometry, (gears[driver.name], gears[driven.name]), axes, rotation, torque))
+            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
+        gears_on = [gear for pair in pairs for gear in (pair.driver, pair.driven)]
         return solve_operating_point(
-            [self._static_shaft(shaft, gears) for shaft in self.shafts],
+            [
+                self._static_shaft(shaft, [gear for gear in gears_on if gear.shaft == shaft.name])
+                for shaft in self.shafts
+            ],
             [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
             pairs,
             self.housing_component,
@@ -318,10 +308,54 @@ class Machine:
             gravity,
         )
 
+    @property
+    def needs_operating_point(self) -> bool:
+        """Whether the stiffness of a bearing or the misalignment of a pair has still to follow from the loads."""
+        unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
+        return unaligned or any(mounted.needs_load for mounted in self.bearings)
+
+    def at_operating_point(
+        self, point: OperatingPoint | None = None, *, gravity: Sequence[float] | None = None
+    ) -> "Machine":
+        """Return the machine linearised about its static equilibrium.
+
+        Rolling bearings whose stiffness is not given get their tangent stiffness under load, with the force that they
+        have there; those with a nonlinear law start there. Pairs whose misalignment is None get the gap over the face
+        by the deflection of shafts, bearings and housing. What is given stays as it is.
+
+        Parameters
+        ----------
+        point : OperatingPoint, optional
+            By default :meth:`operating_point`.
+        gravity : sequence of float, optional
+            Acceleration of free fall along x, y, z [m/s²].
+
+        Raises
+        ------
+        CouplingError, EquilibriumNotFoundError, rotors.EquilibriumError
+            As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
+        """
+        point = self.operating_point(gravity) if point is None else point
+        gaps = {one.names: one.station_gap for one in point.pairs}
+        pairs = [
+            replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
+            if pair.misalignment is None
+            else pair
+            for pair in self.gear_pairs
+        ]
+        return replace(self, bearings=[one.linearised for one in point.bearings], gear_pairs=pairs)
+
+    @cached_property
+    def _resolved(self) -> "Machine":
+        return self.at_operating_point() if self.needs_operating_point else self
+
     @cached_property
     def assembled(self) -> CoupledMachine:
-        """The coupled equations of motion under constant torques, as :meth:`assemble` makes them; assembled once."""
-        return self.assemble()
+        """The coupled equations of motion under constant torques, as :meth:`assemble` makes them; assembled once.
+
+        About the operating point, where something is left to it.
+        """
+        return self._resolved.assemble()
 
     def modes(self) -> CoupledModes:
         """Complex natural modes about the mean contact, see :func:`coupling.coupled_modes`.
@@ -428,7 +462,7 @@ class Machine:
         if self.speed == 0.0:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
-        coupled = self.assembled if driving is CONSTANT else self.assemble(driving=driving)
+        coupled = self.assembled if driving is CONSTANT else self._resolved.assemble(driving=driving)
         settings = TransientSettings(
             duration=revolutions * period,
             record_from=discard * period,
@@ -453,9 +487,7 @@ class Machine:
                 map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True
             )
         ]
-        forces = axial_forces(pairs, self.speeds, constant_torques(self.constant_torques))
-        held = axially_held(self.bearings, self.speeds, forces)
-        require_thrust_carried(forces, {name: name in held for name in forces})
+        require_thrust_carried(pairs, self.bearings, self.speeds, constant_torques(self.constant_torques))
 
     def _require_balance_of_each_shaft(self) -> None:
         """Refuse torques that no gear pair leads away and that do not balance on their own shaft.
@@ -472,43 +504,40 @@ class Machine:
             )
         if len(self.shafts) == 1 or any(output.torque is None for output in self.outputs):
             return
-        for place, name in enumerate(dict.fromkeys(output.shaft for output in self.outputs)):
-            entering = self.torque if place == 0 else 0.0
-            taken = sum(output.torque or 0.0 for output in self.outputs if output.shaft == name)
-            if abs(taken - entering) > LARGEST_IMBALANCE * max(abs(entering), abs(taken)):
-                raise CouplingError(
-                    f"shaft {name!r} takes in {entering:g} N m and gives out {taken:g} N m; expected torques that "
-                    f"balance on shaft {name!r}, as no gear pair leads to or from it"
-                )
+        for one in imbalances_of_shafts(self.torque, self.outputs):
+            raise CouplingError(
+                f"shaft {one.shaft!r} takes in {one.entering:g} N m and gives out {one.leaving:g} N m; expected "
+                f"torques that balance on shaft {one.shaft!r}, as no gear pair leads to or from it"
+            )
 
     def _require_power_flow(self) -> None:
         """Refuse pairs whose driven gear drives the driver, and braked pairs without back flanks."""
-        least = _NO_TORQUE * abs(self.torque)
-        sense = copysign(1.0, self.torque)
-        if self.torque == 0.0:
-            return
-        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
-            if sense * torque < -least:
+        flanks = carrying_flanks(self.pair_torques, self.torque)
+        for pair, geometry, torque, flank in zip(
+            self.gear_pairs, self.pair_geometries, self.pair_torques, flanks, strict=True
+        ):
+            if flank == "driven":
                 raise CouplingError(
-                    f"{pair_label(pair)}: {-sense * torque:g} N m flow from {pair.driven!r} to {pair.driver!r}; "
+                    f"{pair_label(pair)}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
                     "expected power to flow from driver to driven; swap the two names"
                 )
-            if torque < -least and pair.backlash_of(geometry) is None:
+            if flank == "back" and pair.backlash_of(geometry) is None:
                 raise CouplingError(
                     f"{pair_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by "
                     "the back flanks, which never meet without one"
                 )
 
-    def _component(self, shaft: Shaft, reach: float, progress: Callable[[str], None]) -> RotorComponent:
+    def _component(self, shaft: Shaft, limit_factor: float, progress: Callable[[str], None]) -> RotorComponent:
         progress(f"modes of rotor {shaft.name}")
         held = [mounted for mounted in self.bearings if mounted.rotor == shaft.name]
         limit, count = shaft.frequency_limit, shaft.mode_count
         if limit is None and count is None:
-            limit = _LATERAL_LIMIT
+            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ
         if shaft.rotor.mass_model == "distributed":
             # A lumped rotor has no more modes than its masses allow.
-            limit, count = None if limit is None else reach * limit, None if count is None else round(reach * count)
-        gears = [gear for gear in self.gears if gear.shaft == shaft.name]
+            limit = None if limit is None else limit_factor * limit
+            count = None if count is None else round(limit_factor * count)
+        gears = self._gears_on(shaft.name)
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
         pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
         pushed_at += [mounted.bearing.at for mounted in held if isinstance(mounted.law, RollingLaw)]
@@ -524,37 +553,28 @@ class Machine:
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 
-    @property
-    def _meshing_gears(self) -> tuple[ShaftGear, ...]:
-        """Gears that are in a pair."""
-        return tuple({one.name: one for pair in self.gear_pairs for one in self._gears_of(pair)}.values())
-
-    def _static_gear(self, gear: ShaftGear) -> StaticGear:
-        """Place a gear with the stations of its face on its shaft; the face is the narrowest of its pairs."""
-        width = min(
-            geometry.face_width
-            for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True)
-            if gear.name in (pair.driver, pair.driven)
-        )
-        stations = gear.at + face_stations(width)
-        length = self.shaft(gear.shaft).rotor.length
-        within = stations[0] >= 0.0 and stations[-1] <= length
+    def _static_gear(self, gear: ShaftGear, face_width: float) -> StaticGear:
+        """Place a gear with the stations of its face on its shaft."""
+        stations = gear.at + face_stations(face_width)
+        within = stations[0] >= 0.0 and stations[-1] <= self.shaft(gear.shaft).rotor.length
         return StaticGear(gear.name, gear.shaft, gear.at, stations if within else None)
 
-    def _static_shaft(self, shaft: Shaft, gears: Mapping[str, StaticGear]) -> StaticShaftPart:
+    def _static_shaft(self, shaft: Shaft, gears: Sequence[StaticGear]) -> StaticShaftPart:
+        """Exact stiffness of a shaft with its gears, within whose faces it is as thick as their root circle."""
         places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         bodies = []
-        for gear in self._meshing_gears:
-            static = gears[gear.name]
-            if gear.shaft != shaft.name:
-                continue
+        for gear in gears:
             places.append(gear.at)
-            if static.stations is not None:
-                places += static.stations.tolist()
-                bodies.append((float(static.stations[0]), float(static.stations[-1]), 2 * gear.gear.root_circle_radius))
+            if gear.stations is not None:
+                places += gear.stations.tolist()
+                made = next(one.gear for one in self.gears if one.name == gear.name)
+                bodies.append((float(gear.stations[0]), float(gear.stations[-1]), 2.0 * made.root_circle_radius))
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
+
+    def _gears_on(self, shaft: str) -> list[ShaftGear]:
+        return [gear for gear in self.gears if gear.shaft == shaft]
 
     def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
         """Driver and driven gear of a pair."""
@@ -566,17 +586,6 @@ class Machine:
             MountedGear(one.name, one.shaft, one.at, self.shaft(one.shaft).axis) for one in self._gears_of(loaded.pair)
         )
         return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
-
-    def _inertia_at(self, gear: ShaftGear) -> float:
-        """Polar inertia of a gear with the discs at its station [kg m²]; of its whole rotor where that is nothing."""
-        rotor = self.shaft(gear.shaft).rotor
-        inertia = gear.mass_and_inertias[1]
-        inertia += sum(
-            disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length
-        )
-        if inertia == 0.0:
-            inertia = self.rotor(gear.shaft).polar_inertia
-        return inertia if inertia > 0.0 else gear.gear.polar_inertia
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:

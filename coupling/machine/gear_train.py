@@ -12,14 +12,16 @@ close a loop must fit: where teeth would clash, they cannot be assembled.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import hypot
+from typing import Literal
 
 from coupling.errors import CouplingError
 from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.errors import InterferenceError, NoContactError
+from coupling.gears.geometry.pair import mesh_frequency
 from coupling.gears.geometry.profile import meshing_rotations
 from coupling.machine.connectors import GearMesh
 from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, constant_torques, trains
@@ -31,6 +33,7 @@ LARGEST_IMBALANCE = 0.01
 """Largest imbalance of the power of a train, relative."""
 
 _RATIO_ROUNDING = 1e-9
+_NO_TORQUE = 1e-9  # part of the input torque below which a gear pair carries none but for rounding
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,42 @@ class Contradiction:
     shaft: str
     ratio: Fraction
     other: Fraction
+
+
+@dataclass(frozen=True)
+class Output:
+    """Output torque of a train.
+
+    Attributes
+    ----------
+    shaft : str
+    torque : float, optional
+        Against the rotation of the shaft [N m]; None: the outputs share the power equally.
+    at : float, optional
+        Distance from the shaft's left end [m]; None: the right end.
+    """
+
+    shaft: str
+    torque: float | None = None
+    at: float | None = None
+
+
+@dataclass(frozen=True)
+class AppliedTorque:
+    """A torque from outside on a shaft.
+
+    Attributes
+    ----------
+    shaft : str
+    at : float or None
+        Distance from the shaft's left end [m]; None: the left end for the input, the right end for an output.
+    torque : float
+        About z, positive counter-clockwise [N m].
+    """
+
+    shaft: str
+    at: float | None
+    torque: float
 
 
 @dataclass(frozen=True)
@@ -146,6 +185,8 @@ class GearTrain:
         taken, which is what equal contacts carry: f = Bᵀ p with B Bᵀ p = P, B the incidence matrix of the train's
         graph and P the power that enters each shaft over the speed of the first driver.
         """
+        if not self.pairs:
+            return ()
         entering = {shaft: torques.get(shaft, 0.0) * abs(float(ratio)) for shaft, ratio in self.ratios.items()}
         potential = _potentials(self.pairs, entering)
         return tuple(
@@ -153,11 +194,58 @@ class GearTrain:
             for pair in self.pairs
         )
 
+    def applied_torques(
+        self, torque: float, speed: float, outputs: Sequence[Output], at: float | None = None
+    ) -> tuple[AppliedTorque, ...]:
+        """Torques from outside: the input first, then the outputs; they balance through the gears.
 
-def gear_train(pairs: Iterable[GearedShafts]) -> GearTrain:
-    """Follow tooth ratios from the driver of the first pair through all pairs."""
+        The input drives the first driver's shaft in its sense of rotation, or without pairs the first output's shaft;
+        outputs work against the rotation of theirs, see :func:`shared_torques`.
+
+        Parameters
+        ----------
+        torque : float
+            Input torque, negative where it brakes [N m].
+        speed : float
+            Signed speed of the first driver's shaft [rad/s].
+        outputs : sequence of Output
+        at : float, optional
+            Station of the input torque [m].
+        """
+        if torque == 0.0 or not (self.pairs or outputs):
+            return ()
+        first = self.pairs[0].driver if self.pairs else outputs[0].shaft
+        sense = math.copysign(1.0, speed)
+        applied = [AppliedTorque(first, at, sense * torque)]
+        for output, taken in shared_torques(self, torque, outputs):
+            against = -sense * math.copysign(1.0, self.ratios[output.shaft])
+            applied.append(AppliedTorque(output.shaft, output.at, against * taken))
+        return tuple(applied)
+
+    def mesh_frequencies(self, speed: float) -> tuple[float, ...]:
+        """Tooth-mesh frequency of each pair [Hz] at a speed of the first driver's shaft [rad/s]."""
+        return tuple(mesh_frequency(speed * float(self.ratios[pair.driver]), pair.teeth[0]) for pair in self.pairs)
+
+    def mean_pair_torques(self, applied: Sequence[AppliedTorque], speed: float) -> tuple[float, ...]:
+        """Mean torque that each pair takes from its driver [N m], under torques about z; see :meth:`pair_torques`.
+
+        Parameters
+        ----------
+        applied : sequence of AppliedTorque
+        speed : float
+            Signed speed of the first driver's shaft [rad/s].
+        """
+        sense = math.copysign(1.0, speed)
+        along = dict.fromkeys(self.ratios, 0.0)
+        for one in applied:
+            along[one.shaft] += one.torque * sense * math.copysign(1.0, self.ratios[one.shaft])
+        return self.pair_torques(along)
+
+
+def gear_train(pairs: Iterable[GearedShafts], shafts: Iterable[str] = ()) -> GearTrain:
+    """Follow tooth ratios from the driver of the first pair through all pairs; without pairs all shafts are as fast."""
     pairs = tuple(pairs)
-    ratios = {pairs[0].driver: Fraction(1)} if pairs else {}
+    ratios = {pairs[0].driver: Fraction(1)} if pairs else dict.fromkeys(shafts, Fraction(1))
     found: dict[int, Contradiction] = {}
     waiting = list(enumerate(pairs))
     while waiting:
@@ -206,27 +294,7 @@ def _potentials(pairs: Sequence[GearedShafts], entering: Mapping[str, float]) ->
     return dict(zip(shafts, solution, strict=True))
 
 
-@dataclass(frozen=True)
-class Output:
-    """Output torque of a train.
-
-    Attributes
-    ----------
-    shaft : str
-    torque : float, optional
-        Against the rotation of the shaft [N m]; None: the outputs share the power equally.
-    at : float, optional
-        Distance from the shaft's left end [m]; None: the right end.
-    """
-
-    shaft: str
-    torque: float | None = None
-    at: float | None = None
-
-
-def shared_torques(
-    train: GearTrain, ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]
-) -> list[tuple[Output, float]]:
+def shared_torques(train: GearTrain, torque: float, outputs: Sequence[Output]) -> list[tuple[Output, float]]:
     """Torque of each output [N m], against the rotation of its shaft.
 
     Without outputs, the shafts that drive no other take equal power. Given torques are proportions: they are scaled to
@@ -235,12 +303,11 @@ def shared_torques(
     Parameters
     ----------
     train : GearTrain
-    ratios : mapping of str to float
-        Signed speed of each shaft over that of the first driver.
     torque : float
         At the first driver, in the sense in which it turns [N m].
     outputs : sequence of Output
     """
+    ratios = {shaft: float(ratio) for shaft, ratio in train.ratios.items()}
     outputs = list(outputs) or [Output(shaft) for shaft in train.output_shafts]
     if not any(output.torque for output in outputs):
         outputs = [
@@ -250,7 +317,17 @@ def shared_torques(
     return [(output, (output.torque or 0.0) * torque / power) for output in outputs]
 
 
-def require_balanced_outputs(ratios: Mapping[str, float], torque: float, outputs: Sequence[Output]) -> None:
+def output_torque(train: GearTrain, outputs: Sequence[Output]) -> float:
+    """Torque that outputs amount to at the first driver, through the tooth ratios [N m]."""
+    return sum((output.torque or 0.0) * abs(float(train.ratios[output.shaft])) for output in outputs)
+
+
+def is_balanced(entering: float, leaving: float) -> bool:
+    """Whether two torques [N m] are equal within :data:`LARGEST_IMBALANCE`."""
+    return abs(leaving - entering) <= LARGEST_IMBALANCE * max(abs(entering), abs(leaving))
+
+
+def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[Output]) -> None:
     """Refuse outputs whose power is not the input power; see :func:`shared_torques`.
 
     Raises
@@ -263,12 +340,67 @@ def require_balanced_outputs(ratios: Mapping[str, float], torque: float, outputs
         return
     if len(given) < len(outputs):
         raise CouplingError("outputs of which some have a torque and some have none; expected all or none")
-    power = sum((output.torque or 0.0) * abs(ratios[output.shaft]) for output in outputs)
-    if abs(power - torque) > LARGEST_IMBALANCE * max(abs(torque), abs(power)):
+    leaving = output_torque(train, outputs)
+    if not is_balanced(torque, leaving):
         raise CouplingError(
-            f"outputs that amount to {power:g} N m at the first driver; expected outputs that balance the input torque "
-            f"of {torque:g} N m through the tooth ratios"
+            f"outputs that amount to {leaving:g} N m at the first driver; expected outputs that balance the input "
+            f"torque of {torque:g} N m through the tooth ratios"
         )
+
+
+@dataclass(frozen=True)
+class ShaftImbalance:
+    """A shaft in no gear pair whose own torques do not balance.
+
+    Attributes
+    ----------
+    output : int
+        Index of the first output on the shaft.
+    shaft : str
+    entering, leaving : float
+        Torque that comes in and torque that its outputs take [N m].
+    """
+
+    output: int
+    shaft: str
+    entering: float
+    leaving: float
+
+
+def imbalances_of_shafts(torque: float, outputs: Sequence[Output]) -> Iterator[ShaftImbalance]:
+    """Shafts, none geared to another, whose own torques do not balance; the input is on the first output's shaft."""
+    first: dict[str, int] = {}
+    for place, output in enumerate(outputs):
+        first.setdefault(output.shaft, place)
+    for shaft, place in first.items():
+        entering = torque if place == 0 else 0.0
+        leaving = sum(output.torque or 0.0 for output in outputs if output.shaft == shaft)
+        if not is_balanced(entering, leaving):
+            yield ShaftImbalance(place, shaft, entering, leaving)
+
+
+def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Literal["drive", "back", "driven"] | None]:
+    """Flanks that carry the mean torque of each gear pair.
+
+    Parameters
+    ----------
+    pair_torques : sequence of float
+        Mean torque that each pair takes from its driver [N m].
+    torque : float
+        Input torque of the train [N m]; negative where it brakes.
+
+    Returns
+    -------
+    list
+        "drive"; "back" where the torque brakes, so that the driven gear drives by the back flanks; "driven" where
+        power flows against the input, from driven gear to driver; None where the pair carries no torque.
+    """
+    least = _NO_TORQUE * abs(torque)
+    sense = math.copysign(1.0, torque)
+    return [
+        None if abs(one) <= least else "driven" if sense * one < 0.0 else "drive" if one > 0.0 else "back"
+        for one in pair_torques
+    ]
 
 
 def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], speeds: Mapping[str, float]) -> None:
@@ -414,21 +546,21 @@ def mesh_phases(
     CouplingError
         Where a loop of gears cannot be assembled.
     """
-    turned: dict[str, float] = {}
+    angles: dict[str, float] = {}
     phases = []
     for driver, driven, pair, line, sense in zip(drivers, drivens, geometries, centre_lines, senses, strict=True):
         at_zero = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
         pitches = sense * 2.0 * math.pi / pair.driver.teeth, -sense * 2.0 * math.pi / pair.driven.teeth
-        if driver in turned:
-            phase = (turned[driver] - at_zero[0]) / pitches[0]
-        elif driven in turned:
-            phase = (turned[driven] - at_zero[1]) / pitches[1]
+        if driver in angles:
+            phase = (angles[driver] - at_zero[0]) / pitches[0]
+        elif driven in angles:
+            phase = (angles[driven] - at_zero[1]) / pitches[1]
         else:
             phase = 0.0
         for gear, zero, pitch in zip((driver, driven), at_zero, pitches, strict=True):
             stands = zero + phase * pitch
             # A whole number of pitches is the same place.
-            misfit = (turned.setdefault(gear, stands) - stands) / pitch
+            misfit = (angles.setdefault(gear, stands) - stands) / pitch
             if abs(misfit - round(misfit)) > _MISFIT:
                 raise CouplingError(
                     f"{driver} -> {driven}: the gears form a loop that cannot be assembled: teeth of {gear} would "

@@ -22,6 +22,10 @@ from coupling.machine.connectors import LinearConnector, SpeedTable
 from coupling.machine.coupled_system import HarmonicLoad, TimedLoad, embed
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+Point = tuple[float, float, float]
+_RATE_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
 
 
 @dataclass(frozen=True)
@@ -289,12 +293,6 @@ def trains(names: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[list[
             found.remove(other)
             one += other
     return [sorted(train, key=list(names).index) for train in found]
-
-
-ComplexArray = npt.NDArray[np.complex128]
-Point = tuple[float, float, float]
-
-_RATE_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
 
 
 @dataclass(frozen=True)

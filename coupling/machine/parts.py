@@ -12,9 +12,11 @@ from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing
 from coupling.machine.gear_train import LARGEST_OFFSET, Output
 from coupling.machine.loads import AnyTorque, BaseMotion, Drive
-from rotors import Rotor
+from rotors import Disc, Rotor
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
+
+_SAME_STATION = 1e-6  # part of the rotor's length
 
 
 @dataclass(frozen=True)
@@ -149,6 +151,34 @@ class MachineParts(Protocol):
     def torque_at(self) -> float:
         """Position at which the driving torque enters [m]."""
         ...
+
+
+def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
+    """Rotor with the gears on it as discs; a gear without mass and inertias adds none."""
+    rigid = [(gear.at, *gear.mass_and_inertias) for gear in gears]
+    discs = [Disc(*one) for one in rigid if any(one[1:])]
+    return Rotor(rotor.name, rotor.segments, [*rotor.discs, *discs], rotor.mass_model)
+
+
+def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
+    """Polar inertia of a gear with the discs at its station [kg m²], for the damping ratio of its mesh.
+
+    That of the whole rotor where the gear and these discs have none, and of the gear's geometry where the rotor has
+    none either.
+
+    Parameters
+    ----------
+    gear : ShaftGear
+    rotor : Rotor
+        Its rotor without gears.
+    gears : sequence of ShaftGear
+        All gears on the rotor.
+    """
+    inertia = gear.mass_and_inertias[1]
+    inertia += sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length)
+    if inertia == 0.0:
+        inertia = rotor_with_gears(rotor, gears).polar_inertia
+    return inertia if inertia > 0.0 else gear.gear.polar_inertia
 
 
 def pair_label(pair: GearPair) -> str:

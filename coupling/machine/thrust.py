@@ -34,6 +34,12 @@ from coupling.machine.connectors import MountedBearing
 from coupling.machine.coupled_system import HarmonicLoad
 
 _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that may be left over
+FloatArray = npt.NDArray[np.float64]
+
+_POINTS = 128  # phases of a mesh period
+_HARMONICS = 6  # of the mesh frequency, at most
+_SMALL = 0.01  # part of the greatest harmonic below which the last ones are left out
+_NO_ARM = 1e-9  # part of the face width that is rounding
 
 
 @dataclass(frozen=True)
@@ -67,16 +73,15 @@ class AxialForces:
         return total if abs(total) > _CANCELLED * max(map(abs, self.forces), default=0.0) else 0.0
 
 
-def axially_held(
-    bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str] | None = None
-) -> set[str]:
-    """Rotors that a bearing with axial stiffness holds at their speeds [rad/s]; only ``among`` these are looked at."""
-    return {
-        mounted.rotor
-        for mounted in bearings
-        if mounted.rotor in (speeds if among is None else among)
-        and mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0
-    }
+def axially_held(bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str]) -> set[str]:
+    """Rotors ``among`` those given that a bearing with axial stiffness holds at their speeds [rad/s]."""
+
+    def holds(mounted: MountedBearing) -> bool:
+        if mounted.needs_load and mounted.elements is not None:
+            return mounted.elements.has_axial_stiffness
+        return bool(mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0)
+
+    return {mounted.rotor for mounted in bearings if mounted.rotor in among and holds(mounted)}
 
 
 def axial_forces(
@@ -119,26 +124,36 @@ def axial_forces(
     }
 
 
-def require_thrust_carried(forces: Mapping[str, AxialForces], carriers: Mapping[str, bool]) -> None:
-    """Refuse thrust on rotors that no bearing holds along their axis.
+def require_thrust_carried(
+    pairs: Sequence[ThrustPair],
+    bearings: Sequence[MountedBearing],
+    speeds: Mapping[str, float],
+    torques: Mapping[str, float],
+    movable: Container[str] | None = None,
+) -> None:
+    """Refuse helical gears that push a rotor which no bearing holds along its axis.
 
     Parameters
     ----------
-    forces
-        Of :func:`axial_forces`.
-    carriers
-        Whether a bearing with axial stiffness holds each rotor.
+    pairs, speeds, torques
+        As of :func:`axial_forces`.
+    bearings
+        Those with axial stiffness carry thrust.
+    movable
+        Rotors with an axial coordinate; by default all.
 
     Raises
     ------
     CouplingError
         With the rotors, the gears and the forces [N].
     """
+    forces = axial_forces(pairs, speeds, torques)
+    held = axially_held(bearings, speeds, forces)
     loose = [
         f"rotor {rotor!r}: its gears {', '.join(map(repr, dict.fromkeys(here.gears)))} push it along its axis with "
         f"{abs(here.net):.4g} N, and none of its bearings has axial stiffness"
         for rotor, here in forces.items()
-        if here.net != 0.0 and not carriers.get(rotor, False)
+        if here.net != 0.0 and not (rotor in held and (movable is None or rotor in movable))
     ]
     if loose:
         raise CouplingError(
@@ -146,14 +161,6 @@ def require_thrust_carried(forces: Mapping[str, AxialForces], carriers: Mapping[
             + "; expected a bearing that carries the thrust (a 5x5 stiffness matrix with the entry zz, "
             "or a rolling bearing), or helical gears whose thrusts on the rotor cancel"
         )
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_POINTS = 128  # phases of a mesh period
-_HARMONICS = 6  # of the mesh frequency, at most
-_SMALL = 0.01  # part of the greatest harmonic below which the last ones are left out
-_NO_ARM = 1e-9  # part of the face width that is rounding
 
 
 def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, phases: npt.ArrayLike) -> FloatArray:

@@ -61,22 +61,22 @@ def sliding_flanks(
         rotor = coordinates.rotor(name)
         begin, end = sense * gear.base_radius * roll(np.array([0.0, 1.0]))
         moved = side * (across[0] * rotor.direction(at, 0) + across[1] * rotor.direction(at, 1))
-        turned = rotor.rotation(at)
-        directions += coordinates.rows(name, np.array([moved + begin * turned, (end - begin) * turned])).T
+        rotation = rotor.rotation(at)
+        directions += coordinates.rows(name, np.array([moved + begin * rotation, (end - begin) * rotation])).T
         nominal += coordinates.speeds[name] * np.array([begin, end - begin])
     return Sliding(friction, directions, nominal)
 
 
 def friction_of(
-    contact: ContactConnector, turned: FloatArray, rates: FloatArray, compression: FloatArray, force: FloatArray
+    contact: ContactConnector, nominal_time: FloatArray, rates: FloatArray, compression: FloatArray, force: FloatArray
 ) -> FloatArray:
     """Friction force of a contact and the power it takes, sample by sample; zeros without friction.
 
     Parameters
     ----------
     contact : ContactConnector
-    turned, rates : ndarray, shape (s,)
-        Turned time [s], and speed as a part of the nominal one.
+    nominal_time, rates : ndarray, shape (s,)
+        Nominal time [s], and speed as a part of the nominal one.
     compression, force : ndarray, shape (s,)
         Of the contact [m], [N].
 
@@ -93,7 +93,7 @@ def friction_of(
     friction, nominal = contact.sliding.friction, contact.sliding.nominal
     law, by_slices = contact.friction_law
     shares = friction_history(
-        contact.phase + contact.rate * turned,
+        contact.phase + contact.rate * nominal_time,
         np.ascontiguousarray(compression),
         law,
         by_slices,

@@ -14,6 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int64]
 
 ORDER = 5
 """Places in an element; the error at its end is of order 2 ORDER + 1 in its size."""
@@ -70,9 +72,6 @@ def weights_to(part: FloatArray) -> FloatArray:
     return np.asarray((part[:, None] ** powers / powers) @ MONOMIALS.T)
 
 
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
-
 _LARGEST_BATCH = 24  # elements whose powers are found at once, within the processor's caches
 _BY_ONE_THREAD = 2**18  # of numbers: larger products of matrices OpenBLAS shares out among threads, at a loss
 
@@ -105,7 +104,7 @@ class Steps(NamedTuple):
     filled: IntArray  # (k,) whether
     ladder: IntArray  # (1,) index of its first size
     decay: FloatArray  # (k, 2, m) exp(λ h), real and imaginary part
-    felt: FloatArray  # (k, 2 s c, 2 m) compressions at the places from the amplitudes at the start; rates
+    free_response: FloatArray  # (k, 2 s c, 2 m) compressions at the places from the amplitudes at the start; rates
     flexibility: FloatArray  # (k, 2 s c, s c) compressions at the places from the forces there, to be subtracted; rates
     source: FloatArray  # (k, s c, 2 m) amplitudes at the end from the forces, to be subtracted
     missed: FloatArray  # (k, 2 c, 2 m) the same from the defect of their polynomial at the start and at the end
@@ -165,7 +164,7 @@ def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner
         filled=np.zeros(k, dtype=np.int64),
         ladder=np.array([ladder], dtype=np.int64),
         decay=np.empty((k, 2, m)),
-        felt=np.empty((k, 2 * n, 2 * m)),
+        free_response=np.empty((k, 2 * n, 2 * m)),
         flexibility=np.empty((k, 2 * n, n)),
         source=np.empty((k, n, 2 * m)),
         missed=np.empty((k, 2 * c, 2 * m)),
@@ -240,8 +239,8 @@ class Work(NamedTuple):
     coefficient: FloatArray  # (s, c) of the excess as a power series
     term: FloatArray  # (2 m,) of the amplitudes' power series
     shares: FloatArray  # (n, 2 n) of the slopes in the forces
-    feedback: FloatArray  # (n, 2 m) forces by disturbances; of no rows without disturbances ...
-    sent: FloatArray  # (n, 2 m) ... amplitudes at the end by these forces ...
+    force_rows: FloatArray  # (n, 2 m) sensitivity of the forces; of no rows without disturbances ...
+    end_response: FloatArray  # (n, 2 m) ... response of the amplitudes at the end to the forces ...
     decay: FloatArray  # (2, m) ... and the decay of the disturbances
     moved: FloatArray  # (n,)
     active: IntArray  # (n,) rows of forces that disturbances change
@@ -273,8 +272,8 @@ def element_work(m: int, s: int, c: int, *, varied: bool = False) -> Work:
         coefficient=np.zeros((s, c)),
         term=np.zeros(2 * m),
         shares=np.zeros((rows, 2 * n)),
-        feedback=np.zeros((rows, 2 * m)),
-        sent=np.zeros((rows, 2 * m)),
+        force_rows=np.zeros((rows, 2 * m)),
+        end_response=np.zeros((rows, 2 * m)),
         decay=np.zeros((2, m)),
         moved=np.zeros(n),
         active=np.zeros(n, dtype=np.int64),

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from coupling.errors import PeriodicError
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.periodic.orbit import Elements, Pass, one_pass
+from coupling.periodic.orbit import Elements, PeriodMotion, integrate_period
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import Problem, problem, response_of
 
@@ -38,7 +38,7 @@ class Point:
     ready : Problem
     states : ndarray, shape (K, 2 k)
     speed : float
-    found : Pass
+    found : PeriodMotion
         With the pieces of the monodromy.
     response : PeriodicResponse
         With its proof.
@@ -55,7 +55,7 @@ class Point:
     ready: Problem
     states: FloatArray
     speed: float
-    found: Pass
+    found: PeriodMotion
     response: PeriodicResponse
     corrections: int
     missed: float
@@ -162,13 +162,13 @@ class Branch:
         elements, begin = ready.elements(self.level), below(ready, predicted)
         limit = within * self.unit * np.sqrt(len(predicted))
         starts, before = begin, np.inf
-        linear: Pass | None = None
+        linear: PeriodMotion | None = None
         for turn in range(_CORRECTIONS):
             # After the first correction the same pieces serve once more, and the last ones are exact.
-            found = one_pass(ready.part, ready.contacts, elements, starts, varied=turn != 1)
+            found = integrate_period(ready.part, ready.contacts, elements, starts, varied=turn != 1)
             closed = found.missing <= _CLOSED * ready.scale(found.start)
             if closed and turn == 1:
-                found = one_pass(ready.part, ready.contacts, elements, starts)
+                found = integrate_period(ready.part, ready.contacts, elements, starts)
             if closed:
                 return self._proved(ready, above(ready, starts), speed, found, turn, predicted)
             if found.missing > before:
@@ -205,7 +205,7 @@ class Branch:
         before = np.inf
         for turn in range(_CORRECTIONS):
             elements = ready.elements(self.level)
-            found = one_pass(ready.part, ready.contacts, elements, below(ready, states))
+            found = integrate_period(ready.part, ready.contacts, elements, below(ready, states))
             if by_speed is None:
                 by_speed = self.by_speed(ready, states, speed, found, self.level) @ lift(ready).T
             behind = float(np.sum(along * (states - here.states))) / (count * self.unit)
@@ -229,7 +229,7 @@ class Branch:
             ready = self.ready(speed, ready)
         return None
 
-    def by_speed(self, ready: Problem, states: FloatArray, speed: float, found: Pass, level: int) -> FloatArray:
+    def by_speed(self, ready: Problem, states: FloatArray, speed: float, found: PeriodMotion, level: int) -> FloatArray:
         """Differentiate the closure errors by speed, the states held, shape (K, 2 N).
 
         The elements are those of ``found``: the error of others would differ, over a tiny difference of speed.
@@ -237,7 +237,7 @@ class Branch:
         change = _DIFFERENCE * self.span
         other = self.ready(speed + change, ready)
         start = below(other, states)
-        there = one_pass(other.part, other.contacts, other.elements(level), start, varied=False)
+        there = integrate_period(other.part, other.contacts, other.elements(level), start, varied=False)
         return np.asarray((there.misses @ (lift(other).T @ lift(ready)) - found.misses) / change)
 
     def _proved(
@@ -245,7 +245,7 @@ class Branch:
         ready: Problem,
         states: FloatArray,
         speed: float,
-        found: Pass,
+        found: PeriodMotion,
         corrections: int,
         predicted: FloatArray,
         towards: tuple[FloatArray, float] | None = None,
@@ -253,7 +253,7 @@ class Branch:
     ) -> Point | None:
         """Verify a corrected point with elements half as large; else return None and refine from here on."""
         elements: Elements = ready.elements(self.level + 1)
-        finer = one_pass(ready.part, ready.contacts, elements, found.starts, varied=False)
+        finer = integrate_period(ready.part, ready.contacts, elements, found.starts, varied=False)
         error = float(np.linalg.norm(finer.ends - found.ends)) / ready.scale(found.start)
         if error > self.tolerance:
             self._raise()

@@ -228,7 +228,7 @@ class _Follower:
             if self.by_arclength and self.ds < _SHORTEST * self.largest:
                 return "lost"
             self.tries += 1
-            there = self._along() if self.by_arclength else self._held()
+            there = self._along() if self.by_arclength else self._at_given_speed()
             if there is None:
                 continue
             position = self.position(there.speed)
@@ -236,7 +236,7 @@ class _Follower:
             if position in (0.0, 1.0):
                 return "end" if position == 1.0 else "start"
 
-    def _held(self) -> Point | None:
+    def _at_given_speed(self) -> Point | None:
         """Take a continuation step at a given speed."""
         here = self.recent[-1]
         among = self.recent[-1 - self.order :]
@@ -288,11 +288,11 @@ class _Follower:
                 self.ds *= 0.5
                 return None
         gone = abs(self.position(there.speed) - self.position(here.speed))
-        turned = self._accept(there, True)
+        is_fold = self._accept(there, True)
         if turn > _SMOOTH and there.corrections <= _FEW:
             self.ds *= 1.5
         self.ds = min(self.ds, _FARTHEST * self._motion(there))
-        if not turned and gone > max(self.stride, _SMALL * self.largest) and len(self.recent) > 2:
+        if not is_fold and gone > max(self.stride, _SMALL * self.largest) and len(self.recent) > 2:
             self.by_arclength, self.order = False, 1
             self.stride = min(gone, self.largest)
         return there
@@ -301,19 +301,19 @@ class _Follower:
         """Add a point to the branch, after the bifurcation before it; returns whether the branch turned."""
         here = self.recent[-1]
         forwards = np.sign(self.end - self.start)
-        turned = False
+        is_fold = False
         if along and there.towards is not None:
             sense = float(np.sign(there.tangent[1]) * forwards)
-            turned = sense != self.sense
+            is_fold = sense != self.sense
             self.sense = sense
-        event, between = self._event(here, there, turned, along)
+        event, between = self._event(here, there, is_fold, along)
         if event is not None and between is not None:
             self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
             self._keep(between)
         self._keep(there)
         # The bifurcation before it was located with the elements of this point.
         self.branch.accept(there.response.error)
-        if turned:
+        if is_fold:
             self.recent = [there]
             return True
         if not along:
@@ -348,23 +348,23 @@ class _Follower:
         """Largest correction of a prediction from a point."""
         return _ASIDE * self._motion(point)
 
-    def _event(self, here: Point, there: Point, turned: bool, along: bool) -> tuple[Event | None, Point | None]:
+    def _event(self, here: Point, there: Point, is_fold: bool, along: bool) -> tuple[Event | None, Point | None]:
         """Bifurcation between two points, and its location."""
         few, many = sorted((here.response.floquet.growing, there.response.floquet.growing))
-        if not turned and few == many:
+        if not is_fold and few == many:
             return None, None
 
         def test(point: Point) -> float:
-            if turned:
+            if is_fold:
                 return point.tangent[1]
             return float(np.abs(point.response.floquet.values[many - 1]) - 1.0)
 
         forwards = 1.0
-        if turned and here.towards is None:
+        if is_fold and here.towards is None:
             forwards = float(np.sign(here.tangent[1] * -there.tangent[1]))
         whole = self.ds if along else 1.0
         low, high = 0.0, whole
-        at_low, at_high = forwards * test(here) if turned else test(here), test(there)
+        at_low, at_high = forwards * test(here) if is_fold else test(here), test(there)
         best = there
         if at_low * at_high < 0.0:
             for turn in range(_LOCATIONS):
@@ -374,7 +374,7 @@ class _Follower:
                 self.tries += 1
                 level = self.branch.level
                 if along:
-                    sense = forwards if turned or here.towards is not None else np.sign(there.speed - here.speed)
+                    sense = forwards if is_fold or here.towards is not None else np.sign(there.speed - here.speed)
                     point = self.branch.along(here, sense * middle)
                 else:
                     speed = here.speed + middle * (there.speed - here.speed)
@@ -390,7 +390,7 @@ class _Follower:
                     high, at_high = middle, value
                 else:
                     low, at_low = middle, value
-        if turned:
+        if is_fold:
             return "fold", best
         crossing = best.response.floquet.values[many - 1]
         if abs(crossing.imag) > 1e-6:

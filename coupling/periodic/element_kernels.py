@@ -105,10 +105,10 @@ def advance_to(
             for j in range(ORDER):
                 coefficient[k, b] += power * MONOMIALS[j, k] * excess[j * c + b]
     for m in range(count):
-        turned = reference.eigenvalue[m] * h * part
-        grown = cmath.exp(turned)
+        exponent = reference.eigenvalue[m] * h * part
+        grown = cmath.exp(exponent)
         total = grown * complex(z[m], z[count + m])
-        moments(turned, grown, ORDER, integral)
+        moments(exponent, grown, ORDER, integral)
         for b in range(c):
             sent = 0.0j
             for k in range(ORDER):
@@ -201,11 +201,11 @@ def fill_step(reference: Reference, steps: Steps, slot: int, integral: ComplexAr
             for a in range(c):
                 # Re(d z) is the product of the rows Re d, -Im d with Re z, Im z.
                 seen = complex(reference.displacement[a, m], -reference.displacement[a, count + m]) * grown
-                steps.felt[slot, i * c + a, m] = seen.real
-                steps.felt[slot, i * c + a, count + m] = -seen.imag
+                steps.free_response[slot, i * c + a, m] = seen.real
+                steps.free_response[slot, i * c + a, count + m] = -seen.imag
                 seen = complex(reference.rate[a, m], -reference.rate[a, count + m]) * grown
-                steps.felt[slot, n + i * c + a, m] = seen.real
-                steps.felt[slot, n + i * c + a, count + m] = -seen.imag
+                steps.free_response[slot, n + i * c + a, m] = seen.real
+                steps.free_response[slot, n + i * c + a, count + m] = -seen.imag
             moments(z, grown, ORDER, integral)
             for j in range(ORDER):
                 values[j] = 0.0j
@@ -289,7 +289,7 @@ def solve_element(
     delta, rate, slope, rate_slope = work.delta, work.rate, work.slope, work.rate_slope
     matrix, right, end = work.matrix, work.right, work.end
     for row in range(2 * n):
-        base[row] = product(steps.felt[slot], row, z)
+        base[row] = product(steps.free_response[slot], row, z)
     for a in range(c):
         delta[0, a], rate[0, a] = product(reference.displacement, a, z), product(reference.rate, a, z)
     solved = n == 0

@@ -58,10 +58,16 @@ from coupling.periodic.element_kernels import (
     moments,
     solve_element,
 )
-from coupling.periodic.switch_kernels import branch, cross, first_switch, jump_at, vary
+from coupling.periodic.switch_kernels import (
+    apply_saltation,
+    branch,
+    first_switch,
+    propagate_sensitivity,
+    saltation_factor,
+)
 from coupling.time.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
 from coupling.time.dense_kernels import SUMS, project
-from coupling.time.kernel_arrays import Contacts
+from coupling.time.kernel_arrays import DAMPING_LOSS, LARGEST_KINETIC, LOAD_WORK, ROTATION_WORK, Contacts
 from rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
@@ -74,8 +80,8 @@ NO_BALANCE, NO_ROOM = 1, 2
 
 
 @uncounted()
-def rung(reference: Reference, steps: Steps, length: float, work: Work) -> int:
-    """Slot of the ladder's size nearest to a length, filled in."""
+def nearest_step_size(reference: Reference, steps: Steps, length: float, work: Work) -> int:
+    """Slot of the size nearest to a length on the step-size ladder, with its matrices filled in."""
     first, last = steps.ladder[0], steps.size.size - 1
     ratio = math.log(steps.size[first] / steps.size[first + 1])
     slot = int(min(max(first + round(math.log(steps.size[first] / length) / ratio), first), last))
@@ -156,7 +162,7 @@ def integrate_elements(
         slot = slots[element]
         while True:
             if slot < 0:
-                slot = rung(reference, steps, left, work)
+                slot = nearest_step_size(reference, steps, left, work)
             elif steps.filled[slot] == 0:
                 fill_step(reference, steps, slot, work.integral, work.values)
             tries = 0
@@ -177,7 +183,7 @@ def integrate_elements(
                 if which < 0 or at > PLACES[ORDER - 1] or tries == _TRIES:
                     break
                 # Some places lie beyond the switch: again with a size that ends near it.
-                closer = rung(reference, steps, at * h, work)
+                closer = nearest_step_size(reference, steps, at * h, work)
                 if closer == slot:
                     break
                 tries, slot = tries + 1, closer
@@ -191,7 +197,7 @@ def integrate_elements(
             write_element(reference, contacts, steps, slot, time, length, z, modes, trace, count, work)
             count += 1
             if columns.shape[0] > 0:
-                vary(reference, steps, slot, part, columns, work)
+                propagate_sensitivity(reference, steps, slot, part, columns, work)
             if part != 1.0:
                 carry_on(reference, h, part, z, work.excess, work.end, work.coefficient, work.integral, work.term)
             for i in range(z.size):
@@ -205,9 +211,9 @@ def integrate_elements(
                     inside = 1e-5 * min(length, left - length)
                     x, v = interpolated(work.delta, which, part), interpolated(work.rate, which, part)
                     row = ORDER * c + 2 * c
-                    jump = jump_at(reference, contacts, which, time + length, x, v, inside, work.laws, row)
+                    jump = saltation_factor(reference, contacts, which, time + length, x, v, inside, work.laws, row)
                     if jump != 0.0:
-                        cross(reference, which, jump, columns)
+                        apply_saltation(reference, which, jump, columns)
             time += length
             left -= length
             slot = -1
@@ -346,9 +352,9 @@ def add_batch(powers: Powers, room: PowersRoom, count: int, totals: FloatArray) 
             project(powers.pushing, rate, room.along)
             for j in range(powers.riding.size):
                 pushed += amplitude[powers.riding[j]] * room.along[j]
-            totals[0] += room.weights[number, i] * pushed
-            totals[1] += room.weights[number, i] * taken
-            totals[3] = max(totals[3], 0.5 * held)
+            totals[LOAD_WORK] += room.weights[number, i] * pushed
+            totals[DAMPING_LOSS] += room.weights[number, i] * taken
+            totals[LARGEST_KINETIC] = max(totals[LARGEST_KINETIC], 0.5 * held)
 
 
 @counted()
@@ -382,11 +388,11 @@ def add_contacts(
     ``figures`` (c, 4) are impulse, time apart, largest force and last touch of each contact. ``stored`` is the energy
     in the teeth before, the result that after: it jumps where pairs enter or leave contact.
     """
-    lost, turned = 0.0, 0.0
+    lost, rotation_work = 0.0, 0.0
     for element in range(trace.start.size):
         weights_of(trace, element, weights)
         h = trace.size[element] / trace.part[element]
-        turned += trace.energy[element, 0] - stored
+        rotation_work += trace.energy[element, 0] - stored
         stored = trace.energy[element, 1]
         for a in range(contacts.phase.size):
             touching = False
@@ -397,7 +403,7 @@ def add_contacts(
                     w = contacts.errors[a, m, 1]
                     angle = w * (trace.start[element] + h * PLACES[i]) + contacts.errors[a, m, 2]
                     power += force * contacts.errors[a, m, 0] * w * math.sin(angle)
-                turned += weights[i] * power
+                rotation_work += weights[i] * power
                 lost += weights[i] * trace.loss[element, i, a]
                 figures[a, 0] += weights[i] * force
                 figures[a, 2] = max(figures[a, 2], force)
@@ -407,6 +413,6 @@ def add_contacts(
                 figures[a, 3] = max(figures[a, 3], trace.start[element] + trace.size[element])
             else:
                 figures[a, 1] += trace.size[element]
-    totals[1] += lost
-    totals[2] += turned
+    totals[DAMPING_LOSS] += lost
+    totals[ROTATION_WORK] += rotation_work
     return stored

@@ -66,12 +66,12 @@ def corrected_eigenvectors(
         return None
     identity, size = np.eye(len(matrix)), np.inf
     for _ in range(_STEPS):
-        turned = y @ (matrix @ x)
-        found = np.diagonal(turned)
+        projected = y @ (matrix @ x)
+        found = np.diagonal(projected)
         apart = found[None, :] - found[:, None] + identity
         # Any vectors serve for a multiple eigenvalue: their coupling is rounding.
-        coupled = (identity == 0.0) & (np.abs(turned) > _ROUNDING * np.abs(found).max())
-        move = np.where(coupled, turned / np.where(apart == 0.0, 1e-300, apart), 0.0)
+        coupled = (identity == 0.0) & (np.abs(projected) > _ROUNDING * np.abs(found).max())
+        move = np.where(coupled, projected / np.where(apart == 0.0, 1e-300, apart), 0.0)
         size = float(np.abs(move).max())
         if not size < _LARGEST:
             return None
@@ -147,8 +147,8 @@ class LinearPart:
 
     def own_response(self, time: float) -> tuple[FloatArray, FloatArray]:
         """Evaluate the linear reference's displacements and rates at a time, shape (n,) each."""
-        turned = self.amplitudes * np.exp(1j * self.frequencies * time)[:, None]
-        return self.mean + turned.real.sum(axis=0), -(self.frequencies[:, None] * turned.imag).sum(axis=0)
+        phasors = self.amplitudes * np.exp(1j * self.frequencies * time)[:, None]
+        return self.mean + phasors.real.sum(axis=0), -(self.frequencies[:, None] * phasors.imag).sum(axis=0)
 
     def state(self, displacement: FloatArray, velocity: FloatArray, time: float = 0.0) -> FloatArray:
         """State of a motion relative to the reference's own, shape (2 N,)."""

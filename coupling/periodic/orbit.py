@@ -150,8 +150,8 @@ class Elements:
 
 
 @dataclass(frozen=True, eq=False)
-class Pass:
-    """Motion over one period, segment by segment.
+class PeriodMotion:
+    """Motion over one period, segment by segment, with its sensitivities.
 
     Attributes
     ----------
@@ -270,9 +270,9 @@ def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner
     return empty_steps(sizes, len(values), m, ORDER, c, inner=inner)
 
 
-def one_pass(
+def integrate_period(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, *, varied: bool = True
-) -> Pass:
+) -> PeriodMotion:
     """Integrate over the period from a state at t = 0, shape (2 N,), or each segment from its own, shape (K, 2 N).
 
     Raises
@@ -291,7 +291,7 @@ def one_pass(
 
 def _pass_within(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, room: int, *, varied: bool
-) -> Pass | None:
+) -> PeriodMotion | None:
     """Integration with room for some changes of contact; None where there are more."""
     from coupling.periodic.integration_kernels import NO_ROOM, integrate_elements
 
@@ -342,7 +342,7 @@ def _pass_within(
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
     # The result has no room to spare.
     kept = Trace._make(values.copy() for values in first_elements(trace, length))
-    return Pass(part, starts, ends, pieces, kept, switches)
+    return PeriodMotion(part, starts, ends, pieces, kept, switches)
 
 
 def _refuse(wrong: int, room: int) -> None:

@@ -27,7 +27,7 @@ from coupling.errors import CouplingError, PeriodicError
 from coupling.gears import ToothContact
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.periodic.linear_part import LinearPart, linear_part
-from coupling.periodic.orbit import Elements, Pass, coarsest_element, cut_period, one_pass
+from coupling.periodic.orbit import Elements, PeriodMotion, coarsest_element, cut_period, integrate_period
 from coupling.periodic.response import BranchMotion, PeriodicResponse, multipliers
 from coupling.time.condensation import Condensed, condensed
 from coupling.time.kernel_arrays import Contacts
@@ -36,6 +36,15 @@ from coupling.time.step_matrices import contact_arrays
 _SAME = 1e-9  # relative tolerance of a frequency ratio
 _LARGEST_NUMBER = 2000  # largest number in a frequency ratio: no gear has more teeth
 _WHOLE = 1e-6  # tolerance of a whole number of cycles in a given period
+FloatArray = npt.NDArray[np.float64]
+
+_NEWTON_STEPS = 25
+_SHORTEST_STEP = 1.0 / 64.0
+_MOST_SEGMENTS = 32
+_ROUNDING = 1e-11  # closure error of a closed motion, relative
+_FINEST = 12  # halvings of the coarsest element
+_ROUNDS = 6  # of time integration before giving up ...
+_PERIODS = 8  # ... periods in the first of them, doubled every time
 
 
 def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
@@ -117,17 +126,6 @@ def _varies(contact: ToothContact) -> bool:
     curves = (contact.stiffness.coefficients, contact.deviation.coefficients)
     uneven = any(bool(np.any(curve[:, 1:])) or np.ptp(curve[:, 0]) > 0.0 for curve in curves)
     return uneven or abs(end - start - round(end - start)) > 1e-12
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_NEWTON_STEPS = 25
-_SHORTEST_STEP = 1.0 / 64.0
-_MOST_SEGMENTS = 32
-_ROUNDING = 1e-11  # closure error of a closed motion, relative
-_FINEST = 12  # halvings of the coarsest element
-_ROUNDS = 6  # of time integration before giving up ...
-_PERIODS = 8  # ... periods in the first of them, doubled every time
 
 
 @dataclass(frozen=True, eq=False)
@@ -297,12 +295,12 @@ def integrated_again(system: CoupledSystem, period: float | None, kept: BranchMo
     """Integrate the whole motion again from the starts of its segments."""
     ready = problem(system, period)
     states = _states(ready, (kept.displacements, kept.velocities))
-    found = one_pass(ready.part, ready.contacts, ready.elements(kept.level), states)
+    found = integrate_period(ready.part, ready.contacts, ready.elements(kept.level), states)
     return response_of(ready, found, kept.level, kept.error, kept.newton_steps)
 
 
 def refined(
-    ready: Problem, found: Pass, level: int, tolerance: float, steps: int, *, near: bool = False
+    ready: Problem, found: PeriodMotion, level: int, tolerance: float, steps: int, *, near: bool = False
 ) -> PeriodicResponse:
     """Halve the elements until neither state nor monodromy changes by more than the tolerance.
 
@@ -320,9 +318,9 @@ def refined(
         level += 1
         # Rounding sets a floor to what a halving can show.
         moved = float(np.linalg.norm(better.starts - found.starts, axis=1).max()) / ready.scale(better.start)
-        turned = float(np.abs(better.monodromy - found.monodromy).max(initial=0.0))
-        turned /= max(float(np.abs(better.monodromy).max(initial=0.0)), 1.0)
-        error = max(moved, turned)
+        monodromy_change = float(np.abs(better.monodromy - found.monodromy).max(initial=0.0))
+        monodromy_change /= max(float(np.abs(better.monodromy).max(initial=0.0)), 1.0)
+        error = max(moved, monodromy_change)
         found = better
         if error <= tolerance:
             return response_of(ready, found, level, error, steps)
@@ -332,7 +330,7 @@ def refined(
     )
 
 
-def response_of(ready: Problem, found: Pass, level: int, error: float, steps: int) -> PeriodicResponse:
+def response_of(ready: Problem, found: PeriodMotion, level: int, error: float, steps: int) -> PeriodicResponse:
     """Response of a closed motion, with its proof."""
     q, v = ready.part.motion(found.start)
     return PeriodicResponse(
@@ -354,9 +352,9 @@ def response_of(ready: Problem, found: Pass, level: int, error: float, steps: in
     )
 
 
-def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, int] | None:
+def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[PeriodMotion, int] | None:
     """Newton's method on the closure error, with step halving; None where it stagnates."""
-    here = one_pass(ready.part, ready.contacts, elements, state)
+    here = integrate_period(ready.part, ready.contacts, elements, state)
     best = here.missing
     for step in range(_NEWTON_STEPS):
         if best <= _ROUNDING * ready.scale(here.start):
@@ -364,7 +362,7 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, 
         move = here.correction(least=True)
         part = 1.0
         while True:
-            there = one_pass(ready.part, ready.contacts, elements, here.starts + part * move)
+            there = integrate_period(ready.part, ready.contacts, elements, here.starts + part * move)
             missing = there.missing
             if missing < (1.0 - 0.1 * part) * best:
                 break
@@ -376,7 +374,7 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Pass, 
     return None
 
 
-def _search(ready: Problem, level: int, state: FloatArray) -> tuple[Pass, int]:
+def _search(ready: Problem, level: int, state: FloatArray) -> tuple[PeriodMotion, int]:
     """Newton's method; where it stagnates, some periods of time integration before it is tried again."""
     elements = ready.elements(level)
     found = close(ready, elements, state)
@@ -385,7 +383,7 @@ def _search(ready: Problem, level: int, state: FloatArray) -> tuple[Pass, int]:
         if found is not None:
             return found
         for _ in range(_PERIODS * 2**turn):
-            here = one_pass(ready.part, ready.contacts, elements, here, varied=False).end
+            here = integrate_period(ready.part, ready.contacts, elements, here, varied=False).end
         found = close(ready, elements, here)
     if found is not None:
         return found

@@ -292,7 +292,7 @@ def _among(frequency: float, frequencies: Sequence[float]) -> bool:
 
 def _linear_mesh(contact: ContactConnector, mean: MeanMesh) -> ContactConnector:
     """Linearise a contact: spring and dashpot through its mean force and deflection; back flanks stay apart."""
-    stiffness = mean.stiffness if contact.drives else contact.contact.mean_mesh_stiffness
+    stiffness = mean.stiffness if contact.drives else contact.contact.unloaded_mean_mesh_stiffness
     law = ToothContact(
         1.0, piecewise.constant(stiffness, 1.0), piecewise.constant(0.0, 1.0), damping=contact.contact.damping
     )

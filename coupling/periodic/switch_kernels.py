@@ -1,4 +1,4 @@
-r"""Switches of contact within an element of time, compiled: root finding, and variational equations for the monodromy.
+r"""Switches of contact in an element of time, compiled: root finding, sensitivities and saltation for the monodromy.
 
 A switch is the root at which the contact law changes its branch. The variational equations carry small disturbances
 over an element, and over a step of a contact force.
@@ -190,14 +190,14 @@ def first_switch(
     return first, which
 
 
-_UNROLLED = 5  # number of forces in :func:`carry`: those of one contact in elements of order 5
+_UNROLLED = 5  # number of forces in :func:`apply_sensitivity`: those of one contact in elements of order 5
 
 
 @uncounted()
-def feed_back(steps: Steps, slot: int, work: Work) -> int:
-    """Rows of the forces by a disturbance; returns their number, with their indices in ``work.active``."""
-    n, size = work.excess.size, steps.felt.shape[2]
-    matrix, shares, felt = work.matrix, work.shares, work.feedback
+def force_sensitivity(steps: Steps, slot: int, work: Work) -> int:
+    """Sensitivity of the forces to the amplitudes at the start, S f; returns the number of rows ``work.active``."""
+    n, size = work.excess.size, steps.free_response.shape[2]
+    matrix, shares, rows = work.matrix, work.shares, work.force_rows
     active = 0
     for row in range(n):
         # Flanks that are apart, also in the reference, have no slope: no disturbance changes their force.
@@ -216,60 +216,65 @@ def feed_back(steps: Steps, slot: int, work: Work) -> int:
     solve_part_in_place(matrix, shares, active, 2 * active)
     for i in range(active):
         for m in range(size):
-            felt[i, m] = 0.0
+            rows[i, m] = 0.0
         for j in range(active):
             row, x, v = work.active[j], shares[i, j], shares[i, active + j]
             for m in range(size):
-                felt[i, m] += x * steps.felt[slot, row, m] + v * steps.felt[slot, n + row, m]
+                rows[i, m] += x * steps.free_response[slot, row, m] + v * steps.free_response[slot, n + row, m]
     return active
 
 
 @uncounted()
-def send(decay: FloatArray, source: FloatArray, slot: int, active: int, work: Work) -> None:
-    """Rows of the amplitudes at an element's end by its forces, and the decay of those at its start."""
+def gather_end_response(decay: FloatArray, source: FloatArray, slot: int, active: int, work: Work) -> None:
+    """Response b of the amplitudes at an element's end to its forces, and their free decay e^{λh} from its start."""
     for i in range(active):
         row = work.active[i]
-        for m in range(work.sent.shape[1]):
-            work.sent[i, m] = source[slot, row, m]
+        for m in range(work.end_response.shape[1]):
+            work.end_response[i, m] = source[slot, row, m]
     for m in range(decay.shape[2]):
         work.decay[0, m], work.decay[1, m] = decay[slot, 0, m], decay[slot, 1, m]
 
 
 @uncounted(fastmath=SUMS)
-def carry(columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatArray) -> None:
-    """Disturbances at the end from those at the start, by ``_UNROLLED`` forces."""
+def apply_sensitivity(columns: FloatArray, decay: FloatArray, rows: FloatArray, ends: FloatArray) -> None:
+    """Sensitivities at the end from those at the start, e^{λh} z - b g, with ``_UNROLLED`` forces."""
     size = columns.shape[1]
     modes = size // 2
     for k in range(columns.shape[0]):
         a = b = c = d = e = 0.0
         for i in range(size):
             z = columns[k, i]
-            a += felt[0, i] * z
-            b += felt[1, i] * z
-            c += felt[2, i] * z
-            d += felt[3, i] * z
-            e += felt[4, i] * z
+            a += rows[0, i] * z
+            b += rows[1, i] * z
+            c += rows[2, i] * z
+            d += rows[3, i] * z
+            e += rows[4, i] * z
         for i in range(modes):
             j = modes + i
             x, y, p, q = columns[k, i], columns[k, j], decay[0, i], decay[1, i]
-            one = a * sent[0, i] + b * sent[1, i] + c * sent[2, i] + d * sent[3, i] + e * sent[4, i]
-            two = a * sent[0, j] + b * sent[1, j] + c * sent[2, j] + d * sent[3, j] + e * sent[4, j]
+            one = a * ends[0, i] + b * ends[1, i] + c * ends[2, i] + d * ends[3, i] + e * ends[4, i]
+            two = a * ends[0, j] + b * ends[1, j] + c * ends[2, j] + d * ends[3, j] + e * ends[4, j]
             columns[k, i] = p * x - q * y - one
             columns[k, j] = p * y + q * x - two
 
 
 @uncounted(fastmath=SUMS)
-def carry_any(
-    columns: FloatArray, decay: FloatArray, felt: FloatArray, sent: FloatArray, active: int, force: FloatArray
+def apply_sensitivity_of_any(
+    columns: FloatArray,
+    decay: FloatArray,
+    rows: FloatArray,
+    ends: FloatArray,
+    active: int,
+    force: FloatArray,
 ) -> None:
-    """As :func:`carry`, for any number of forces."""
+    """As :func:`apply_sensitivity`, for any number of forces."""
     size = columns.shape[1]
     modes = size // 2
     for k in range(columns.shape[0]):
         for row in range(active):
             total = 0.0
             for i in range(size):
-                total += felt[row, i] * columns[k, i]
+                total += rows[row, i] * columns[k, i]
             force[row] = total
         for i in range(modes):
             x, y, p, q = columns[k, i], columns[k, modes + i], decay[0, i], decay[1, i]
@@ -278,28 +283,30 @@ def carry_any(
         for row in range(active):
             total = force[row]
             for i in range(size):
-                columns[k, i] -= total * sent[row, i]
+                columns[k, i] -= total * ends[row, i]
 
 
 @uncounted()
-def vary(reference: Reference, steps: Steps, slot: int, part: float, columns: FloatArray, work: Work) -> None:
-    """Propagate the disturbances over an element of a slot's size, or over a part of it."""
-    active = feed_back(steps, slot, work)
+def propagate_sensitivity(
+    reference: Reference, steps: Steps, slot: int, part: float, columns: FloatArray, work: Work
+) -> None:
+    """Solve the variational (sensitivity) equations over an element of a slot's size, or over a part of it."""
+    active = force_sensitivity(steps, slot, work)
     if part == 1.0:
-        send(steps.decay, steps.source, slot, active, work)
+        gather_end_response(steps.decay, steps.source, slot, active, work)
     else:
         end = 0 * slot  # 0, in a form that is no constant: a constant would compile all anew
         end_matrices(reference, steps.size[slot], part, work.cut_decay[end], work.cut_source[end], work.integral)
-        send(work.cut_decay, work.cut_source, end, active, work)
+        gather_end_response(work.cut_decay, work.cut_source, end, active, work)
     if active == _UNROLLED:
-        carry(columns, work.decay, work.feedback, work.sent)
+        apply_sensitivity(columns, work.decay, work.force_rows, work.end_response)
     else:
-        carry_any(columns, work.decay, work.feedback, work.sent, active, work.moved)
+        apply_sensitivity_of_any(columns, work.decay, work.force_rows, work.end_response, active, work.moved)
 
 
 @uncounted(fastmath=SUMS)
-def cross(reference: Reference, a: int, jump: float, columns: FloatArray) -> None:
-    """Propagate the disturbances over a step of a contact force: the sooner it comes, the longer it acts."""
+def apply_saltation(reference: Reference, a: int, jump: float, columns: FloatArray) -> None:
+    """Apply the saltation matrix of a step of a contact force: the sooner it comes, the longer it acts."""
     modes = columns.shape[1] // 2
     for k in range(columns.shape[0]):
         moved = 0.0
@@ -312,7 +319,7 @@ def cross(reference: Reference, a: int, jump: float, columns: FloatArray) -> Non
 
 
 @uncounted()
-def jump_at(
+def saltation_factor(
     reference: Reference,
     contacts: Contacts,
     a: int,
@@ -323,7 +330,7 @@ def jump_at(
     laws: FloatArray,
     row: int,
 ) -> float:
-    """Step of a contact force over the speed of crossing, where its flanks meet or part."""
+    """Saltation factor: step of a contact force over the speed of crossing, where its flanks meet or part."""
     law(contacts, a, time - inside, delta - rate * inside, rate, laws, row)
     before, force, damping = laws[row, TOUCHING] > 0.0, laws[row, FORCE], laws[row, DAMPING]
     law(contacts, a, time + inside, delta + rate * inside, rate, laws, row)

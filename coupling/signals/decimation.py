@@ -92,8 +92,6 @@ def decimation(factor: int, band: float) -> Decimation:
     J. F. Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", *IEEE Int. Symp. Circuits and
     Systems*, 1974.
     """
-    from scipy import signal
-
     if factor < 1 or not 0.0 < band < 0.5:
         raise CouplingError(
             f"decimation by {factor} with a band up to {band} of the rate; expected 1 or more, below 1/2"
@@ -102,6 +100,6 @@ def decimation(factor: int, band: float) -> Decimation:
         return Decimation(1, np.ones(1))
     transition = 2.0 * math.pi * (1.0 - 2.0 * band) / factor
     half = math.ceil((_REJECTION - 7.95) / (2.285 * transition) / 2.0)
-    return Decimation(
-        factor, signal.firwin(2 * half + 1, 1.0 / factor, window=("kaiser", signal.kaiser_beta(_REJECTION)))
-    )
+    # Not scipy.signal.firwin, which is the same: that import takes longer than a short transient.
+    taps = np.sinc(np.arange(-half, half + 1) / factor) * np.kaiser(2 * half + 1, 0.1102 * (_REJECTION - 8.7))
+    return Decimation(factor, taps / taps.sum())

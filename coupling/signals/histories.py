@@ -109,7 +109,7 @@ _GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times
 
 
 @dataclass(frozen=True)
-class Quantity:
+class HistoryQuantity:
     """One quantity of a record, declared once: every file, table and figure reads this.
 
     Attributes
@@ -143,70 +143,70 @@ class Quantity:
 
 
 HISTORY_QUANTITIES = (
-    Quantity(
+    HistoryQuantity(
         "sensor_acceleration",
         ("sensor", "time"),
         lambda found: found.sensor_acceleration,
         "m/s2",
         "acceleration along the sensor",
     ),
-    Quantity(
+    HistoryQuantity(
         "bearing_force",
         ("bearing", "time", "axis"),
         lambda found: found.bearing_force,
         "N",
         "force of the shaft on its bearing",
     ),
-    Quantity(
+    HistoryQuantity(
         "bearing_axial_force",
         ("bearing", "time"),
         lambda found: {name: load[:, 2] for name, load in found.bearing_load.items()},
         "N",
         "force of the shaft on its bearing along z",
     ),
-    Quantity(
+    HistoryQuantity(
         "bearing_moment",
         ("bearing", "time", "moment_axis"),
         lambda found: {name: load[:, 3:] for name, load in found.bearing_load.items()},
         "N m",
         "moment of the shaft on its bearing about x and y",
     ),
-    Quantity(
+    HistoryQuantity(
         "mesh_force",
         ("contact", "time"),
         lambda found: found.mesh_force,
         "N",
         "gear-mesh force along the line of action",
     ),
-    Quantity(
+    HistoryQuantity(
         "mesh_compression",
         ("contact", "time"),
         lambda found: found.mesh_compression,
         "m",
         "compression of the mesh along the line of action",
     ),
-    Quantity(
+    HistoryQuantity(
         "friction_force",
         ("friction_contact", "time"),
         lambda found: {name: friction[:, 0] for name, friction in found.mesh_friction.items()},
         "N",
         "friction between the teeth, across the line of action",
     ),
-    Quantity(
+    HistoryQuantity(
         "friction_power",
         ("friction_contact", "time"),
         lambda found: {name: friction[:, 1] for name, friction in found.mesh_friction.items()},
         "W",
         "power that friction between the teeth takes from the nominal rotation",
     ),
-    Quantity(
+    HistoryQuantity(
         "gear_displacement",
         ("gear", "time", "axis"),
         lambda found: {name: motion[:, :2] for name, motion in found.gear_motion.items()},
         "m",
         "motion of the gear's centre",
     ),
-    Quantity(
+    HistoryQuantity(
         "gear_rotation",
         ("gear", "time"),
         lambda found: {name: motion[:, 2] for name, motion in found.gear_motion.items()},
@@ -246,7 +246,7 @@ def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfi
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
-    turned, rates, _ = (profile or SpeedProfile.steady()).at(result.times)
+    nominal_time, rates, _ = (profile or SpeedProfile.steady()).at(result.times)
     nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0
@@ -256,7 +256,7 @@ def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfi
         forces[connector.name] = _force(connector, deflections[:, columns], result.velocity[:, columns], rates)
         if connector.name in nonlinear:
             forces[connector.name] += _beside_linear(
-                connector, nonlinear[connector.name], deflections[:, columns], turned
+                connector, nonlinear[connector.name], deflections[:, columns], nominal_time
             )
     names = [] if machine.housing is None else list(machine.housing.sensors)
     contacts = [contact.name for contact in machine.system.contacts]
@@ -268,7 +268,7 @@ def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfi
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
         mesh_compression={name: result.compression[:, i] for i, name in enumerate(contacts)},
         mesh_friction={
-            contact.name: friction_of(contact, turned, rates, result.compression[:, i], result.force[:, i])
+            contact.name: friction_of(contact, nominal_time, rates, result.compression[:, i], result.force[:, i])
             for i, contact in enumerate(machine.system.contacts)
             if contact.sliding is not None
         },
@@ -287,7 +287,7 @@ def _bearings(machine: CoupledMachine) -> tuple[LinearConnector, ...]:
 
 
 def _beside_linear(
-    linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, turned: FloatArray
+    linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, nominal_time: FloatArray
 ) -> FloatArray:
     """Nonlinear part of a bearing's force beside its tangent's, shape (s, d)."""
     from coupling.time.bearing_kernels import bearing_history
@@ -296,16 +296,16 @@ def _beside_linear(
     moving = np.flatnonzero(np.any(linear.directions != 0.0, axis=0))
     force = np.zeros_like(deflection)
     own = np.ascontiguousarray(deflection[:, moving])
-    force[:, moving] = bearing_history(bearing_arrays([connector]), 0, turned, own) - own @ connector.stiffness.T
+    force[:, moving] = bearing_history(bearing_arrays([connector]), 0, nominal_time, own) - own @ connector.stiffness.T
     return force
 
 
 def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatArray, rates: FloatArray) -> FloatArray:
     """Linear force of a bearing in every held direction, shape (s, d), at the relative speed of each sample."""
     table = connector.over_speed
+    force = np.zeros_like(deflection) if connector.offset is None else np.tile(connector.offset, (len(deflection), 1))
     if table is None:
-        return np.asarray(deflection @ connector.stiffness.T + velocity @ connector.damping.T)
-    force = np.zeros_like(deflection)
+        return np.asarray(force + deflection @ connector.stiffness.T + velocity @ connector.damping.T)
     for row in range(len(table.rates)):
         # Weight of each speed of the table in the linear interpolation.
         share = np.interp(rates, table.rates, np.eye(len(table.rates))[row])

@@ -82,15 +82,15 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     Newton's method on the contacts' mean curves, from their stiffness without load. A contact that the mean load opens
     while others carry it has no force and no stiffness.
     """
-    nothing: list[MeanMesh | None] = [None] * len(system.contacts)
+    without_force: list[MeanMesh | None] = [None] * len(system.contacts)
     driving = [number for number, contact in enumerate(system.contacts) if contact.drives]
     if not driving or not np.any(system.load) or not load_balances(system):
-        return nothing
+        return without_force
     rigid, stiffest = system.rigid_body_motions
     held = system.stiffness + stiffest * rigid @ rigid.T
     directions = system.contact_directions[:, driving]
     laws = [system.contacts[number].contact for number in driving]
-    stiffness = np.array([law.mean_mesh_stiffness for law in laws])
+    stiffness = np.array([law.unloaded_mean_mesh_stiffness for law in laws])
     offset = np.array([system.contacts[number].clearance for number in driving])
     before = np.full(len(driving), np.nan)
     loaded = np.ones(len(driving), dtype=bool)
@@ -98,8 +98,8 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     for _ in range(_ITERATIONS):
         matrix = held + (directions * (stiffness * loaded)) @ directions.T
         if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False)[-1] < _LOOSE * stiffest:
-            # The mean load parts flanks and nothing else holds the train.
-            return nothing
+            # The mean load parts flanks and without_force else holds the train.
+            return without_force
         q = np.linalg.solve(matrix, system.load + directions @ (stiffness * loaded * offset))
         force = stiffness * (directions.T @ q - offset)
         rounding = _ROUNDING * stiffness * (np.abs(directions.T) @ np.abs(q))
@@ -122,8 +122,8 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
             clearance = system.contacts[driving[number]].clearance
             offset[number] = clearance + mean.deflection - mean.force / mean.secant
     for number, one in zip(driving, found, strict=True):
-        nothing[number] = one
-    return nothing
+        without_force[number] = one
+    return without_force
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -35,18 +35,19 @@ from coupling.gears.loaded.contact_pressure import mesh_pressure
 from coupling.gears.loaded.face_load import FaceLoad
 from coupling.gears.loaded.transmission_error import LoadedMesh
 from coupling.machine.components import HousingComponent
-from coupling.machine.connectors import MountedBearing
+from coupling.machine.connectors import MountedBearing, RollingLaw
 from coupling.machine.loads import Torque
 from coupling.statics.static_model import (
     ConnectorLaw,
     FaceContactLaw,
+    LinearLaw,
     RollingElementLaw,
     StaticBearing,
     StaticPair,
     StaticShaftPart,
 )
 from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings import RollingState, rolling_state
+from rotors.rolling_bearings import RollingState, linearised_bearing, rolling_state
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -55,6 +56,7 @@ RESIDUAL_BAR = 1e-9
 
 _TOLERANCE = 1e-12
 _NEWTON_STEPS = 30
+_HALVINGS = 6
 _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
 _TE_PHASES = 200
@@ -124,6 +126,23 @@ class BearingLoad:
         """Angle between the shaft and the seat's axis [rad]."""
         return float(np.hypot(*self.deflection[3:]))
 
+    @property
+    def linearised(self) -> MountedBearing:
+        """The bearing linearised about its load, where its stiffness is left to that; else as it is.
+
+        Raises
+        ------
+        rotors.EquilibriumError
+            Where clearance leaves the shaft loose in x or y.
+        """
+        if not self.mounted.needs_load or self.rolling is None:
+            return self.mounted
+        given, law = self.mounted.bearing, self.mounted.law
+        bearing = replace(given, stiffness=linearised_bearing(self.rolling, given.name, given.at).stiffness)
+        if isinstance(law, RollingLaw):
+            return replace(self.mounted, bearing=bearing, law=replace(law, state=self.rolling))
+        return replace(self.mounted, bearing=bearing, offset=self.force - self.stiffness @ self.deflection)
+
 
 CAUSES = ("shafts", "bearings", "housing", "bodies")
 """Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, and the twist of
@@ -161,6 +180,11 @@ class PairLoad:
     fine: FaceLoad
 
     @property
+    def names(self) -> tuple[str, str]:
+        """Driver and driven gear."""
+        return self.pair.driver.name, self.pair.driven.name
+
+    @property
     def z(self) -> FloatArray:
         """Slices of the face, from its middle [m], shape (s,)."""
         return self.pair.contact.z
@@ -170,6 +194,12 @@ class PairLoad:
         """Gap of the flanks over the face by the machine's deflection, its mean taken off [m], shape (s,)."""
         over = self.pair.contact.over_face @ self.approach[:-1]
         return np.asarray(over.mean() - over)
+
+    @property
+    def station_gap(self) -> tuple[float, ...]:
+        """The same gap at the stations of the face [m], for :attr:`coupling.GearPair.face_gap`."""
+        mean = float(self.pair.contact.face_mean @ self.approach)
+        return tuple((mean - self.approach[:-1]).tolist())
 
     @property
     def line_load(self) -> FloatArray:
@@ -303,19 +333,27 @@ class _StaticModel:
             size += 6 * part.shaft.places.size
         self.housing_first = size
         size += 0 if housing is None else housing.size
-        on_pedestals = [one.mounted.bearing.name for one in bearings if one.mounted.bearing.pedestal is not None]
-        self.pedestal_first = {name: size + 2 * n for n, name in enumerate(on_pedestals)}
-        self.size = size + 2 * len(on_pedestals)
+        pedestals = {
+            one.mounted.bearing.name: LinearLaw(one.mounted.bearing.pedestal.stiffness)
+            for one in bearings
+            if one.mounted.bearing.pedestal is not None
+        }
+        self.pedestal_first = {name: size + 2 * n for n, name in enumerate(pedestals)}
+        self.size = size + 2 * len(pedestals)
         self.stiffness = self._linear_stiffness()
         self.load = self._loads(torques)
         self.directions = [self._bearing_rows(one.mounted) for one in bearings]
         approaches = [self._pair_rows(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
+        self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
         self.twists = [twist for _, twist in approaches]
         self.laws: list[ConnectorLaw] = [one.law for one in bearings]
         self.laws += [FaceContactLaw(pair.contact, pair.clearance) for pair in pairs]
-        self.nominal = [one.nominal for one in bearings]
-        self.nominal += [_uniform_stiffness(pair) for pair in pairs]
+        self.laws += pedestals.values()
+        nominal = [one.nominal for one in bearings]
+        nominal += [_uniform_stiffness(pair) for pair in pairs]
+        nominal += [law.nominal for law in pedestals.values()]
+        self.nominal: FloatArray = linalg.block_diag(*nominal)
         self.all_directions = np.concatenate(self.directions, axis=1)
         ends = np.cumsum([rows.shape[1] for rows in self.directions])
         self.parts = [slice(end - rows.shape[1], end) for end, rows in zip(ends.tolist(), self.directions, strict=True)]
@@ -328,11 +366,6 @@ class _StaticModel:
         if self.housing is not None:
             own = slice(self.housing_first, self.housing_first + self.housing.size)
             whole[own, own] = self.housing.stiffness
-        for one in self.bearings:
-            pedestal = one.mounted.bearing.pedestal
-            if pedestal is not None:
-                first = self.pedestal_first[one.mounted.bearing.name]
-                whole[first : first + 2, first : first + 2] = pedestal.stiffness
         return whole
 
     def _loads(self, torques: Sequence[Torque]) -> FloatArray:
@@ -412,13 +445,14 @@ class _StaticModel:
         Every motion without elastic energy is a rigid one of the shafts, or one of the housing's modes at rest.
         """
         motions, words = self._rigid_motions()
-        nominal = linalg.block_diag(*self.nominal)
         held = motions.T @ self.all_directions
-        whole = held @ nominal @ held.T
+        whole = held @ self.nominal @ held.T
         whole = 0.5 * (whole + whole.T)
         values, vectors = np.linalg.eigh(whole)
         # Without any connector, every rigid motion is free.
         stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
+        # A spring as soft as the softest of the others leaves least rounding in the balance of forces.
+        spring = float(min(values[values > _FREE * stiff], default=stiff))
         found: list[str] = []
         extra = np.zeros((self.size, self.size))
         # Rounding leaves parts of other motions in a free one, which the loads drive as well.
@@ -436,7 +470,7 @@ class _StaticModel:
                     "that balance"
                 )
             found.append(word)
-            extra += stiff * np.outer(motion, motion) / float(motion @ motion) ** 2
+            extra += spring * np.outer(motion, motion) / float(motion @ motion) ** 2
         return extra, tuple(found)
 
     def _rigid_motions(self) -> tuple[FloatArray, list[str]]:
@@ -468,34 +502,35 @@ class _StaticModel:
     def solve(self) -> OperatingPoint:
         """Minimise the potential, polish by Newton's method, and prove the balance of forces."""
         extra, free = self._hold_free_motions()
-        stiffness = self.stiffness + extra
-        directions, nominal = self.all_directions, linalg.block_diag(*self.nominal)
-        held = linalg.lu_factor(stiffness + directions @ nominal @ directions.T)
-        offset = linalg.block_diag(*self.nominal) @ np.concatenate([self._offset(n) for n in range(len(self.laws))])
+        directions, nominal = self.all_directions, self.nominal
+        held = linalg.lu_factor(self.stiffness + extra + directions @ nominal @ directions.T)
         # The nominal law k0 (z - z0) starts the search near closed flanks.
-        unloaded = linalg.lu_solve(held, self.load + directions @ offset)
-        answers = linalg.lu_solve(held, directions)
+        shift = nominal @ np.concatenate([self._offset(n) for n in range(len(self.laws))])
+        unloaded = linalg.lu_solve(held, self.load + directions @ shift)
         start = directions.T @ unloaded
-        compliance = directions.T @ answers
+        compliance = directions.T @ linalg.lu_solve(held, directions)
         values, vectors = np.linalg.eigh(0.5 * (compliance + compliance.T))
         kept = values > 1e-13 * values[-1]
         spread = vectors[:, kept] * np.sqrt(values[kept])
-        shift = offset
 
-        def remainder(z: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        def remainder(z: FloatArray, laws: Sequence[ConnectorLaw]) -> tuple[float, FloatArray, FloatArray]:
             """Energy, force and tangent of the laws beyond their nominal ones."""
             energy, force, tangent = 0.0, np.zeros(z.size), np.zeros((z.size, z.size))
-            for part, law in zip(self.parts, self.laws, strict=True):
+            for part, law in zip(self.parts, laws, strict=True):
                 stored, own, slope = law.at(z[part])
                 energy, force[part], tangent[part, part] = energy + stored, own, slope
             linear = nominal @ z - shift
             return energy - 0.5 * float(z @ (nominal @ z)) + float(shift @ z), force - linear, tangent - nominal
 
+        # Forces of an unsymmetric stiffness have no energy; its nominal one stands for it until Newton's method.
+        conservative = [
+            LinearLaw(nominal[part, part]) if isinstance(law, LinearLaw) else law
+            for part, law in zip(self.parts, self.laws, strict=True)
+        ]
         noise = float(np.abs(self.load) @ np.abs(unloaded)) + 1e-12
 
         def potential(nu: FloatArray) -> Local:
-            energy, force, tangent = remainder(start + spread @ nu)
-            tangent = 0.5 * (tangent + tangent.T)
+            energy, force, tangent = remainder(start + spread @ nu, conservative)
             gradient = nu + spread.T @ force
             return Local(
                 value=0.5 * float(nu @ nu) + energy,
@@ -505,29 +540,41 @@ class _StaticModel:
                 force=float(np.abs(nu).max(initial=0.0)) + float(np.abs(spread.T @ force).max(initial=0.0)) + 1e-300,
             )
 
+        def unbalanced(nu: FloatArray) -> tuple[FloatArray, FloatArray, float, float]:
+            """Gradient, its derivative, its size, and the size that rounding leaves."""
+            _, force, tangent = remainder(start + spread @ nu, self.laws)
+            push = spread.T @ force
+            rounding = _TOLERANCE * float(np.linalg.norm(nu) + np.linalg.norm(push))
+            gradient = nu + push
+            return gradient, np.eye(nu.size) + spread.T @ tangent @ spread, float(np.linalg.norm(gradient)), rounding
+
         radius = max(float(np.sqrt(abs(self.load @ unloaded))), 1e-9)
         found = minimise(potential, np.zeros(spread.shape[1]), radius, _TOLERANCE)
-        nu, steps = found.place, 0
-        best, best_residual = nu, np.inf
-        for steps in range(_NEWTON_STEPS):
-            _, force, tangent = remainder(start + spread @ nu)
-            gradient = nu + spread.T @ force
-            residual = float(np.abs(gradient).max(initial=0.0))
-            if residual < best_residual:
-                best, best_residual = nu, residual
-            elif steps > 3:
+        nu, iterations = found.place, found.iterations
+        here = unbalanced(nu)
+        for _ in range(_NEWTON_STEPS):
+            gradient, tangent, left, rounding = here
+            step = np.linalg.lstsq(tangent, gradient, rcond=None)[0]
+            for halving in range(1 if left <= rounding else _HALVINGS):
+                there = nu - 0.5**halving * step
+                trial = unbalanced(there)
+                if trial[2] < left:
+                    nu, here, iterations = there, trial, iterations + 1
+                    break
+            if left <= rounding or here[2] == left:
                 break
-            nu = nu - np.linalg.solve(np.eye(nu.size) + spread.T @ tangent @ spread, gradient)
-        _, force, _ = remainder(start + spread @ best)
-        x = unloaded - answers @ force
-        return self._result(x, extra, free, found.iterations + steps)
+        z = start + spread @ nu
+        _, force, _ = remainder(z, self.laws)
+        # In one solution, as the difference of two large ones would lose digits.
+        x = linalg.lu_solve(held, self.load + directions @ (shift - force))
+        return self._result(x, extra, free, iterations)
 
     def _offset(self, number: int) -> FloatArray:
         """Deflection z0 at which the nominal law of a connector has no force: flanks just touch at their clearance."""
-        pairs = number - len(self.bearings)
-        if pairs < 0:
-            return np.zeros(5)
-        pair = self.pairs[pairs]
+        first = len(self.bearings)
+        if not first <= number < first + len(self.pairs):
+            return np.zeros(self.directions[number].shape[1])
+        pair = self.pairs[number - first]
         return (pair.clearance + pair.contact.touch) * pair.contact.uniform
 
     def _result(self, x: FloatArray, extra: FloatArray, free: tuple[str, ...], iterations: int) -> OperatingPoint:
@@ -536,12 +583,12 @@ class _StaticModel:
         residual = self.load - (self.stiffness + extra) @ x
         for rows, (_, force, _) in zip(self.directions, states, strict=True):
             residual = residual - rows @ force
-        relative = self._relative(residual, [force for _, force, _ in states])
+        relative, where = self._relative(residual, [force for _, force, _ in states])
         if not relative <= RESIDUAL_BAR:
             raise EquilibriumNotFoundError(
-                f"no static equilibrium of the machine: {relative:.3g} of the largest load is out of balance after "
-                f"{iterations} steps; expected at most {RESIDUAL_BAR:g}. The load may be more than bearings or teeth "
-                "can carry, or play may leave a shaft loose"
+                f"no static equilibrium of the machine: {relative:.3g} of the largest load is out of balance on "
+                f"{where} after {iterations} steps; expected at most {RESIDUAL_BAR:g}. The load may be more than "
+                "bearings or teeth can carry, a bearing may be missing, or play may leave a shaft loose"
             )
         bearings = tuple(
             BearingLoad(
@@ -556,13 +603,16 @@ class _StaticModel:
         )
         causes = self._causes(x, bearings)
         count = len(self.bearings)
-        least = _IDLE * max((float(np.abs(force).sum()) for _, force, _ in states[count:]), default=0.0)
+        meshes = states[count : count + len(self.pairs)]
+        least = _IDLE * max((float(np.abs(force).sum()) for _, force, _ in meshes), default=0.0)
         if self.pairs and least == 0.0:
-            raise CouplingError("no gear pair carries a load; expected a torque")
+            names = ", ".join(pair.label for pair in self.pairs)
+            turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())
+            raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
         pairs = tuple(
             self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, least)
             for pair, approach, rows, twist in zip(
-                self.pairs, deflections[count:], self.directions[count:], self.twists, strict=True
+                self.pairs, deflections[count:], self.directions[count:], self.twists, strict=False
             )
         )
         shafts = tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts)
@@ -571,8 +621,8 @@ class _StaticModel:
             housing = x[self.housing_first : self.housing_first + self.housing.size]
         return OperatingPoint(shafts, bearings, pairs, housing, relative, iterations, free)
 
-    def _relative(self, residual: FloatArray, forces: Sequence[FloatArray]) -> float:
-        """Largest force out of balance over the largest load, moments over that load times the longest shaft."""
+    def _relative(self, residual: FloatArray, forces: Sequence[FloatArray]) -> tuple[float, str]:
+        """Largest force out of balance over the largest load, moments over that load times the longest shaft; where."""
         longest = max(float(np.ptp(part.shaft.places)) for part in self.shafts) or 1.0
         largest = 1e-300
         for part in self.shafts:
@@ -582,18 +632,20 @@ class _StaticModel:
             for part in self.shafts:
                 on_shaft = (rows @ force)[self._own(part.name)].reshape(-1, 6)
                 largest = max(largest, float(np.abs(on_shaft[:, :3]).max()))
-        worst = 0.0
+        found = []
         for part in self.shafts:
             left = residual[self._own(part.name)].reshape(-1, 6)
-            worst = max(worst, float(np.abs(left[:, :3]).max()), float(np.abs(left[:, 3:]).max()) / longest)
+            moment = float(np.abs(left[:, 3:]).max()) / longest
+            found.append((max(float(np.abs(left[:, :3]).max()), moment), f"shaft {part.name!r}"))
         if self.housing is not None:
             own = slice(self.housing_first, self.housing_first + self.housing.size)
             # A modal force is one of a shape of the size of its largest seat motion.
             size = max(float(np.abs(rows[own]).max()) for rows in self.directions) or 1.0
-            worst = max(worst, float(np.abs(residual[own]).max(initial=0.0)) / size)
-        for first in self.pedestal_first.values():
-            worst = max(worst, float(np.abs(residual[first : first + 2]).max()))
-        return worst / largest
+            found.append((float(np.abs(residual[own]).max(initial=0.0)) / size, "the housing"))
+        for name, first in self.pedestal_first.items():
+            found.append((float(np.abs(residual[first : first + 2]).max()), f"the pedestal of bearing {name!r}"))
+        worst, where = max(found)
+        return worst / largest, where
 
     def _causes(self, x: FloatArray, bearings: Sequence[BearingLoad]) -> dict[str, FloatArray]:
         """Parts of the shafts' motion by `CAUSES`, (n,) each; their sum is that of all stations.

@@ -58,7 +58,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
         if contact.drives:
             first_touch = float(contact.contact.pairs(contact.phase_after(time)).deviation.min())
             gap = first_touch + contact.clearance + contact.runout(time)
-            closing += contact.contact.mean_mesh_stiffness * gap * contact.direction
+            closing += contact.contact.unloaded_mean_mesh_stiffness * gap * contact.direction
     for bearing in system.nonlinear:
         # Bearings begin at their mean load: within their clearance the tangent would be singular.
         about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
@@ -88,8 +88,8 @@ def _require_closed_flanks(system: CoupledSystem, penalty: FloatArray) -> None:
     """Raise `CouplingError` where the mean torque opens flanks without back flanks."""
     q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
     for contact in system.contacts:
-        force = contact.contact.mean_mesh_stiffness * float(contact.direction @ q)
-        if contact.drives and force < -_PUSHED * contact.contact.mean_mesh_stiffness * float(
+        force = contact.contact.unloaded_mean_mesh_stiffness * float(contact.direction @ q)
+        if contact.drives and force < -_PUSHED * contact.contact.unloaded_mean_mesh_stiffness * float(
             np.abs(contact.direction) @ np.abs(q)
         ):
             raise CouplingError(

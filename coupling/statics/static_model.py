@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import GearPairGeometry, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.contact.face_slices import face_slices, face_stations
 from coupling.gears.loaded.face_load import FaceContact
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
@@ -21,9 +21,6 @@ from rotors.analyses.static_stiffness import StaticShaft
 from rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
 FloatArray = npt.NDArray[np.float64]
-
-FACE_STATIONS = 5
-"""Stations over the face of a gear at which it follows its shaft."""
 
 _TRIAL_LOAD = 0.05  # of the static rating, at which a rolling bearing has its nominal stiffness
 
@@ -38,9 +35,15 @@ class ConnectorLaw(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class LinearLaw:
-    """Constant stiffness, (5, 5), perhaps unsymmetric; the energy is that of its symmetric part."""
+    """Constant stiffness (d, d), perhaps unsymmetric, with the energy of its symmetric part."""
 
     stiffness: FloatArray
+
+    @property
+    def nominal(self) -> FloatArray:
+        """The symmetric factor of the polar decomposition, which holds the same motions and is never indefinite."""
+        _, values, rows = np.linalg.svd(self.stiffness)
+        return np.asarray((rows.T * values) @ rows)
 
     def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Energy, force and tangent."""
@@ -110,10 +113,10 @@ def static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
     if rolling is not None:
         return StaticBearing(mounted, RollingElementLaw(RollingElements(rolling)), _nominal_rolling(rolling))
     if isinstance(mounted.law, GapLaw):
-        return StaticBearing(mounted, RadialGapLaw(mounted.law), np.zeros((5, 5)))
-    stiffness = mounted.bearing.at_speed(speed).spatial_stiffness
-    values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
-    return StaticBearing(mounted, LinearLaw(stiffness), (vectors * np.maximum(values, 0.0)) @ vectors.T)
+        secant = mounted.law.force / (mounted.law.gap + mounted.law.depth)
+        return StaticBearing(mounted, RadialGapLaw(mounted.law), np.diag([secant, secant, 0.0, 0.0, 0.0]))
+    law = LinearLaw(mounted.bearing.at_speed(speed).spatial_stiffness)
+    return StaticBearing(mounted, law, law.nominal)
 
 
 def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
@@ -147,8 +150,8 @@ class StaticGear:
     at : float
         Middle of the face from the shaft's left end [m].
     stations : ndarray, shape (j,), or None
-        Stations of the face on the shaft, from its left end [m]; None for a gear whose face reaches beyond the end of
-        the shaft, which is rigid on the section at ``at``.
+        Stations of the pair's common face on the shaft, from its left end [m]; None for a gear whose face reaches
+        beyond the end of the shaft, which is rigid on the section at ``at``.
     """
 
     name: str
@@ -193,12 +196,6 @@ class StaticPair:
     sense: int
     towards: tuple[float, float]
     nominal: float
-
-
-def face_stations(width: float) -> FloatArray:
-    """Stations from the middle of a face of some width [m], at Chebyshev's points, both ends among them, (j,)."""
-    steps = np.arange(FACE_STATIONS)[::-1] / (FACE_STATIONS - 1)
-    return np.asarray(0.5 * width * np.cos(np.pi * steps))
 
 
 def static_pair(
@@ -252,5 +249,5 @@ def static_pair(
         axial=axial,
         sense=sense,
         towards=(float(line[0] / np.hypot(*line)), float(line[1] / np.hypot(*line))) if np.any(line) else (0.0, 0.0),
-        nominal=own.mean_mesh_stiffness,
+        nominal=own.unloaded_mean_mesh_stiffness,
     )

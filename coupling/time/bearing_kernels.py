@@ -1,8 +1,9 @@
 r"""Rolling-bearing law, compiled: forces and tangent stiffness by the ring's deflections and the cage angle.
 
-The laws of a ball at the azimuth ψ and of a roller's slice are those of
-:mod:`rotors.rolling_bearings.element_contacts`. Added is the slope of the energy over ψ, by which the rotating cage
-does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
+The laws of a ball at the azimuth ψ and of a roller's slice are those of :mod:`rotors.rolling_bearings.element_contacts`
+and :mod:`rotors.rolling_bearings.roller_slices`, without inertia. Added is the slope of the energy over ψ, by which the
+rotating cage does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the
+ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 
@@ -16,7 +17,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.time.kernel_arrays import BALLS, ROLLERS, Bearings
+from coupling.time.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, ROLLERS, Bearings
 from rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
@@ -70,14 +71,14 @@ def _rollers(
     force: FloatArray,
     tangent: FloatArray,
 ) -> tuple[float, float]:
-    """Add the forces and tangent of a row of rollers in slices (n, 2): position along the axis, gap of the profile."""
-    clearance, stiffness, number = shape[0], shape[1], int(shape[2])
+    """Add the forces and tangent of a row of rollers in slices (n, 2): arm of the normal, gap of the profile."""
+    free, stiffness, number, across, along = shape[0], shape[1], int(shape[2]), shape[3], shape[4]
     energy, slope = 0.0, 0.0
     for roller in range(count):
         azimuth = angle + 2.0 * math.pi * roller / count
         c, s = math.cos(azimuth), math.sin(azimuth)
-        level, tilt = q[0] * c + q[1] * s - clearance, q[4] * c - q[3] * s
-        level_slope, tilt_slope = q[1] * c - q[0] * s, -q[4] * s - q[3] * c
+        level, tilt = across * (q[0] * c + q[1] * s) + along * q[2] + free, q[4] * c - q[3] * s
+        level_slope, tilt_slope = across * (q[1] * c - q[0] * s), -q[4] * s - q[3] * c
         load, moment, k, k_place, k_square = 0.0, 0.0, 0.0, 0.0, 0.0
         for one in range(number):
             place = slices[one, 0]
@@ -95,19 +96,19 @@ def _rollers(
         if k == 0.0:
             continue
         slope += load * level_slope + moment * tilt_slope
-        # A roller feels its approach in the middle and its tilt: rows (c, s) of x, y and (-s, c) of the rotations.
-        force[0] += load * c
-        force[1] += load * s
-        force[3] -= moment * s
-        force[4] += moment * c
-        for i in range(2):
-            middle_i, tilt_i = (c if i == 0 else s), (-s if i == 0 else c)
+        # A roller feels its approach in the middle, by x, y and z, and its tilt, by the rotations.
+        middle, turn = (across * c, across * s, along), (-s, c)
+        for i in range(3):
+            force[i] += load * middle[i]
+            for j in range(3):
+                tangent[i, j] += k * middle[i] * middle[j]
             for j in range(2):
-                middle_j, tilt_j = (c if j == 0 else s), (-s if j == 0 else c)
-                tangent[i, j] += k * middle_i * middle_j
-                tangent[i, 3 + j] += k_place * middle_i * tilt_j
-                tangent[3 + i, j] += k_place * tilt_i * middle_j
-                tangent[3 + i, 3 + j] += k_square * tilt_i * tilt_j
+                tangent[i, 3 + j] += k_place * middle[i] * turn[j]
+                tangent[3 + j, i] += k_place * middle[i] * turn[j]
+        for i in range(2):
+            force[3 + i] += moment * turn[i]
+            for j in range(2):
+                tangent[3 + i, 3 + j] += k_square * turn[i] * turn[j]
     return energy, slope
 
 
@@ -136,7 +137,7 @@ def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArra
 
 @uncounted()
 def bearing_force(
-    bearings: Bearings, number: int, turned: float, q: FloatArray, force: FloatArray, tangent: FloatArray
+    bearings: Bearings, number: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
     """Force (5,) of the shaft on a bearing displaced by q (5,), and its tangent (5, 5); both are overwritten.
 
@@ -145,7 +146,7 @@ def bearing_force(
     energy : float
         [J].
     slope : float
-        Its derivative by the turned time [J/s]: the power of the rotating cage at nominal speed.
+        Its derivative by the nominal time [J/s]: the power of the rotating cage at nominal speed.
     """
     for i in range(5):
         force[i] = 0.0
@@ -154,7 +155,7 @@ def bearing_force(
     energy, slope = 0.0, 0.0
     for row in range(bearings.first_row[number], bearings.first_row[number + 1]):
         kind, count, shape = bearings.kind[row], bearings.elements[row], bearings.shape[row]
-        angle = bearings.cage[row, 0] + bearings.cage[row, 1] * turned
+        angle = bearings.cage[row, 0] + bearings.cage[row, 1] * nominal_time
         if kind == BALLS:
             added, by_angle = _balls(shape, count, angle, q, force, tangent)
         elif kind == ROLLERS:
@@ -172,26 +173,26 @@ def bearing_force(
 def evaluate_bearings(
     bearings: Bearings,
     offset: int,
-    turned: float,
+    nominal_time: float,
     delta: FloatArray,
     force: FloatArray,
     tangents: FloatArray,
-    held: FloatArray,
+    room: FloatArray,
 ) -> None:
     """Nonlinear part f - K δ of every bearing's force at the deflections ``delta[offset:]``, and its tangent.
 
-    Fills in the forces, the leading d by d of the tangents (b, 5, 5), and ``held`` (8, 5): in row 0 energy [J] and its
+    Fills in the forces, the leading d by d of the tangents (b, 5, 5), and ``room`` (8, 5): in row 0 energy [J] and its
     slope [J/s]; the other rows are scratch for one bearing.
     """
-    held[0, 0], held[0, 1] = 0.0, 0.0
-    q, push, tangent = held[1], held[2], held[3:]
+    room[BEARING_ENERGY], room[BEARING_POWER] = 0.0, 0.0
+    q, push, tangent = room[1], room[2], room[3:]
     for number in range(bearings.preload.size):
         first, end = bearings.first[number], bearings.first[number + 1]
         for i in range(5):
             q[i] = bearings.fixed[number, i]
         for k in range(first, end):
             q[bearings.axis[k]] = delta[offset + k]
-        energy, slope = bearing_force(bearings, number, turned, q, push, tangent)
+        energy, slope = bearing_force(bearings, number, nominal_time, q, push, tangent)
         for k in range(first, end):
             linear = 0.0
             for j in range(first, end):
@@ -200,22 +201,22 @@ def evaluate_bearings(
                 tangents[number, k - first, j - first] = tangent[bearings.axis[k], bearings.axis[j]] - stiffness
             force[offset + k] = push[bearings.axis[k]] - linear
             energy -= 0.5 * delta[offset + k] * linear
-        held[0, 0] += energy
-        held[0, 1] += slope
+        room[BEARING_ENERGY] += energy
+        room[BEARING_POWER] += slope
 
 
 @counted()
-def bearing_history(bearings: Bearings, number: int, turned: FloatArray, deflection: FloatArray) -> FloatArray:
+def bearing_history(bearings: Bearings, number: int, nominal_time: FloatArray, deflection: FloatArray) -> FloatArray:
     """Force of the shaft on one bearing over time, shape (s, d), from its deflections (s, d)."""
     first, end = bearings.first[number], bearings.first[number + 1]
     q, push, tangent = np.zeros(5), np.zeros(5), np.zeros((5, 5))
-    history = np.empty((turned.size, end - first))
+    history = np.empty((nominal_time.size, end - first))
     for i in range(5):
         q[i] = bearings.fixed[number, i]
-    for sample in range(turned.size):
+    for sample in range(nominal_time.size):
         for k in range(first, end):
             q[bearings.axis[k]] = deflection[sample, k - first]
-        bearing_force(bearings, number, turned[sample], q, push, tangent)
+        bearing_force(bearings, number, nominal_time[sample], q, push, tangent)
         for k in range(first, end):
             history[sample, k - first] = push[bearings.axis[k]]
     return history

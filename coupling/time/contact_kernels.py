@@ -23,15 +23,15 @@ FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 
 @inner()
-def flank_deviation(
-    clearance: FloatArray, errors: FloatArray, k: int, turned: float, speed: float
+def flank_gap(
+    clearance: FloatArray, errors: FloatArray, k: int, nominal_time: float, speed: float
 ) -> tuple[float, float]:
-    """Runout error and clearance of a contact, which reduce its compression [m], and their rate [m/s]."""
+    """Gap of a contact, its clearance (backlash) and runout error, which reduces its compression [m]; its rate."""
     value, rate = clearance[k], 0.0
     for m in range(errors.shape[1]):
         amplitude, w = errors[k, m, 0], errors[k, m, 1]
         if amplitude != 0.0:
-            angle = w * turned + errors[k, m, 2]
+            angle = w * nominal_time + errors[k, m, 2]
             value += amplitude * math.cos(angle)
             rate -= amplitude * w * speed * math.sin(angle)
     return value, rate
@@ -39,26 +39,26 @@ def flank_deviation(
 
 @inner(inline="always")
 def evaluate_contact(
-    contacts: Contacts, k: int, turned: float, delta: float, rate: float, laws: FloatArray, row: int
+    contacts: Contacts, k: int, nominal_time: float, delta: float, rate: float, laws: FloatArray, row: int
 ) -> None:
     """Evaluate the contact law into a row of the laws' table."""
-    phase = contacts.phase[k] + contacts.rate[k] * turned
+    phase = contacts.phase[k] + contacts.rate[k] * nominal_time
     law = tooth_force(phase, delta, rate, contacts.law, contacts.law_at[k])
     laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
     laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
 
 
 @inner()
-def penetration(contacts: Contacts, k: int, turned: float, delta: float, rank: int) -> float:
+def penetration(contacts: Contacts, k: int, nominal_time: float, delta: float, rank: int) -> float:
     """Penetration of the ``rank``-th most compressed tooth pair of a contact [m]."""
     return ranked_penetration(
-        contacts.phase[k] + contacts.rate[k] * turned, delta, contacts.law, contacts.law_at[k], rank
+        contacts.phase[k] + contacts.rate[k] * nominal_time, delta, contacts.law, contacts.law_at[k], rank
     )
 
 
 @inner()
 def evaluate_friction(
-    contacts: Contacts, k: int, turned: float, delta: float, laws: FloatArray, force: FloatArray, drag: FloatArray
+    contacts: Contacts, k: int, nominal_time: float, delta: float, laws: FloatArray, force: FloatArray, drag: FloatArray
 ) -> None:
     """Evaluate the two friction forces of a contact, and their slopes by compression and by rate (4,)."""
     row = contacts.friction_row[k]
@@ -66,7 +66,7 @@ def evaluate_friction(
     if laws[k, FORCE] > 0.0:
         by_slices = contacts.shares_at[k] >= 0
         a, b, a_slope, b_slope = friction_shares(
-            contacts.phase[k] + contacts.rate[k] * turned,
+            contacts.phase[k] + contacts.rate[k] * nominal_time,
             delta,
             contacts.law,
             contacts.shares_at[k] if by_slices else contacts.law_at[k],
@@ -82,27 +82,29 @@ def evaluate_friction(
 
 
 @inner(inline="always")
-def evaluate_forces(contacts: Contacts, bearings: Bearings, turned: float, scratch: Scratch) -> None:
+def evaluate_forces(contacts: Contacts, bearings: Bearings, nominal_time: float, scratch: Scratch) -> None:
     """Evaluate all nonlinear laws at the deflections and rates in ``scratch``: teeth, their friction, bearings.
 
     Fills in the laws' table, the force along every direction, the friction's slopes, the bearings' tangents, and the
-    energy held in the bearings.
+    energy stored in the bearings.
     """
     delta, rate, laws, push = scratch.delta, scratch.rate, scratch.laws, scratch.push
     for k in range(contacts.phase.size):
-        evaluate_contact(contacts, k, turned, delta[k], rate[k], laws, k)
+        evaluate_contact(contacts, k, nominal_time, delta[k], rate[k], laws, k)
         push[k] = laws[k, FORCE]
         if contacts.friction_row[k] >= 0:
-            evaluate_friction(contacts, k, turned, delta[k], laws, push, scratch.drag[k])
+            evaluate_friction(contacts, k, nominal_time, delta[k], laws, push, scratch.drag[k])
     if bearings.axis.size > 0:
-        evaluate_bearings(bearings, contacts.phase.size, turned, delta, push, scratch.tangents, scratch.held)
+        evaluate_bearings(
+            bearings, contacts.phase.size, nominal_time, delta, push, scratch.tangents, scratch.bearing_work
+        )
 
 
 @inner(inline="always")
 def solve_contact_forces(
     contacts: Contacts,
     bearings: Bearings,
-    turned: float,
+    nominal_time: float,
     flexibility: FloatArray,
     by_displacement: float,
     by_velocity: float,
@@ -135,7 +137,7 @@ def solve_contact_forces(
     for _ in range(_NEWTON_STEPS):
         for k in range(c):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
-        evaluate_forces(contacts, bearings, turned, scratch)
+        evaluate_forces(contacts, bearings, nominal_time, scratch)
         largest, scale = 0.0, 1e-300
         for k in range(u):
             residual[k, 0] = free[k] - delta[k]

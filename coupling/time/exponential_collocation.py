@@ -48,6 +48,14 @@ from coupling.time.speed_profile import SpeedProfile
 from coupling.time.step_matrices import kernel_arrays
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_STRETCHES, _ELEMENTS = 256, 1024  # approximate maximum between two looks at the error ...
+_FIRST_STRETCHES = 8  # ... and at first: most attempts that fail, fail there
+_SIZES = 64  # of elements with matrices of their own, besides the ladder's
+_SAME_SIZE = 1e-11  # parts of the coarsest element by which elements of one size may differ
+_MUCH_BETTER = 1e-2  # part of the tolerance below which elements may grow
+_CUTS = 400  # room for switches in a chunk, besides four for each element
 
 
 class CollocationRecord:
@@ -135,16 +143,6 @@ class CollocationRecord:
         figures = before.contact_totals.copy()
         add_contacts(trace, self.contacts, before.stored, self._room.weights[0], before.totals.copy(), figures)
         return figures
-
-
-IntArray = npt.NDArray[np.int64]
-
-_STRETCHES, _ELEMENTS = 256, 1024  # approximate maximum between two looks at the error ...
-_FIRST_STRETCHES = 8  # ... and at first: most attempts that fail, fail there
-_SIZES = 64  # of elements with matrices of their own, besides the ladder's
-_SAME_SIZE = 1e-11  # parts of the coarsest element by which elements of one size may differ
-_MUCH_BETTER = 1e-2  # part of the tolerance below which elements may grow
-_CUTS = 400  # room for switches in a chunk, besides four for each element
 
 
 def integration_method(

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from coupling.errors import DeflectionError, TransientError
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.statics.static_equilibrium import coasting_velocity, static_equilibrium
-from coupling.time.kernel_arrays import Samples
+from coupling.time.kernel_arrays import LAST_TOUCH, PEAK, Samples
 from coupling.time.settings import TransientSettings
 from coupling.time.speed_profile import SpeedProfile
 from coupling.time.step_matrices import KernelArrays, stored_energy
@@ -268,8 +268,8 @@ class Integration:
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))
         q, v = q.astype(np.float64), v.astype(np.float64)
         first = float(self.bounds(0)[1])
-        turned, rates, _ = self.profile.at(1e-7 * first)
-        stored = stored_energy(*self.arrays[:3], q, v, float(turned[0]), float(rates[0]))
+        nominal_time, rates, _ = self.profile.at(1e-7 * first)
+        stored = stored_energy(*self.arrays[:3], q, v, float(nominal_time[0]), float(rates[0]))
         energy = self.held(q, v) + stored
         return Checkpoint(
             block=0, sample=0, time=0.0, q=q, v=v, stored=stored, totals=np.zeros(5),
@@ -296,7 +296,8 @@ class Integration:
             if position < first_record < last:
                 last = first_record
             if position == first_record:
-                fresh = np.column_stack([np.zeros_like(state.contact_totals[:, :3]), state.contact_totals[:, 3]])
+                fresh = np.zeros_like(state.contact_totals)
+                fresh[:, LAST_TOUCH] = state.contact_totals[:, LAST_TOUCH]
                 state = replace(state, contact_totals=fresh)
             begin, done = float(bounds[position]), float(bounds[last])
             attempt = stepper.attempt(state, bounds[position : last + 1], step, samples)
@@ -306,7 +307,7 @@ class Integration:
                 state = self._finer(state, begin, attempt)
                 continue
             after = stepper.accept(state, done, samples)
-            self._require_possible(attempt.q, after.contact_totals[:, 2], begin, done)
+            self._require_possible(attempt.q, after.contact_totals[:, PEAK], begin, done)
             energy = self.held(attempt.q, attempt.v) + after.stored
             state = replace(
                 after,
@@ -345,7 +346,7 @@ class Integration:
         """
         for contact, peak in zip(self.system.contacts, peaks.tolist(), strict=True):
             compression = max(
-                float(contact.direction @ q) - contact.clearance, peak / contact.contact.mean_mesh_stiffness
+                float(contact.direction @ q) - contact.clearance, peak / contact.contact.unloaded_mean_mesh_stiffness
             )
             if compression > contact.compression_limit:
                 raise DeflectionError(

@@ -7,6 +7,7 @@ in all, then two for each contact with friction.
 Rolling-bearing and gap laws are plain arrays too.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -21,6 +22,19 @@ IntArray = npt.NDArray[np.int64]
 
 BY_TIME, BY_TURNING, BY_UNBALANCE = 0, 1, 2
 BALLS, ROLLERS, GAP = 0, 1, 2
+
+# Entries of a step's powers: of the loads, of the losses, of the rotation, of friction; twice the kinetic energy.
+BY_LOADS, BY_DAMPING, BY_ROTATION, BY_FRICTION, TWICE_KINETIC = 0, 1, 2, 3, 4
+# Entries of the totals: work of the loads, energy lost to damping, work of the rotation; largest kinetic energy; energy
+# that friction takes from the nominal rotation.
+LOAD_WORK, DAMPING_LOSS, ROTATION_WORK, LARGEST_KINETIC, FRICTION_LOSS = 0, 1, 2, 3, 4
+# Columns of the contacts' totals: ∫ force dt, time apart, largest force, time of the last touch.
+IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
+# Entries of the bearings' scratch row 0: stored energy, and its slope over the nominal time.
+BEARING_ENERGY, BEARING_POWER = (0, 0), (0, 1)
+
+_SHAPE = 7
+Row = tuple[int, int, tuple[float, ...], tuple[float, float], FloatArray]
 
 
 class Dynamics(NamedTuple):
@@ -60,8 +74,8 @@ class StepMatrices(NamedTuple):
     connector_stiffness: FloatArray  # (m, r, r) K_t
     connector_damping: FloatArray  # (m, r, r) C_t
     connectors: FloatArray  # (m, r, n) (B U)ᵀ, B the inverse without connectors
-    between: FloatArray  # (m, r, r) Uᵀ B U
-    link: FloatArray  # (m, r, r) (I + E Uᵀ B U)⁻¹ E, E = γ h C_t + β h² K_t
+    connector_flexibility: FloatArray  # (m, r, r) Uᵀ B U
+    woodbury: FloatArray  # (m, r, r) (I + E Uᵀ B U)⁻¹ E, E = γ h C_t + β h² K_t
     contact: FloatArray  # (m, k, n) Wᵀ = (S⁻¹ D)ᵀ
     contact_connectors: FloatArray  # (m, k, r) (Uᵀ W)ᵀ
     flexibility: FloatArray  # (m, k, k) Dᵀ W
@@ -95,7 +109,7 @@ class Bearings(NamedTuple):
     kind: IntArray  # (w,) BALLS, ROLLERS or GAP
     elements: IntArray  # (w,) number of rolling elements
     shape: FloatArray  # (w, 7) geometry and stiffness, by the kind
-    cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the turned time
+    cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the nominal time
     slices: FloatArray  # (w, slices, 2) of rollers: place and gap
 
 
@@ -105,8 +119,8 @@ class Segments(NamedTuple):
     start: FloatArray  # (s,)
     end: FloatArray  # (s,)
     steps: IntArray  # (s,)
-    kind: IntArray  # (s,) slot of the step matrices
-    turned: FloatArray  # (s, 3) s, s' and s'' at the start
+    slot: IntArray  # (s,) of the step matrices
+    nominal_time: FloatArray  # (s, 3) s, s' and s'' at the start
 
 
 class Scratch(NamedTuple):
@@ -114,27 +128,27 @@ class Scratch(NamedTuple):
 
     a: FloatArray  # (n,) accelerations at the step's start ...
     before: FloatArray  # (n,) ... and at that of the step before
-    free: FloatArray  # (n,) at its end, at last with the forces of the laws
-    q0: FloatArray  # (n,) q*
-    v0: FloatArray  # (n,) v*
+    a_end: FloatArray  # (n,) at the step's end: first without, then with the forces of the laws
+    q_predicted: FloatArray  # (n,) q*
+    v_predicted: FloatArray  # (n,) v*
     load: FloatArray  # (n,)
-    pushed: FloatArray  # (n,) loads less the resistance to q* and v*
+    unbalanced: FloatArray  # (n,) loads less the resistance to q* and v*
     x: FloatArray  # (n,) of a sample
     y: FloatArray  # (n,)
     tq: FloatArray  # (r,) projections Uᵀ of q, v, a, q* and v* ...
     tv: FloatArray  # (r,)
     ta: FloatArray  # (r,)
-    tq0: FloatArray  # (r,)
-    tv0: FloatArray  # (r,)
-    seen: FloatArray  # (r,) ... and of the accelerations at the step's end
+    tq_predicted: FloatArray  # (r,)
+    tv_predicted: FloatArray  # (r,)
+    ta_end: FloatArray  # (r,) ... and of the accelerations at the step's end
     connector_force: FloatArray  # (r,)
     response: FloatArray  # (r,)
-    linked: FloatArray  # (r,)
+    correction: FloatArray  # (r,) of the connectors' forces by their accelerations
     dq: FloatArray  # (k,) projections Dᵀ of q, v, a, q* and v*
     dv: FloatArray  # (k,)
     da: FloatArray  # (k,)
-    dq0: FloatArray  # (k,)
-    dv0: FloatArray  # (k,)
+    dq_predicted: FloatArray  # (k,)
+    dv_predicted: FloatArray  # (k,)
     push: FloatArray  # (k,) forces of the laws
     delta: FloatArray  # (e + c,) deflections and their rates, and without the laws' forces
     rate: FloatArray  # (e + c,)
@@ -148,7 +162,7 @@ class Scratch(NamedTuple):
     jacobian: FloatArray  # (e + c, e + c)
     residual: FloatArray  # (e + c, 1)
     tangents: FloatArray  # (b, 5, 5) of bearings
-    held: FloatArray  # (8, 5): `coupling.time.bearing_kernels.evaluate_bearings`
+    bearing_work: FloatArray  # (8, 5): `coupling.time.bearing_kernels.evaluate_bearings`
     powers: FloatArray  # (5,): `coupling.time.newmark.evaluate_powers`
     powers_before: FloatArray  # (5,)
     block: FloatArray  # (w,)
@@ -173,10 +187,6 @@ class Samples(NamedTuple):
     acceleration: FloatArray  # (samples, k2)
     compression: FloatArray  # (samples, c)
     force: FloatArray  # (samples, c)
-
-
-_SHAPE = 7
-Row = tuple[int, int, tuple[float, ...], tuple[float, float], FloatArray]
 
 
 def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
@@ -227,9 +237,15 @@ def _rows(law: BearingLaw, speed: float) -> Iterator[Row]:
         if isinstance(row, BallRow):
             yield BALLS, row.count, _ball_shape(row), cage, none
         else:
-            place = row.position + row.slice_places
-            shape = 0.5 * row.clearance, row.stiffness / row.slices, float(row.slices)
-            yield ROLLERS, row.count, shape, cage, np.column_stack([place, 2.0 * row.slice_drops])
+            angle = row.contact_angle
+            shape = (
+                row.free_approach,
+                row.stiffness / row.slices,
+                float(row.slices),
+                math.cos(angle),
+                row.direction * math.sin(angle),
+            )
+            yield ROLLERS, row.count, shape, cage, np.column_stack([row.tilt_arms, 2.0 * row.slice_drops])
 
 
 def _ball_shape(row: BallRow) -> tuple[float, ...]:

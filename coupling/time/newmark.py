@@ -13,7 +13,7 @@ S⁻¹ D and H = Dᵀ W only the few forces f of teeth and nonlinear bearings re
 
 δ* and δ'* being those without them, are found by Newton's method on a system as small as their number. Friction acts
 along directions of its own, columns of D whose deflections no law needs. The projections Uᵀq and Dᵀq follow the same
-recurrence as q. s is the turned time of :class:`coupling.SpeedProfile`, α = s'' the angular acceleration. With β =
+recurrence as q. s is the nominal time of :class:`coupling.SpeedProfile`, α = s'' the angular acceleration. With β =
 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear system.
 
 The step evaluates the loads at its end, adds to the energy balance (powers of loads, losses and rotation, and stored
@@ -34,13 +34,29 @@ from coupling.time.contact_kernels import (
     PHASE_SLOPE,
     evaluate_contact,
     evaluate_forces,
-    flank_deviation,
+    flank_gap,
     solve_contact_forces,
 )
 from coupling.time.dense_kernels import SUMS, add_rows, project
 from coupling.time.kernel_arrays import (
+    APART,
+    BEARING_ENERGY,
+    BEARING_POWER,
+    BY_DAMPING,
+    BY_FRICTION,
+    BY_LOADS,
+    BY_ROTATION,
     BY_TIME,
     BY_UNBALANCE,
+    DAMPING_LOSS,
+    FRICTION_LOSS,
+    IMPULSE,
+    LARGEST_KINETIC,
+    LAST_TOUCH,
+    LOAD_WORK,
+    PEAK,
+    ROTATION_WORK,
+    TWICE_KINETIC,
     Bearings,
     Contacts,
     Dynamics,
@@ -57,14 +73,14 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @inner(forceinline=True)
-def load_at(dynamics: Dynamics, time: float, turned: float, speed: float, alpha: float, out: FloatArray) -> None:
+def load_at(dynamics: Dynamics, time: float, nominal_time: float, speed: float, alpha: float, out: FloatArray) -> None:
     """All loads at a time."""
     n = out.size
     for i in range(n):
         out[i] = dynamics.constant[i] + alpha * dynamics.acceleration_load[i]
     for w in range(dynamics.frequency.size):
         frequency, follows = dynamics.frequency[w], dynamics.follows[w]
-        angle = frequency * (time if follows == BY_TIME else turned)
+        angle = frequency * (time if follows == BY_TIME else nominal_time)
         cosine, sine = math.cos(angle), math.sin(angle)
         if follows == BY_UNBALANCE:
             # (s'² - i s''/w) e^{iws}: inertia force of an eccentric mass, by differentiating twice.
@@ -94,7 +110,7 @@ def stored_in(dynamics: Dynamics, stiffness: FloatArray, scratch: Scratch) -> fl
 
     ``stiffness`` (r, r) is K_t.
     """
-    energy, tq = scratch.held[0, 0], scratch.tq
+    energy, tq = scratch.bearing_work[BEARING_ENERGY], scratch.tq
     if dynamics.connector_rates.size > 1:
         for i in range(tq.size):
             for j in range(tq.size):
@@ -133,12 +149,13 @@ def evaluate_powers(
         for i in range(tv.size):
             for j in range(tv.size):
                 lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
-    rotating = scratch.held[0, 1] * speed
+    rotating = scratch.bearing_work[BEARING_POWER] * speed
     for k in range(laws.shape[0]):
         rotating += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * scratch.slip[k]
         lost += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
     powers = scratch.powers
-    powers[0], powers[1], powers[2], powers[3], powers[4] = given, lost, rotating, 0.0, square
+    powers[BY_LOADS], powers[BY_DAMPING], powers[BY_ROTATION] = given, lost, rotating
+    powers[BY_FRICTION], powers[TWICE_KINETIC] = 0.0, square
     if scratch.push.size > scratch.delta.size:
         _add_friction(contacts, speed, scratch)
 
@@ -155,8 +172,9 @@ def _add_friction(contacts: Contacts, speed: float, scratch: Scratch) -> None:
     for k in range(contacts.friction_row.size):
         row = contacts.friction_row[k]
         if row >= 0:
-            powers[2] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
-            powers[3] += (push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]) * speed
+            powers[BY_ROTATION] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
+            sliding = push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]
+            powers[BY_FRICTION] += sliding * speed
 
 
 @inner()
@@ -167,7 +185,7 @@ def write_samples(
     number: int,
     t: float,
     h: float,
-    turned0: float,
+    nominal_time0: float,
     speed0: float,
     alpha: float,
     q: FloatArray,
@@ -180,7 +198,14 @@ def write_samples(
 
     Displacement and velocity by cubic Hermite interpolation, acceleration linear: errors below the step's own.
     """
-    q0, v0, a, a1, x, y = scratch.q0, scratch.v0, scratch.a, scratch.free, scratch.x, scratch.y
+    q_predicted, v_predicted, a, a1, x, y = (
+        scratch.q_predicted,
+        scratch.v_predicted,
+        scratch.a,
+        scratch.a_end,
+        scratch.x,
+        scratch.y,
+    )
     teeth, laws, work = contacts.direction[: contacts.phase.size], scratch.spare, scratch.delta_free
     n = q.size
     while number - samples.offset < samples.force.shape[0]:
@@ -192,7 +217,7 @@ def write_samples(
         old, slope_old = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2 * h
         new, slope_new = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0) * h
         for i in range(n):
-            q1, v1 = q0[i] + displaced * a1[i], v0[i] + moved * a1[i]
+            q1, v1 = q_predicted[i] + displaced * a1[i], v_predicted[i] + moved * a1[i]
             x[i] = old * q[i] + slope_old * v[i] + new * q1 + slope_new * v1
             y[i] = old * v[i] + slope_old * a[i] + new * v1 + slope_new * a1[i]
         project(outputs.displacement, x, samples.displacement[row])
@@ -200,13 +225,13 @@ def write_samples(
         if contacts.phase.size > 0:
             after = s * h
             speed = speed0 + alpha * after
-            turned = turned0 + after * (speed0 + 0.5 * alpha * after)
+            nominal_time = nominal_time0 + after * (speed0 + 0.5 * alpha * after)
             project(teeth, x, samples.compression[row])
             project(teeth, y, work)
             for k in range(contacts.phase.size):
-                gone, slip = flank_deviation(contacts.clearance, contacts.errors, k, turned, speed)
+                gone, slip = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
                 samples.compression[row, k] -= gone
-                evaluate_contact(contacts, k, turned, samples.compression[row, k], work[k] - slip, laws, k)
+                evaluate_contact(contacts, k, nominal_time, samples.compression[row, k], work[k] - slip, laws, k)
                 samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]
@@ -218,9 +243,6 @@ def write_samples(
 # Contacts are evaluated by this part of a segment inside its ends, so that a pair that enters or leaves exactly
 # there counts on one side only.
 INSIDE = 1e-7
-
-# Columns of the contacts' totals.
-IMPULSE, APART, PEAK, LAST_TOUCH = 0, 1, 2, 3
 
 
 @uncounted()
@@ -273,38 +295,43 @@ def newmark_steps(
     curvature, acceleration, unsettled = 0.0, 0.0, 0
     for segment in range(segments.start.size):
         t0, t1, count = segments.start[segment], segments.end[segment], segments.steps[segment]
-        turned0, speed0, alpha = segments.turned[segment, 0], segments.turned[segment, 1], segments.turned[segment, 2]
-        slot, h, inside = segments.kind[segment], (t1 - t0) / count, INSIDE * (t1 - t0)
+        nominal_time0, speed0, alpha = (
+            segments.nominal_time[segment, 0],
+            segments.nominal_time[segment, 1],
+            segments.nominal_time[segment, 2],
+        )
+        slot, h, inside = segments.slot[segment], (t1 - t0) / count, INSIDE * (t1 - t0)
         speed = speed0 + alpha * inside
-        turned = turned0 + inside * (speed0 + 0.5 * alpha * inside)
-        load_at(dynamics, t0, turned0, speed0, alpha, scratch.load)
+        nominal_time = nominal_time0 + inside * (speed0 + 0.5 * alpha * inside)
+        load_at(dynamics, t0, nominal_time0, speed0, alpha, scratch.load)
         fresh = _start_segment(
-            q, v, dynamics, contacts, bearings, matrices, slot, turned, speed, speed0 + 0.5 * alpha * (t1 - t0), alpha,
-            scratch,
+            q, v, dynamics, contacts, bearings, matrices, slot, nominal_time, speed,
+            speed0 + 0.5 * alpha * (t1 - t0), alpha, scratch,
         )  # fmt: skip
-        totals[2] += fresh - stored
+        totals[ROTATION_WORK] += fresh - stored
         stored = fresh
         for step in range(count):
             t, after = t0 + step * h, (step + 1) * h
             speed = speed0 + alpha * after
-            turned = turned0 + after * (speed0 + 0.5 * alpha * after)
-            load_at(dynamics, t0 + after, turned, speed, alpha, scratch.load)
+            nominal_time = nominal_time0 + after * (speed0 + 0.5 * alpha * after)
+            load_at(dynamics, t0 + after, nominal_time, speed, alpha, scratch.load)
             _predict(q, v, dynamics, h, scratch)
-            _free_accelerations(dynamics, matrices, slot, h, alpha, scratch)
+            _accelerations_without_contact(dynamics, matrices, slot, h, alpha, scratch)
             if step == count - 1:
                 # The last look at the teeth is just inside the segment.
                 speed = speed0 + alpha * (after - inside)
-                turned = turned0 + (after - inside) * (speed0 + 0.5 * alpha * (after - inside))
-            if not _contact_response(dynamics, contacts, bearings, matrices, slot, h, turned, speed, scratch):
+                nominal_time = nominal_time0 + (after - inside) * (speed0 + 0.5 * alpha * (after - inside))
+            if not _contact_response(dynamics, contacts, bearings, matrices, slot, h, nominal_time, speed, scratch):
                 unsettled += 1
             if samples.first + next_sample * samples.interval <= t + h:
                 before = step * h
                 next_sample = write_samples(
-                    contacts, outputs, samples, next_sample, t, h, turned0 + before * (speed0 + 0.5 * alpha * before),
-                    speed0 + alpha * before, alpha, q, v, dynamics.beta * h * h, dynamics.gamma * h, scratch,
+                    contacts, outputs, samples, next_sample, t, h,
+                    nominal_time0 + before * (speed0 + 0.5 * alpha * before), speed0 + alpha * before, alpha,
+                    q, v, dynamics.beta * h * h, dynamics.gamma * h, scratch,
                 )  # fmt: skip
             if step > 0:
-                curved, size = _curvature(dynamics.resolved, scratch.before, scratch.a, scratch.free)
+                curved, size = _curvature(dynamics.resolved, scratch.before, scratch.a, scratch.a_end)
                 curvature += curved
                 acceleration += size
             _correct(q, v, dynamics, h, scratch)
@@ -323,7 +350,7 @@ def _start_segment(
     bearings: Bearings,
     matrices: StepMatrices,
     slot: int,
-    turned: float,
+    nominal_time: float,
     speed: float,
     middle_speed: float,
     alpha: float,
@@ -340,11 +367,11 @@ def _start_segment(
     project(contacts.direction, q, dq)
     project(contacts.direction, v, dv)
     for k in range(c):
-        gone, scratch.slip[k] = flank_deviation(contacts.clearance, contacts.errors, k, turned, speed)
+        gone, scratch.slip[k] = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
         delta[k], rate[k] = dq[k] - gone, dv[k] - scratch.slip[k]
     for k in range(c, delta.size):
         delta[k] = dq[k]
-    evaluate_forces(contacts, bearings, turned, scratch)
+    evaluate_forces(contacts, bearings, nominal_time, scratch)
     for i in range(a.size):
         a[i] = scratch.load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
     blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
@@ -387,61 +414,71 @@ def _connector_forces(matrices: StepMatrices, slot: int, tq: FloatArray, tv: Flo
 def _predict(q: FloatArray, v: FloatArray, dynamics: Dynamics, h: float, scratch: Scratch) -> None:
     """Predictor q* and v*, and its projections on the directions of connectors and laws."""
     old, new = (0.5 - dynamics.beta) * h * h, (1.0 - dynamics.gamma) * h
-    q0, v0, a = scratch.q0, scratch.v0, scratch.a
+    q_predicted, v_predicted, a = scratch.q_predicted, scratch.v_predicted, scratch.a
     for i in range(q.size):
-        q0[i] = q[i] + h * v[i] + old * a[i]
-        v0[i] = v[i] + new * a[i]
+        q_predicted[i] = q[i] + h * v[i] + old * a[i]
+        v_predicted[i] = v[i] + new * a[i]
     for j in range(scratch.tq.size):
-        scratch.tq0[j] = scratch.tq[j] + h * scratch.tv[j] + old * scratch.ta[j]
-        scratch.tv0[j] = scratch.tv[j] + new * scratch.ta[j]
+        scratch.tq_predicted[j] = scratch.tq[j] + h * scratch.tv[j] + old * scratch.ta[j]
+        scratch.tv_predicted[j] = scratch.tv[j] + new * scratch.ta[j]
     for k in range(scratch.dq.size):
-        scratch.dq0[k] = scratch.dq[k] + h * scratch.dv[k] + old * scratch.da[k]
-        scratch.dv0[k] = scratch.dv[k] + new * scratch.da[k]
+        scratch.dq_predicted[k] = scratch.dq[k] + h * scratch.dv[k] + old * scratch.da[k]
+        scratch.dv_predicted[k] = scratch.dv[k] + new * scratch.da[k]
 
 
 @inner(forceinline=True)
-def _free_accelerations(
+def _accelerations_without_contact(
     dynamics: Dynamics, matrices: StepMatrices, slot: int, h: float, alpha: float, scratch: Scratch
 ) -> None:
-    """Accelerations without the forces of the laws, into ``free``, and their projections on the connectors."""
+    """Accelerations without the forces of the laws, into ``a_end``, and their projections on the connectors."""
     displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
     per_moved, ratio = 1.0 / moved, displaced / moved
-    q0, v0, pushed, free = scratch.q0, scratch.v0, scratch.pushed, scratch.free
-    for i in range(q0.size):
-        pushed[i] = scratch.load[i] - dynamics.stiffness[i] * q0[i] - dynamics.damping[i] * v0[i]
+    q_predicted, v_predicted, unbalanced, a_end = (
+        scratch.q_predicted,
+        scratch.v_predicted,
+        scratch.unbalanced,
+        scratch.a_end,
+    )
+    for i in range(q_predicted.size):
+        unbalanced[i] = scratch.load[i] - dynamics.stiffness[i] * q_predicted[i] - dynamics.damping[i] * v_predicted[i]
     blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
     if alpha != 0.0:
-        add_gyroscopic(blocks, first, size, -alpha, q0, pushed, work)
-        add_gyroscopic(blocks, first, size, ratio * alpha, v0, pushed, work)
+        add_gyroscopic(blocks, first, size, -alpha, q_predicted, unbalanced, work)
+        add_gyroscopic(blocks, first, size, ratio * alpha, v_predicted, unbalanced, work)
     # With D the diagonal of S₀ = D + (γ h s' + β h² s'') G, S₀ (a + v*/γh) = r + D v*/γh + β/γ h s'' G v* has
     # no term s' G v*: most of the gyroscopic part comes without a product of its own.
     for g in range(first.size):
         among = slice(first[g], first[g] + size[g])
-        part, rates, stiffness, damping = pushed[among], v0[among], dynamics.stiffness[among], dynamics.damping[among]
+        part, rates, stiffness, damping = (
+            unbalanced[among],
+            v_predicted[among],
+            dynamics.stiffness[among],
+            dynamics.damping[among],
+        )
         for i in range(part.size):
             part[i] += rates[i] * (per_moved + damping[i] + ratio * stiffness[i])
-    apply_base(matrices.base[slot], matrices.blocks[slot], first, size, pushed, free, work)
+    apply_base(matrices.base[slot], matrices.blocks[slot], first, size, unbalanced, a_end, work)
     for g in range(first.size):
         among = slice(first[g], first[g] + size[g])
-        part, rates = free[among], v0[among]
+        part, rates = a_end[among], v_predicted[among]
         for i in range(part.size):
             part[i] -= rates[i] * per_moved
 
-    # a = B (r - U y) - B U link (Uᵀ B (r - U y)), y the connectors' forces.
-    seen, connector_force, response = scratch.seen, scratch.connector_force, scratch.response
-    between = matrices.between[slot]
-    project(dynamics.connectors, free, seen)
-    _connector_forces(matrices, slot, scratch.tq0, scratch.tv0, scratch)
-    project(between, connector_force, response)
-    for j in range(seen.size):
-        response[j] = seen[j] - response[j]
-    project(matrices.link[slot], response, scratch.linked)
-    for j in range(seen.size):
-        connector_force[j] += scratch.linked[j]
-    add_rows(matrices.connectors[slot], connector_force, -1.0, free)
-    project(between, connector_force, response)
-    for j in range(seen.size):
-        seen[j] -= response[j]
+    # a = B (r - U y) - B U woodbury (Uᵀ B (r - U y)), y the connectors' forces.
+    ta_end, connector_force, response = scratch.ta_end, scratch.connector_force, scratch.response
+    flexibility = matrices.connector_flexibility[slot]
+    project(dynamics.connectors, a_end, ta_end)
+    _connector_forces(matrices, slot, scratch.tq_predicted, scratch.tv_predicted, scratch)
+    project(flexibility, connector_force, response)
+    for j in range(ta_end.size):
+        response[j] = ta_end[j] - response[j]
+    project(matrices.woodbury[slot], response, scratch.correction)
+    for j in range(ta_end.size):
+        connector_force[j] += scratch.correction[j]
+    add_rows(matrices.connectors[slot], connector_force, -1.0, a_end)
+    project(flexibility, connector_force, response)
+    for j in range(ta_end.size):
+        ta_end[j] -= response[j]
 
 
 @inner(forceinline=True)
@@ -452,26 +489,26 @@ def _contact_response(
     matrices: StepMatrices,
     slot: int,
     h: float,
-    turned: float,
+    nominal_time: float,
     speed: float,
     scratch: Scratch,
 ) -> bool:
     """Solve for the contact forces by Newton's iteration, with the accelerations; return whether it converged."""
     displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
-    free, da, push, delta, rate = scratch.free, scratch.da, scratch.push, scratch.delta_free, scratch.rate_free
+    a_end, da, push, delta, rate = scratch.a_end, scratch.da, scratch.push, scratch.delta_free, scratch.rate_free
     if delta.size == 0:
         return True
     c, flexibility = contacts.phase.size, matrices.flexibility[slot]
-    project(contacts.direction, free, da)
+    project(contacts.direction, a_end, da)
     for k in range(c):
-        gone, scratch.slip[k] = flank_deviation(contacts.clearance, contacts.errors, k, turned, speed)
-        delta[k] = scratch.dq0[k] + displaced * da[k] - gone
-        rate[k] = scratch.dv0[k] + moved * da[k] - scratch.slip[k]
+        gone, scratch.slip[k] = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
+        delta[k] = scratch.dq_predicted[k] + displaced * da[k] - gone
+        rate[k] = scratch.dv_predicted[k] + moved * da[k] - scratch.slip[k]
     for k in range(c, delta.size):
-        delta[k] = scratch.dq0[k] + displaced * da[k]
-    converged = solve_contact_forces(contacts, bearings, turned, flexibility, displaced, moved, scratch)
-    add_rows(matrices.contact[slot], push, -1.0, free)
-    add_rows(matrices.contact_connectors[slot], push, -1.0, scratch.seen)
+        delta[k] = scratch.dq_predicted[k] + displaced * da[k]
+    converged = solve_contact_forces(contacts, bearings, nominal_time, flexibility, displaced, moved, scratch)
+    add_rows(matrices.contact[slot], push, -1.0, a_end)
+    add_rows(matrices.contact_connectors[slot], push, -1.0, scratch.ta_end)
     for j in range(da.size):
         for k in range(push.size):
             da[j] -= flexibility[j, k] * push[k]
@@ -493,17 +530,29 @@ def _curvature(resolved: FloatArray, before: FloatArray, a: FloatArray, a1: Floa
 def _correct(q: FloatArray, v: FloatArray, dynamics: Dynamics, h: float, scratch: Scratch) -> None:
     """Corrector: the state at the step's end, and its projections on the directions of connectors and laws."""
     displaced, moved = dynamics.beta * h * h, dynamics.gamma * h
-    a, before, free, q0, v0 = scratch.a, scratch.before, scratch.free, scratch.q0, scratch.v0
+    a, before, a_end, q_predicted, v_predicted = (
+        scratch.a,
+        scratch.before,
+        scratch.a_end,
+        scratch.q_predicted,
+        scratch.v_predicted,
+    )
     for i in range(q.size):
-        before[i], a[i] = a[i], free[i]
-        q[i], v[i] = q0[i] + displaced * free[i], v0[i] + moved * free[i]
+        before[i], a[i] = a[i], a_end[i]
+        q[i], v[i] = q_predicted[i] + displaced * a_end[i], v_predicted[i] + moved * a_end[i]
     for j in range(scratch.ta.size):
-        value = scratch.seen[j]
+        value = scratch.ta_end[j]
         scratch.ta[j] = value
-        scratch.tq[j], scratch.tv[j] = scratch.tq0[j] + displaced * value, scratch.tv0[j] + moved * value
+        scratch.tq[j], scratch.tv[j] = (
+            scratch.tq_predicted[j] + displaced * value,
+            scratch.tv_predicted[j] + moved * value,
+        )
     for k in range(scratch.da.size):
         value = scratch.da[k]
-        scratch.dq[k], scratch.dv[k] = scratch.dq0[k] + displaced * value, scratch.dv0[k] + moved * value
+        scratch.dq[k], scratch.dv[k] = (
+            scratch.dq_predicted[k] + displaced * value,
+            scratch.dv_predicted[k] + moved * value,
+        )
 
 
 @inner(forceinline=True)
@@ -525,10 +574,11 @@ def _accumulate(
     evaluate_powers(
         dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
     )
-    for k in range(3):
-        totals[k] += 0.5 * h * (powers_before[k] + powers[k])
-    totals[4] += 0.5 * h * (powers_before[3] + powers[3])
-    totals[3] = max(totals[3], 0.5 * powers[4])
+    totals[LOAD_WORK] += 0.5 * h * (powers_before[BY_LOADS] + powers[BY_LOADS])
+    totals[DAMPING_LOSS] += 0.5 * h * (powers_before[BY_DAMPING] + powers[BY_DAMPING])
+    totals[ROTATION_WORK] += 0.5 * h * (powers_before[BY_ROTATION] + powers[BY_ROTATION])
+    totals[FRICTION_LOSS] += 0.5 * h * (powers_before[BY_FRICTION] + powers[BY_FRICTION])
+    totals[LARGEST_KINETIC] = max(totals[LARGEST_KINETIC], 0.5 * powers[TWICE_KINETIC])
     for k in range(powers.size):
         powers_before[k] = powers[k]
     for k in range(contacts.phase.size):

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.time.integration import Attempt, Checkpoint, timed_amplitude
-from coupling.time.kernel_arrays import Samples, Segments
+from coupling.time.kernel_arrays import LAST_TOUCH, Samples, Segments
 from coupling.time.settings import TransientOutputs, TransientSettings
 from coupling.time.speed_profile import SpeedProfile
 from coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_room
@@ -71,7 +71,7 @@ class NewmarkStepper:
 
     def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
         """Last touches up to the start of the chunk that diverged."""
-        return state.contact_totals[:, 3], begin
+        return state.contact_totals[:, LAST_TOUCH], begin
 
     def _run(self, state: Checkpoint, segments: Segments, samples: Samples) -> tuple[Checkpoint, float, float]:
         """Run the kernel on copies of what it changes."""

@@ -1,7 +1,7 @@
 """Speed profile of a run-up: speed over time, and rotation angle as time at the nominal speeds.
 
 Mesh phases, runout, unbalance and gyroscopic terms are written for steady nominal speeds. A machine that runs up or
-down turns through the same angles at other times. Its *turned time* s(t) is the time in which the machine at nominal
+down turns through the same angles at other times. Its *nominal time* s(t) is the time in which the machine at nominal
 speeds would turn through the same angle, so that all functions of the angle are functions of s, and
 
     s'  is the speed and  s''  the angular acceleration, as parts of the nominal speed.
@@ -73,10 +73,15 @@ class SpeedProfile:
         """Rows t, s, s' and s'' at the start of each piece; the first begins in the infinite past."""
         gaps = np.diff(self.times)
         slopes = np.concatenate([[0.0], np.diff(self.rates) / gaps, [0.0]])
-        turned = np.concatenate([[0.0], np.cumsum(0.5 * (self.rates[1:] + self.rates[:-1]) * gaps)])
+        nominal_time = np.concatenate([[0.0], np.cumsum(0.5 * (self.rates[1:] + self.rates[:-1]) * gaps)])
         begins = np.concatenate([self.times[:1], self.times])
         pieces = np.column_stack(
-            [begins, np.concatenate([turned[:1], turned]), np.concatenate([self.rates[:1], self.rates]), slopes]
+            [
+                begins,
+                np.concatenate([nominal_time[:1], nominal_time]),
+                np.concatenate([self.rates[:1], self.rates]),
+                slopes,
+            ]
         )
         # s = 0 at t = 0.
         pieces[:, 1] -= self._through(pieces, np.zeros(1))[0][0]
@@ -91,12 +96,12 @@ class SpeedProfile:
         """Evaluate s [s], s' and s'' [1/s] just after some times [s], shapes (m,)."""
         return self._through(self._pieces, np.atleast_1d(np.asarray(times, dtype=np.float64)))
 
-    def times_of(self, turned: FloatArray) -> FloatArray:
-        """Return times at which the turned time has given values [s], NaN where it never has, shape (m,)."""
+    def times_of(self, nominal_time: FloatArray) -> FloatArray:
+        """Return times at which the nominal time has given values [s], NaN where it never has, shape (m,)."""
         pieces = self._pieces
-        rows = pieces[1:][np.maximum(np.searchsorted(pieces[1:, 1], turned, side="right") - 1, 0)]
-        rows = np.where((turned < pieces[1, 1])[:, None], pieces[0], rows)
-        far = turned - rows[:, 1]
+        rows = pieces[1:][np.maximum(np.searchsorted(pieces[1:, 1], nominal_time, side="right") - 1, 0)]
+        rows = np.where((nominal_time < pieces[1, 1])[:, None], pieces[0], rows)
+        far = nominal_time - rows[:, 1]
         with np.errstate(invalid="ignore", divide="ignore"):
             # The root of a quadratic in the form that loses no digits where the speed hardly changes.
             root = np.sqrt(rows[:, 2] ** 2 + 2.0 * rows[:, 3] * far)

@@ -131,18 +131,18 @@ def build_steps(
                 matrices.connectors[slot, k, i] = found[i]
             project(dynamics.connectors, found, along)
             for j in range(r):
-                matrices.between[slot, j, k] = along[j]
+                matrices.connector_flexibility[slot, j, k] = along[j]
         across, link = np.eye(r), np.zeros((r, r))
         for i in range(r):
             for j in range(r):
                 e = by_velocity * damping[i, j] + by_displacement * stiffness[i, j]
                 link[i, j] = e
                 for k in range(r):
-                    across[i, k] += e * matrices.between[slot, j, k]
+                    across[i, k] += e * matrices.connector_flexibility[slot, j, k]
         solve_in_place(across, link)
         for i in range(r):
             for j in range(r):
-                matrices.link[slot, i, j] = link[i, j]
+                matrices.woodbury[slot, i, j] = link[i, j]
 
         for k in range(c):
             for i in range(n):
@@ -157,7 +157,7 @@ def build_steps(
                 for i in range(n):
                     found[i] -= matrices.connectors[slot, j, i] * held[j]
                 for i in range(r):
-                    along[i] -= matrices.between[slot, i, j] * held[j]
+                    along[i] -= matrices.connector_flexibility[slot, i, j] * held[j]
             for i in range(n):
                 matrices.contact[slot, k, i] = found[i]
             for j in range(r):

@@ -12,6 +12,7 @@ from coupling.machine.connectors import SpeedTable
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.time.condensation import common_span
 from coupling.time.kernel_arrays import (
+    BEARING_ENERGY,
     BY_TIME,
     BY_TURNING,
     BY_UNBALANCE,
@@ -78,14 +79,18 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         "jacobian": (u, u),
         "residual": (u, 1),
         "tangents": (b, 5, 5),
-        "held": (8, 5),
+        "bearing_work": (8, 5),
         "powers": (5,),
         "powers_before": (5,),
         "block": (arrays.dynamics.gyroscopic.shape[2],),
     }
-    shapes |= dict.fromkeys(("a", "before", "free", "q0", "v0", "load", "pushed", "x", "y"), (n,))
-    shapes |= dict.fromkeys(("tq", "tv", "ta", "tq0", "tv0", "seen", "connector_force", "response", "linked"), (r,))
-    shapes |= dict.fromkeys(("dq", "dv", "da", "dq0", "dv0", "push"), (k,))
+    shapes |= dict.fromkeys(
+        ("a", "before", "a_end", "q_predicted", "v_predicted", "load", "unbalanced", "x", "y"), (n,)
+    )
+    shapes |= dict.fromkeys(
+        ("tq", "tv", "ta", "tq_predicted", "tv_predicted", "ta_end", "connector_force", "response", "correction"), (r,)
+    )
+    shapes |= dict.fromkeys(("dq", "dv", "da", "dq_predicted", "dv_predicted", "push"), (k,))
     shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "force_before"), (u,))
     return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
 
@@ -143,10 +148,10 @@ def cut(cache: StepCache, profile: SpeedProfile, bounds: FloatArray, step: float
     start, end = bounds[:-1], bounds[1:]
     counts = np.maximum(np.ceil((end - start) / step - 1e-9), 2).astype(np.int64)
     cache.make_room(len(counts))
-    turned = np.column_stack(profile.at(start)).reshape(-1, 3)
-    middle = turned[:, 1] + 0.5 * turned[:, 2] * (end - start)
-    kinds = cache.kinds((end - start) / counts, middle, np.ascontiguousarray(turned[:, 2]))
-    return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, turned)
+    nominal_time = np.column_stack(profile.at(start)).reshape(-1, 3)
+    middle = nominal_time[:, 1] + 0.5 * nominal_time[:, 2] * (end - start)
+    kinds = cache.kinds((end - start) / counts, middle, np.ascontiguousarray(nominal_time[:, 2]))
+    return Segments(np.ascontiguousarray(start), np.ascontiguousarray(end), counts, kinds, nominal_time)
 
 
 def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
@@ -160,8 +165,8 @@ def _room_for_steps(arrays: KernelArrays, m: int) -> StepMatrices:
         connector_stiffness=np.zeros((m, r, r)),
         connector_damping=np.zeros((m, r, r)),
         connectors=np.zeros((m, r, n)),
-        between=np.zeros((m, r, r)),
-        link=np.zeros((m, r, r)),
+        connector_flexibility=np.zeros((m, r, r)),
+        woodbury=np.zeros((m, r, r)),
         contact=np.zeros((m, k, n)),
         contact_connectors=np.zeros((m, k, r)),
         flexibility=np.zeros((m, k, k)),
@@ -275,15 +280,21 @@ def contact_arrays(system: CoupledSystem) -> Contacts:
 
 
 def stored_energy(
-    dynamics: Dynamics, contacts: Contacts, bearings: Bearings, q: FloatArray, v: FloatArray, turned: float, rate: float
+    dynamics: Dynamics,
+    contacts: Contacts,
+    bearings: Bearings,
+    q: FloatArray,
+    v: FloatArray,
+    nominal_time: float,
+    rate: float,
 ) -> float:
     """Energy in teeth, nonlinear bearings and connectors that change with the speed [J], as in the kernel.
 
     Parameters
     ----------
     q, v : ndarray, shape (n,)
-    turned : float
-        Turned time s [s].
+    nominal_time : float
+        Nominal time s [s].
     rate : float
         s'.
     """
@@ -291,13 +302,13 @@ def stored_energy(
     c = contacts.phase.size
     delta, moved = contacts.direction @ q, contacts.direction[:c] @ v
     amplitude, w, phase = np.moveaxis(contacts.errors, 2, 0)
-    angle = w * turned + phase
+    angle = w * nominal_time + phase
     delta[:c] -= contacts.clearance + (amplitude * np.cos(angle)).sum(axis=1)
     moved += (amplitude * w * rate * np.sin(angle)).sum(axis=1)
     if c > 0:
-        energy += _of_teeth(contacts, delta, moved, turned)
+        energy += _of_teeth(contacts, delta, moved, nominal_time)
     if bearings.axis.size > 0:
-        energy += _of_bearings(bearings, c, delta, turned)
+        energy += _of_bearings(bearings, c, delta, nominal_time)
     return float(energy)
 
 
@@ -308,20 +319,20 @@ def _of_connectors(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
     return float(0.5 * deflection @ law.at(rate)[0] @ deflection)
 
 
-def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, turned: float) -> float:
+def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, nominal_time: float) -> float:
     from coupling.gears.contact.tooth_force_kernels import tooth_force
 
     energy = 0.0
     for k, at in enumerate(contacts.law_at):
-        phase = contacts.phase[k] + contacts.rate[k] * turned
+        phase = contacts.phase[k] + contacts.rate[k] * nominal_time
         energy += tooth_force(phase, delta[k], moved[k], contacts.law, at)[3]
     return energy
 
 
-def _of_bearings(bearings: Bearings, first: int, delta: FloatArray, turned: float) -> float:
+def _of_bearings(bearings: Bearings, first: int, delta: FloatArray, nominal_time: float) -> float:
     """Energy of the nonlinear part of the bearings' forces."""
     from coupling.time.bearing_kernels import evaluate_bearings
 
-    tangents, held = np.zeros((bearings.preload.size, 5, 5)), np.zeros((8, 5))
-    evaluate_bearings(bearings, first, turned, delta, np.zeros_like(delta), tangents, held)
-    return float(held[0, 0])
+    tangents, room = np.zeros((bearings.preload.size, 5, 5)), np.zeros((8, 5))
+    evaluate_bearings(bearings, first, nominal_time, delta, np.zeros_like(delta), tangents, room)
+    return float(room[BEARING_ENERGY])

@@ -26,6 +26,7 @@ from coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from coupling.time.condensation import condensed
 from coupling.time.exponential_collocation import CollocationStepper, exact_part
 from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint, Integration, sample_times
+from coupling.time.kernel_arrays import APART, IMPULSE, PEAK
 from coupling.time.newmark_stepper import NewmarkStepper
 from coupling.time.settings import RECORDED, MotionRecord, TransientOutputs, TransientSettings
 from coupling.time.speed_profile import SpeedProfile
@@ -33,6 +34,11 @@ from coupling.time.step_matrices import empty_samples
 
 if TYPE_CHECKING:
     import xarray as xr
+
+FloatArray = npt.NDArray[np.float64]
+
+ENERGY_BOUND = 1e-2
+_ROUNDING = 1e-9  # part of the stored energy that is rounding in a balance
 
 
 def fingerprint(*parts: object) -> str:
@@ -72,9 +78,6 @@ def _feed(total: "hashlib._Hash", part: object) -> None:
         _feed(total, [(field.name, getattr(part, field.name)) for field in fields(part)])
     else:
         raise TypeError(f"a {type(part).__name__} has no fingerprint")
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,10 +187,6 @@ def _samples_until(settings: TransientSettings, end: float, first: int, total: i
     """Room for the samples up to the end of a block: rounding may let one more or less fall into it."""
     upto = int(np.ceil((end - settings.record_from) / settings.sample_interval)) + 2
     return min(max(upto - first, 0), total - first)
-
-
-ENERGY_BOUND = 1e-2
-_ROUNDING = 1e-9  # part of the stored energy that is rounding in a balance
 
 
 @dataclass(frozen=True)
@@ -320,9 +319,9 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
         )
     span = settings.duration - settings.record_from
     return TransientFigures(
-        mean_force=end.contact_totals[:, 0] / span,
-        peak_force=end.contact_totals[:, 2],
-        contact_loss=end.contact_totals[:, 1] / span,
+        mean_force=end.contact_totals[:, IMPULSE] / span,
+        peak_force=end.contact_totals[:, PEAK],
+        contact_loss=end.contact_totals[:, APART] / span,
         energy=balance,
         steps=end.steps,
         rejected=end.rejected,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.case import Case, CaseError, Problem, bundled_case, bundled_cases
+from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files
 from gearwhine.output import staging
 from gearwhine.output.sections import Column, Document, Section, table_of
 from gearwhine.progress import Progress, silent
@@ -51,24 +51,25 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
-    """Copy a bundled case into a folder; a file of that name there is left alone."""
+    """Copy a bundled case into a folder, with the files that it reads; none of their names may stand there yet."""
     known = ", ".join(bundled_cases())
-    source = bundled_case(name) if name is not None else None
-    if source is None:
+    sources = bundled_files(name) if name is not None else ()
+    if not sources:
         raise CaseError([Problem("examples copy", name, f"one of: {known}")])
-    target = folder / source.name
-    if target.exists():
-        raise CaseError([Problem("examples copy", str(target), "a place where no file of that name stands yet")])
-    content = source.read_text(encoding="utf-8")
+    taken = [str(folder / source.name) for source in sources if (folder / source.name).exists()]
+    if taken:
+        expected = "a place where no file of that name stands yet"
+        raise CaseError([Problem("examples copy", target, expected) for target in taken])
     with staging(folder) as place:
-        (place / source.name).write_text(content, encoding="utf-8")
-    return {"folder": str(folder), "files": [source.name]}
+        for source in sources:
+            (place / source.name).write_bytes(source.read_bytes())
+    return {"folder": str(folder), "files": [source.name for source in sources]}
 
 
 def report_case(case: Case, folder: Path) -> dict[str, Any]:
     """Write the results in a folder as one HTML page, which marks those that no longer fit the case."""
     from gearwhine.output.html import report_page
-    from gearwhine.results.chapters import chapters_of
+    from gearwhine.results import chapters_of
 
     page = report_page(folder, chapters_of, case)
     with staging(folder) as place:

@@ -1,6 +1,6 @@
 """Analyses of the housing: its mesh, its natural modes, and these beside measured ones."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,19 +10,32 @@ from gearwhine.from_case import mesh_health
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from gearwhine.results.comparison import COMPARISON, comparison_document, responses_document, survey_document
-from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison, write_response_correlation
+from gearwhine.results.comparison import (
+    COMPARISON,
+    comparison_document,
+    responses_document,
+    survey_document,
+    write_comparison,
+    write_response_correlation,
+)
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
-from gearwhine.solve import survey_plan
-from gearwhine.solve.comparison import ResponseCorrelation, compare_responses_document, compare_with_survey
+from gearwhine.solve.comparison import (
+    ResponseCorrelation,
+    compare_responses_document,
+    compare_with_survey,
+    plan_housing,
+    write_plan,
+)
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from housing.correlation.comparison import Comparison
 from meshes import Mesh
 
 if TYPE_CHECKING:
-    from gearwhine.solve.survey_plan import PlannedSurvey
+    from matplotlib.figure import Figure
+
+    from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.updating import SolvedUpdate
 
 
@@ -142,13 +155,18 @@ def compare(
         if isinstance(likeness, ResponseCorrelation):
             write_response_correlation(place, likeness)
 
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_comparison_figures
+
+        return draw_comparison_figures(case.title, comparison, solved.modes.frequencies, geometry)
+
     return Result(
         "compare",
         case,
         comparison,
         document | origin_document(solved),
         _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(case)),
-        _figures=lambda progress: draw_comparison_figures(case.title, comparison, solved.modes.frequencies, geometry),
+        _figures=figures,
         _files=files,
         _housing=solved,
         _data_file="comparison.nc",
@@ -186,10 +204,10 @@ def survey(
 
     solved = _solved(case, "survey", housing, folder, progress, fresh=fresh)
     progress(f"choosing {sensors} sensors")
-    planned = survey_plan.plan_housing(case, solved, sensors, modes)
+    planned = plan_housing(case, solved, sensors, modes)
 
     def files(place: Path, *, pictures: bool) -> None:
-        survey_plan.write_plan(place, planned)
+        write_plan(place, planned)
 
     return Result("survey", case, planned, plan_document(planned, solved), _files=files, _housing=solved)
 

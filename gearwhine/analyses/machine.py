@@ -6,12 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, swept_keys
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import basis_error, solve_machine
+from gearwhine.case import Case, require, swept_keys
+from gearwhine.from_case.machine import basis_error, solve_machine, solve_pairs
 from gearwhine.mode_pictures import draw_deflection
 from gearwhine.output.dataset import labelled
-from gearwhine.output.warnings import add_warnings, joined, warning
+from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
@@ -19,9 +18,8 @@ from gearwhine.results.operating_point import LOAD, load_document
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.steady_state import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
-from gearwhine.solve import relief_aims
 from gearwhine.solve.coupled_system import SolvedSystem, solve_system
-from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, solve_over_torques
+from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.operating_point import SolvedLoad, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import add_uncertainty, machine_warnings, unstable_modes_warnings
@@ -91,8 +89,9 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
     CaseError, coupling.gears.GearError
         Where the case has no gear pairs, or one cannot be solved as it stands.
     """
-    loaded = solve_gears(case, progress)
-    aims = relief_aims.relief_aims(case, loaded, progress, folder=folder)
+    require(case, "gear_pair", command="gears")
+    loaded = solve_pairs(case, None, progress)
+    aims = relief_aims(case, loaded, progress, folder=folder)
     pairs = solve_over_torques(analyse_pairs(case, loaded), progress, aims)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":

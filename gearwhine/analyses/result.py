@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from gearwhine.case import Case
 from gearwhine.output import COMMANDS, finite, json_text, staging
+from gearwhine.output.quantity import add_warnings
 from gearwhine.output.store import store_results
-from gearwhine.output.warnings import add_warnings
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:

@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine
+from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine, solve_pairs
 from gearwhine.mode_pictures import draw_modes
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
-from gearwhine.output.warnings import add_warnings, joined
+from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.progress import Progress, silent
-from gearwhine.results.comparison import comparison_document
-from gearwhine.results.comparison_files import draw_comparison_figures, write_comparison
+from gearwhine.results.comparison import comparison_document, write_comparison
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
 from gearwhine.results.rotors import ROTORS, rotors_document
@@ -99,13 +97,15 @@ def run(
 
     begin = time.perf_counter()
     rotors = solve_rotors(case, progress) if case.rotor else ()
-    pairs = solve_gears(case, progress) if case.gear_pair else ()
-    analysed = analyse_pairs(case, pairs)
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     timed("housing", begin)
+    begin = time.perf_counter()
+    pairs = solve_pairs(case, housing, progress)
+    analysed = analyse_pairs(case, pairs)
+    timed("rotors_and_gears", begin - seconds["rotors_and_gears"])
     if rotors:
         document = joined(document, rotors_document(rotors))
     if pairs:
@@ -288,4 +288,4 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
     if solved.run_signature is not None:
         yield from figures.draw_run(case, solved.run_signature, solved.housing)
     if solved.housing is not None and solved.comparison is not None:
-        yield from draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)
+        yield from figures.draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)

@@ -6,6 +6,7 @@ estimated. Attributes are named as the keys and are in SI.
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -40,9 +41,19 @@ if TYPE_CHECKING:
 
     from coupling import GapLaw
     from rotors import Pedestal as BuiltPedestal
-    from rotors.rolling_bearings import BallRow, RollerRow, RollingBearing
+    from rotors.rolling_bearings import RollingBearing, Row
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
+CatalogueType = Literal[
+    "deep-groove",
+    "angular-contact",
+    "double-row-angular-contact",
+    "four-point",
+    "self-aligning-ball",
+    "cylindrical-roller",
+    "tapered-roller",
+    "spherical-roller",
+]
 
 _ContactAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, below=1.57)]
 _Groove = Annotated[float, Quantity(units.RATIO, above=0.5, at_most=1.0)]
@@ -71,28 +82,94 @@ class Stop(Table):
         return GapLaw(self.force, self.depth, self.exponent, self.gap)
 
 
+class Mounting(Table):
+    """Fits and temperatures of a bearing, by which `clearance`, then that before mounting, changes [m, K].
+
+    `inner_interference` on the shaft and `outer_interference` in the housing are diametral, of the cold parts, less
+    `smoothing` of the surfaces; the shaft is hollow by `shaft_bore`, the housing a ring to `housing_diameter`, thick
+    where none is given. `..._rise` is a temperature over that of the sizes: of shaft and housing that of their rings
+    unless given. The shaft is of steel. `bore` and `outer_diameter` are the bearing's, where no catalogue has them.
+    """
+
+    inner_interference: Length = 0.0
+    outer_interference: Length = 0.0
+    smoothing: LengthFromZero = 0.0
+    shaft_bore: LengthFromZero = 0.0
+    housing_diameter: PositiveLength | None = None
+    housing_modulus: Annotated[float, Quantity(units.STRESS, above=0.0)] = 210e9
+    housing_poisson_ratio: Annotated[float, Quantity(units.RATIO, above=-1.0, at_most=0.5)] = 0.3
+    housing_expansion: Annotated[float, Quantity(units.EXPANSION, at_least=0.0)] = 11.7e-6
+    inner_rise: Annotated[float, Quantity(units.TEMPERATURE)] = 0.0
+    outer_rise: Annotated[float, Quantity(units.TEMPERATURE)] = 0.0
+    shaft_rise: Annotated[float, Quantity(units.TEMPERATURE)] | None = None
+    housing_rise: Annotated[float, Quantity(units.TEMPERATURE)] | None = None
+    bore: PositiveLength | None = None
+    outer_diameter: PositiveLength | None = None
+
+    def operating_clearance(self, row: Row, clearance: float, bore: float, outer_diameter: float) -> float:
+        """Diametral clearance in operation of a row in a bearing of these diameters [m]."""
+        from rotors.rolling_bearings import RingFit, operating_clearance
+
+        inner_rise, outer_rise = self.inner_rise, self.outer_rise
+        height = row.element_diameter * math.cos(row.contact_angle)
+        shaft = RingFit(
+            self.inner_interference,
+            self.shaft_bore,
+            self.smoothing,
+            temperature_rise=inner_rise if self.shaft_rise is None else self.shaft_rise,
+        )
+        housing = RingFit(
+            self.outer_interference,
+            self.housing_diameter or 0.0,
+            self.smoothing,
+            self.housing_modulus,
+            self.housing_poisson_ratio,
+            self.housing_expansion,
+            outer_rise if self.housing_rise is None else self.housing_rise,
+        )
+        return operating_clearance(
+            clearance,
+            bore,
+            row.pitch_diameter - height,
+            row.pitch_diameter + height,
+            outer_diameter,
+            shaft=shaft,
+            housing=housing,
+            inner_rise=inner_rise,
+            outer_rise=outer_rise,
+        ).clearance
+
+
 class _Mounted(Table):
     """Mounting of a bearing: clearance, preload and arrangement of rows [m, N].
 
-    `clearance` is diametral and in running; a negative one is an interference. `preload` is axial: of a single row a
-    spring's force on the shaft along `carries`, of two rows the force with which they press each other. `carries` is
-    the way in which an axial force of the shaft presses the balls of a single row, or of two in tandem. `law`: whether
-    it is the linear one about its load in the transient, or that of every element with its play as they go round.
-    `dynamic_rating` is the maker's C, for the rated life.
+    `clearance` is diametral and in running, or before mounting with `mounting`; a negative one is an interference.
+    `preload` is axial: of a single row a spring's force on the shaft along `carries`, of two rows the force with which
+    they press each other. `carries` is the way in which an axial force of the shaft presses the elements of a single
+    row, or of two in tandem; `axial_offset` moves the inner ring that way at assembly, against another bearing.
+    `law`: whether it is the linear one about its load in the transient, or that of every element with its play as they
+    go round. `dynamic_rating` and `static_rating` are the maker's C and C0 of the whole bearing, for the rated life and
+    for an inside that is estimated. `flanges` let cylindrical rollers carry axial load, by `flange_stiffness` each.
     """
 
     law: Literal["linear", "nonlinear"] = "linear"
     clearance: Length = 0.0
+    mounting: Mounting | None = None
     preload: Annotated[float, Quantity(units.FORCE, at_least=0.0)] = 0.0
+    axial_offset: Length = 0.0
     carries: Literal["+z", "-z"] = "+z"
     arrangement: Arrangement = "single"
     spacing: PositiveLength | None = None
     dynamic_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
+    static_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
+    flanges: Literal["none", "one", "both"] = "none"
+    flange_stiffness: PositiveStiffness | None = None
+    axial_clearance: LengthFromZero = 0.0
 
     @property
     def pressed(self) -> bool:
         """Whether its elements are pressed without any load of the shaft."""
-        return self.preload > 0.0 or self.clearance < 0.0
+        return self.preload > 0.0 or self.clearance < 0.0 or self.axial_offset > 0.0
 
     @model_validator(mode="after")
     def _arranged(self) -> _Mounted:
@@ -100,18 +177,38 @@ class _Mounted(Table):
             raise wrong("the distance between the two rows", "spacing")
         if self.arrangement == "single" and self.spacing is not None:
             raise wrong("nothing: a single row has no spacing", "spacing")
-        if self.preload > 0.0 and self.rolls_on_cylinders:
-            raise wrong("nothing: cylindrical rollers carry no axial load", "preload")
-        if self.arrangement != "single" and self.rolls_on_cylinders:
+        cylinders = self.kind == "cylindrical-roller"
+        if cylinders and self.flanges == "none":
+            for key in ("preload", "axial_offset"):
+                if getattr(self, key) != 0.0:
+                    raise wrong("nothing: cylindrical rollers carry no axial load without flanges", key)
+        if self.arrangement != "single" and cylinders:
             raise wrong("'single': two rows of rollers are one of twice the length", "arrangement")
+        if self.arrangement != "single" and self.kind in _BOTH_WAYS:
+            raise wrong(f"'single': a {self.kind} bearing carries axial load both ways by itself", "arrangement")
+        if self.axial_offset != 0.0 and self.arrangement != "single":
+            raise wrong("nothing: two rows have the preload between them", "axial_offset")
+        if self.flanges != "none" and not cylinders:
+            raise wrong("nothing: only cylindrical rollers run between flanges", "flanges")
+        if (self.flanges == "none") != (self.flange_stiffness is None):
+            expected = "nothing without flanges" if self.flanges == "none" else "of each roller between its flanges"
+            raise wrong(expected, "flange_stiffness")
+        if self.law == "nonlinear" and (self.flanges != "none" or self.kind == "four-point"):
+            kind = "four-point balls" if self.kind == "four-point" else "rollers between flanges"
+            raise wrong(f"'linear': {kind} have no law in the transient", "law")
         return self
 
     @property
-    def rolls_on_cylinders(self) -> bool:
-        """Whether its elements are cylindrical rollers, which carry no axial load."""
+    def kind(self) -> CatalogueType:
+        """Type of the bearing by its elements."""
         raise NotImplementedError
 
-    def build_row(self) -> BallRow | RollerRow:
+    @property
+    def width(self) -> float:
+        """Of the bearing, as far as the places of its rows follow from it [m]."""
+        return 0.0
+
+    def build_row(self) -> Row:
         """One row of rolling elements."""
         raise NotImplementedError
 
@@ -123,92 +220,171 @@ class _Mounted(Table):
         rotors.RotorError
             Where there is no such bearing.
         """
-        from rotors.rolling_bearings import BallRow, RollerRow, RollingBearing, paired
+        from dataclasses import replace
+
+        from rotors.rolling_bearings import RollerRow, RollingBearing, paired, standing_rows
 
         row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"
-        if isinstance(row, RollerRow):
-            return RollingBearing([row], name=label)
-        if self.arrangement == "single":
-            return RollingBearing([row.facing(sense)], sense * self.preload, label)
+        changes: dict[str, Any] = {"axial_offset": self.axial_offset}
+        if self.mounting is not None:
+            bore, outer_diameter = self._rings(self.mounting)
+            changes["clearance"] = self.mounting.operating_clearance(row, self.clearance, bore, outer_diameter)
+        if isinstance(row, RollerRow) and self.flange_stiffness is not None:
+            changes["flanges"], changes["flange_stiffness"] = self.flanges, self.flange_stiffness
+            changes["axial_clearance"] = self.axial_clearance
+        row = replace(row, **changes)
+        rows = standing_rows(self.kind, row, self.width)
+        if len(rows) == 2 or self.arrangement == "single":
+            rows = rows if len(rows) == 2 else (row.facing(sense),)
+            return RollingBearing(rows, sense * self.preload, label)
         assert self.spacing is not None
         if self.arrangement == "tandem":
             pair = paired(row, "tandem", self.spacing)
-            rows = [one.facing(sense) for one in pair.rows if isinstance(one, BallRow)]
-            return RollingBearing(rows, sense * self.preload, label)
+            return RollingBearing([one.facing(sense) for one in pair.rows], sense * self.preload, label)
         return paired(row, self.arrangement, self.spacing, preload=self.preload, name=label)
+
+    def _rings(self, mounting: Mounting) -> tuple[float, float]:
+        """Bore and outer diameter of the bearing [m]."""
+        raise NotImplementedError
+
+
+# Types of two rows, and those whose one row carries axial load both ways.
+_BOTH_WAYS = ("spherical-roller", "self-aligning-ball", "double-row-angular-contact", "four-point")
+
+Element = Literal["ball", "four-point-ball", "self-aligning-ball", "roller", "tapered-roller", "spherical-roller"]
+
+_KINDS: dict[str, CatalogueType] = {
+    "four-point-ball": "four-point",
+    "self-aligning-ball": "self-aligning-ball",
+    "roller": "cylindrical-roller",
+    "tapered-roller": "tapered-roller",
+    "spherical-roller": "spherical-roller",
+}
 
 
 class RollingGeometry(_Mounted):
-    """A rolling bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter."""
+    """A rolling bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter.
 
-    element: Literal["ball", "roller"] = "ball"
+    `count` is of one row; "spherical-roller" and "self-aligning-ball" have two. `contact_angle` is that at the outer
+    ring; `osculation` the contour radius of spherical rollers over that of their raceways.
+    """
+
+    element: Element = "ball"
     count: Annotated[int, Whole(3, 500)]
     element_diameter: PositiveLength
     element_length: PositiveLength | None = None
     pitch_diameter: PositiveLength
     contact_angle: _ContactAngle = 0.0
-    inner_groove: _Groove = 0.52
-    outer_groove: _Groove = 0.53
-    profile: Literal["straight", "logarithmic"] = "logarithmic"
+    inner_groove: _Groove | None = None
+    outer_groove: _Groove | None = None
+    profile: Literal["straight", "logarithmic"] | None = None
+    osculation: Annotated[float, Quantity(units.RATIO, above=0.0, below=1.0)] | None = None
 
     @model_validator(mode="after")
     def _fits(self) -> RollingGeometry:
         if self.element_diameter >= self.pitch_diameter:
             raise wrong("rolling elements smaller than their pitch circle", "element_diameter")
-        if self.element == "roller" and self.element_length is None:
+        rollers, angled = self.element.endswith("roller"), self.contact_angle != 0.0
+        if rollers and self.element_length is None:
             raise wrong("the length of the rollers", "element_length")
-        if self.element == "ball" and self.element_length is not None:
+        if not rollers and self.element_length is not None:
             raise wrong("nothing: balls have no length", "element_length")
-        if self.element == "roller" and self.contact_angle != 0.0:
-            raise wrong("nothing, or 0: rollers are cylindrical", "contact_angle")
+        if self.element == "roller" and angled:
+            raise wrong('nothing, or 0: rollers are cylindrical; element = "tapered-roller" has one', "contact_angle")
+        if self.element in ("tapered-roller", "four-point-ball", "self-aligning-ball") and not angled:
+            raise wrong(f"more than 0, the contact angle of a {self.element}", "contact_angle")
+        for key in ("inner_groove", "outer_groove"):
+            if getattr(self, key) is not None and rollers:
+                raise wrong("nothing: only balls run in grooves", key)
+        if self.outer_groove is not None and self.element == "self-aligning-ball":
+            raise wrong("nothing: the outer raceway is a sphere about the bearing's centre", "outer_groove")
+        if self.profile is not None and self.element not in ("roller", "tapered-roller"):
+            raise wrong("nothing: only cylindrical and tapered rollers have such a profile", "profile")
+        if self.osculation is not None and self.element != "spherical-roller":
+            raise wrong("nothing: only spherical rollers have a contour", "osculation")
+        if self.mounting is not None:
+            for key in ("bore", "outer_diameter"):
+                if getattr(self.mounting, key) is None:
+                    raise wrong(f"the {key.replace('_', ' ')} of the bearing", "mounting", key)
         return self
 
     @property
-    def rolls_on_cylinders(self) -> bool:
-        """Whether its elements are cylindrical rollers."""
-        return self.element == "roller"
+    def kind(self) -> CatalogueType:
+        """Type of the bearing by its elements; a ball's angle tells deep grooves from angular contact."""
+        return _KINDS.get(self.element, "angular-contact" if self.contact_angle > 0.0 else "deep-groove")
 
-    def build_row(self) -> BallRow | RollerRow:
+    def build_row(self) -> Row:
         """One row of balls or rollers."""
-        from rotors.rolling_bearings import BallRow, RollerRow
+        from rotors.rolling_bearings import (
+            BallRow,
+            FourPointRow,
+            RollerRow,
+            SphericalRollerRow,
+            TaperedRollerRow,
+            spherical_groove,
+        )
 
-        if self.element == "roller":
-            assert self.element_length is not None
-            return RollerRow(
-                self.count,
-                self.element_diameter,
-                self.element_length,
-                self.pitch_diameter,
-                clearance=self.clearance,
-                profile=self.profile,
-            )
-        return BallRow(
+        if self.element_length is not None:
+            size = (self.count, self.element_diameter, self.element_length, self.pitch_diameter, self.clearance)
+            profile = self.profile or "logarithmic"
+            if self.element == "roller":
+                return RollerRow(*size, profile=profile)
+            if self.element == "tapered-roller":
+                return TaperedRollerRow(*size, profile=profile, angle=self.contact_angle)
+            return SphericalRollerRow(*size, angle=self.contact_angle, osculation=self.osculation or 0.98)
+        aligning = self.element == "self-aligning-ball"
+        sphere = spherical_groove(self.element_diameter, self.pitch_diameter, self.contact_angle)
+        make = FourPointRow if self.element == "four-point-ball" else BallRow
+        return make(
             self.count,
             self.element_diameter,
             self.pitch_diameter,
             self.contact_angle,
-            self.inner_groove,
-            self.outer_groove,
+            self.inner_groove or (0.53 if aligning else 0.52),
+            sphere if aligning else self.outer_groove or 0.53,
             self.clearance,
         )
 
+    def _rings(self, mounting: Mounting) -> tuple[float, float]:
+        assert mounting.bore is not None
+        assert mounting.outer_diameter is not None
+        return mounting.bore, mounting.outer_diameter
+
 
 class Catalogue(Table):
-    """Main dimensions of a catalogue [m, rad]; the inside is estimated."""
+    """Main dimensions of a catalogue [m, rad]; the inside is estimated.
 
-    type: Literal["deep-groove", "angular-contact", "cylindrical-roller"]
+    `axial_factor` is the catalogue's Y of tapered or Y1 of spherical rollers, in place of their contact angle.
+    """
+
+    type: CatalogueType
     bore: PositiveLength
     outer_diameter: PositiveLength
     width: PositiveLength
     contact_angle: _ContactAngle | None = None
+    axial_factor: Annotated[float, Quantity(units.RATIO, above=0.0)] | None = None
 
     @model_validator(mode="after")
     def _is_a_ring(self) -> Catalogue:
         if self.outer_diameter <= self.bore:
             raise wrong(f"more than the bore of {self.bore:g} m", "outer_diameter")
-        if self.contact_angle is not None and self.type != "angular-contact":
-            raise wrong("nothing: only angular-contact bearings have one", "contact_angle")
+        if self.contact_angle is not None and self.type in ("deep-groove", "cylindrical-roller"):
+            raise wrong(f"nothing: a {self.type} bearing has none", "contact_angle")
+        if self.axial_factor is not None and self.type not in _AXIAL_FACTORS:
+            raise wrong("nothing: only tapered and spherical rollers have their angle from it", "axial_factor")
+        if self.axial_factor is not None and self.contact_angle is not None:
+            raise wrong("nothing beside contact_angle", "axial_factor")
         return self
+
+    @property
+    def angle(self) -> float | None:
+        """Contact angle, where it is given or follows from a factor: cot α = Y/0.4 or Y1/0.45 by ISO 281 [rad]."""
+        if self.axial_factor is None:
+            return self.contact_angle
+        return math.atan(_AXIAL_FACTORS[self.type] / self.axial_factor)
+
+
+_AXIAL_FACTORS = {"tapered-roller": 0.4, "spherical-roller": 0.45}
 
 
 class RollingCatalogue(_Mounted):
@@ -216,17 +392,43 @@ class RollingCatalogue(_Mounted):
 
     catalogue: Catalogue
 
-    @property
-    def rolls_on_cylinders(self) -> bool:
-        """Whether its elements are cylindrical rollers."""
-        return self.catalogue.type == "cylindrical-roller"
+    @model_validator(mode="after")
+    def _has_rings(self) -> RollingCatalogue:
+        for key in ("bore", "outer_diameter"):
+            if self.mounting is not None and getattr(self.mounting, key) is not None:
+                raise wrong("nothing: the catalogue has it", "mounting", key)
+        return self
 
-    def build_row(self) -> BallRow | RollerRow:
-        """One row, its inside estimated from the main dimensions."""
+    @property
+    def kind(self) -> CatalogueType:
+        """Type of the bearing in the catalogue."""
+        return self.catalogue.type
+
+    @property
+    def width(self) -> float:
+        """Of the bearing [m]."""
+        return self.catalogue.width
+
+    def build_row(self) -> Row:
+        """One row, its inside estimated from the main dimensions and ratings."""
         from rotors.rolling_bearings import catalogue_row
 
-        sizes = self.catalogue.model_dump(exclude={"type"})
-        return catalogue_row(self.catalogue.type, **sizes, clearance=self.clearance)
+        size = self.catalogue
+        # The ratings of a pair say nothing certain of a single row.
+        single = self.arrangement == "single"
+        return catalogue_row(
+            size.type,
+            size.bore,
+            size.outer_diameter,
+            size.width,
+            contact_angle=size.angle,
+            clearance=self.clearance,
+            dynamic=self.dynamic_rating if single and self.static_rating is not None else None,
+            static=self.static_rating if single else None,
+        )
+
+    def _rings(self, mounting: Mounting) -> tuple[float, float]:
+        return self.catalogue.bore, self.catalogue.outer_diameter
 
 
 def _form(value: Any) -> str:
@@ -314,7 +516,7 @@ _DAMPINGS = (units.DAMPING, units.COUPLED_DAMPING, units.TILT_DAMPING)
 
 
 def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> MatrixRows:
-    """Validate a 5×5 matrix of quantities over (x, y, z, tilt about x, tilt about y), none negative on its diagonal."""
+    """Validate a 5x5 matrix of quantities over (x, y, z, tilt about x, tilt about y), none negative on its diagonal."""
     rows = value if isinstance(value, (list, tuple)) else ()
     if len(rows) != 5 or any(not isinstance(row, (list, tuple)) or len(row) != 5 for row in rows):
         raise wrong("five rows of five, over x, y, z and the tilts about x and y")
@@ -328,7 +530,7 @@ def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> M
 
 
 class _Matrix(Table):
-    """A 5×5 matrix over (x, y, z, tilt about x, tilt about y)."""
+    """A 5x5 matrix over (x, y, z, tilt about x, tilt about y)."""
 
     matrix: MatrixRows
 
@@ -340,7 +542,7 @@ class _Matrix(Table):
 
 
 class MatrixStiffness(_Matrix):
-    """A 5×5 stiffness over (x, y, z, tilt about x, tilt about y): N/m, N/rad and N m/rad."""
+    """A 5x5 stiffness over (x, y, z, tilt about x, tilt about y): N/m, N/rad and N m/rad."""
 
     @field_validator("matrix", mode="before")
     @classmethod
@@ -349,7 +551,7 @@ class MatrixStiffness(_Matrix):
 
 
 class MatrixDamping(_Matrix):
-    """A 5×5 damping over (x, y, z, tilt about x, tilt about y): N s/m, N s/rad and N m s/rad."""
+    """A 5x5 damping over (x, y, z, tilt about x, tilt about y): N s/m, N s/rad and N m s/rad."""
 
     @field_validator("matrix", mode="before")
     @classmethod
@@ -415,10 +617,12 @@ class Bearing(Table):
         depends = isinstance(self.stiffness, RollingStiffness | StopStiffness)
         if self.load is not None and not depends:
             raise wrong("nothing: only the stiffness of a rolling bearing or a stop depends on its load", "load")
-        if isinstance(self.stiffness, RollingStiffness) and self.load is None and not self.stiffness.rolling.pressed:
-            expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
-            raise wrong(expected, "load")
         return self
+
+    @property
+    def lacks_load(self) -> bool:
+        """Whether it is a rolling bearing whose load is not given."""
+        return isinstance(self.stiffness, RollingStiffness) and self.load is None
 
     @model_validator(mode="after")
     def _ascending(self) -> Bearing:

@@ -10,14 +10,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING
 
-from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness
+from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
-from gearwhine.case.gears import Gear, GearPair, shaft_of
+from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Case, Draft
 from gearwhine.case.operation import Operation, listed
@@ -26,6 +26,7 @@ from gearwhine.case.speeds_and_torques import pair_torques
 
 if TYPE_CHECKING:
     from coupling.gears import Gear as BuiltGear
+    from coupling.machine.gear_train import GearTrain
 
 NEAREST_POINTS = 1e-6
 """Distance between two points of a bow below which they are one, as a part of the rotor's length."""
@@ -132,8 +133,9 @@ _RPM = 30.0 / pi
 
 
 def check_bearings(draft: Draft) -> Iterator[Finding]:
-    """Yield tables that do not fit their speeds or end too early, and pedestals in the housing."""
+    """Yield tables that do not fit their speeds or end too early, pedestals in the housing, and loads that lack."""
     ratios = _ratios(draft)
+    loaded = bool(draft.document.get("operation")) and bool(draft.document.get("gear_pair"))
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
         if bearing.pedestal is not None and not bearing.grounded:
@@ -143,6 +145,11 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
             yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
             yield from _check_reach(draft, index, bearing, bearing.speeds, abs(float(ratios[bearing.rotor])))
+        # With gear pairs and a torque the operating point gives the load.
+        rolling = bearing.stiffness.rolling if isinstance(bearing.stiffness, RollingStiffness) else None
+        if rolling is not None and bearing.lacks_load and not rolling.pressed and not loaded:
+            expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
+            yield Finding(("bearing", index, "load"), expected, NOTHING)
 
 
 def _check_tables(index: int, bearing: Bearing) -> Iterator[Finding]:
@@ -318,9 +325,6 @@ def _check_model(draft: Draft, index: int, pair: GearPair, gear: Gear) -> Iterat
 LARGEST_RATIO = 1e12
 """Speed over the first driver's beyond which a train is a mistake, long before numbers overflow."""
 
-_NO_TORQUE = 1e-9
-"""Part of the input torque below which a gear pair carries none but for rounding."""
-
 
 def check_running(draft: Draft) -> Iterator[Finding]:
     """Yield what keeps a case from running as it says."""
@@ -374,7 +378,7 @@ def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
     torques = [operation.over_time, *(output.over_time for output in operation.output)]
     unknown += ["a torque given over time"] * any(torque is not None for torque in torques)
     if unknown:
-        yield Finding(("transient", "method"), f"'newmark' or 'auto'; the exact march knows nothing of {unknown[0]}")
+        yield Finding(("transient", "method"), f"'newmark' or 'auto'; exact integration does not cover {unknown[0]}")
 
 
 def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:
@@ -421,18 +425,18 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     if not draft.gear_pairs and len(shafts) > 1:
         yield from _check_each_shaft(draft, operation)
         return
-    imbalances = list(_check_balance(operation, ratios))
+    imbalances = list(_check_balance(operation, train or train_of_pairs((), shafts))) if operation.output else []
     yield from imbalances
     if draft.gear_pairs and not imbalances and all(shaft in ratios for shaft in shafts):
         yield from _check_flow(draft, operation)
 
 
-def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iterator[Finding]:
+def _check_balance(operation: Operation, train: GearTrain) -> Iterator[Finding]:
     """Yield outputs that, through the gears, take another power than comes in."""
-    if not operation.output:
-        return
-    taken = sum(output.torque * abs(float(ratios[output.rotor])) for output in operation.output)
-    if not _balance(operation.torque, taken):
+    from coupling.machine.gear_train import is_balanced, output_torque
+
+    taken = output_torque(train, [output.build() for output in operation.output])
+    if not is_balanced(operation.torque, taken):
         expected = (
             f"outputs that balance the input torque of {operation.torque:g} N*m; through the tooth ratios they "
             f"amount to {taken:g} N*m"
@@ -440,47 +444,40 @@ def _check_balance(operation: Operation, ratios: Mapping[str, Fraction]) -> Iter
         yield Finding(("operation", "output"), expected, [f"{output.torque:g} N*m" for output in operation.output])
 
 
-def _balance(entering: float, leaving: float) -> bool:
-    """Whether two torques are the same within the tolerance of the library."""
-    from coupling.machine.gear_train import LARGEST_IMBALANCE
-
-    return abs(leaving - entering) <= LARGEST_IMBALANCE * max(abs(entering), abs(leaving))
-
-
 def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield shafts, none geared to another, whose own torques do not balance; the first output's takes the input."""
+    if not operation.output:
+        return
+    from coupling.machine.gear_train import imbalances_of_shafts
+
     kind = "rotor" if draft.rotors else "gear"
-    first: dict[str, int] = {}
-    for place, output in enumerate(operation.output):
-        first.setdefault(output.rotor, place)
-    for shaft, place in first.items():
-        entering = operation.torque if place == 0 else 0.0
-        taken = sum(output.torque for output in operation.output if output.rotor == shaft)
-        if not _balance(entering, taken):
-            expected = (
-                f'torques that balance on {kind} "{shaft}", as no gear pair leads to or from it; it takes in '
-                f"{entering:g} N*m and gives out {taken:g} N*m"
-            )
-            yield Finding(("operation", "output", place), expected, UNSAID)
+    for one in imbalances_of_shafts(operation.torque, [output.build() for output in operation.output]):
+        expected = (
+            f'torques that balance on {kind} "{one.shaft}", as no gear pair leads to or from it; it takes in '
+            f"{one.entering:g} N*m and gives out {one.leaving:g} N*m"
+        )
+        yield Finding(("operation", "output", one.output), expected, UNSAID)
 
 
 def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
-    """Yield gear pairs whose driven gear drives the driver."""
+    """Yield gear pairs whose driven gear drives the driver, and braked ones whose back flanks never meet."""
+    from coupling.machine.gear_train import carrying_flanks
+
     names = draft.names("gear")
     if operation.torque == 0.0 or len(set(names)) < len(names):
         return
-    turning = Case.model_construct(
+    case = Case.model_construct(
         rotor=tuple(rotor for _, rotor in draft.rotors),
         gear=tuple(gear for _, gear in draft.gears),
         gear_pair=tuple(pair for _, pair in draft.gear_pairs),
         operation=operation,
     )
-    sense = 1.0 if operation.torque > 0.0 else -1.0
-    for (index, pair), torque in zip(draft.gear_pairs, pair_torques(turning), strict=True):
-        if sense * torque < -_NO_TORQUE * abs(operation.torque):
+    flanks = carrying_flanks(pair_torques(case), operation.torque)
+    for (index, pair), flank in zip(draft.gear_pairs, flanks, strict=True):
+        if flank == "driven":
             expected = "power to flow from driver to driven; swap the two names"
             yield Finding(("gear_pair", index), expected, UNSAID)
-        elif torque < -_NO_TORQUE * abs(operation.torque) and not _has_backlash(turning, pair):
+        elif flank == "back" and pair.backlash is None and not _has_designed_backlash(case, pair):
             expected = (
                 "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet "
                 "without one"
@@ -488,7 +485,13 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
             yield Finding(("gear_pair", index, "backlash"), expected, NOTHING)
 
 
-def _has_backlash(case: Case, pair: GearPair) -> bool:
-    """Whether a backlash is given, or the teeth are thinned for one."""
-    thinned = any(case.gear_named(name).tooth_thinning > 0.0 for name in (pair.driver, pair.driven))
-    return pair.backlash is not None or thinned
+def _has_designed_backlash(case: Case, pair: GearPair) -> bool:
+    """Whether tooth thicknesses and centre distance leave a backlash; gears that do not mesh are other findings."""
+    from coupling.gears import GearError, GearPairGeometry
+
+    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
+    try:
+        geometry = GearPairGeometry(driver.build(), driven.build(), case.centre_distance(pair))
+    except GearError:
+        return True
+    return geometry.designed_backlash is not None

@@ -1,4 +1,4 @@
-"""Field types of a case: quantities with unit and range, names, files, and the base class of all tables.
+"""Field types of the case keys: quantities with unit and range, names, files, and the base class of all tables.
 
 Further types are a direction, an axis by its letter or a vector of any length; a coefficient over speed, one quantity
 or a list with one for each speed of a table; and a patch of the housing's surface, which is a named surface, or the
@@ -233,7 +233,6 @@ Angle = Annotated[float, Quantity(units.ANGLE)]
 PositiveFrequency = Annotated[float, Quantity(units.FREQUENCY, above=0.0)]
 Speed = Annotated[float, Quantity(units.SPEED)]
 SpeedFromZero = Annotated[float, Quantity(units.SPEED, at_least=0.0)]
-PositiveSpeed = Annotated[float, Quantity(units.SPEED, above=0.0)]
 PlainNumber = Annotated[float, Quantity(units.RATIO)]
 DampingRatio = Annotated[float, Quantity(units.RATIO, at_least=0.0, below=1.0)]
 

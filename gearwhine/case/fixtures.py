@@ -45,23 +45,33 @@ _LEAST_SINE = 1e-6  # of the angle between two axes
 _ROUNDING = 1e-9  # what typed moments of inertia of a thin body may miss of a real one's
 
 
-class SixSprings(Table):
-    """Stiffness along x, y, z [N/m] and about them [N m/rad]."""
+class Springs(Table):
+    """Stiffness along x, y, z [N/m], in all, spread over the patch."""
 
     x: StiffnessFromZero = 0.0
     y: StiffnessFromZero = 0.0
     z: StiffnessFromZero = 0.0
+
+
+class Dashpots(Table):
+    """Damping along x, y, z [N s/m], in all, spread over the patch."""
+
+    x: DampingFromZero = 0.0
+    y: DampingFromZero = 0.0
+    z: DampingFromZero = 0.0
+
+
+class SixSprings(Springs):
+    """Stiffness along x, y, z [N/m] and about them [N m/rad]."""
+
     rx: TiltStiffness = 0.0
     ry: TiltStiffness = 0.0
     rz: TiltStiffness = 0.0
 
 
-class SixDashpots(Table):
+class SixDashpots(Dashpots):
     """Damping along x, y, z [N s/m] and about them [N m s/rad]."""
 
-    x: DampingFromZero = 0.0
-    y: DampingFromZero = 0.0
-    z: DampingFromZero = 0.0
     rx: TiltDamping = 0.0
     ry: TiltDamping = 0.0
     rz: TiltDamping = 0.0
@@ -290,7 +300,7 @@ class LumpedMass(Patch):
     def build(self) -> BuiltMass:
         """Build the lumped mass."""
         from housing import LumpedMass as BuiltMass
-        from housing.model.lumped_mass import NO_INERTIA
+        from housing.model.fixtures import NO_INERTIA
 
         return BuiltMass(
             name=self.name,

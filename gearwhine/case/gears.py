@@ -10,9 +10,10 @@ import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, StrictBool, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -162,7 +163,7 @@ class GearErrors(Table):
         """Deviation of each tooth from its ideal place [m], of zero mean where it follows from `spacing`."""
         if not self.spacing:
             return self.pitch
-        # What is left over after a turn is nobody's: pitches sum to the circle.
+        # The pitches of all teeth sum to the circumference: the mean spacing is subtracted.
         closing = sum(self.spacing) / len(self.spacing)
         places = [0.0]
         for step in self.spacing[1:]:
@@ -227,7 +228,31 @@ PressureAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.
 HelixAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(-60.0), at_most=math.radians(60.0))]
 Module = Annotated[float, Quantity(units.LENGTH, at_least=1e-5, at_most=0.2)]
 DiametralPitch = Annotated[float, Quantity(units.DIAMETRAL_PITCH, at_least=5.0, at_most=1e5)]
-Misalignment = Annotated[float, Quantity(units.ANGLE, at_least=-0.1, at_most=0.1)]
+
+
+class _Misalignment(Quantity):
+    """An angle, or the word that leaves it to the machine's operating point."""
+
+    def validate(self, value: object) -> Any:
+        """Return the angle in SI, or "found"."""
+        if value == "found":
+            return value
+        try:
+            return super().validate(value)
+        except PydanticCustomError:
+            raise wrong(self.expected) from None
+
+    def write(self, number: Any) -> str | float:
+        """Return the angle as text with its unit, or "found"."""
+        return "found" if number == "found" else super().write(number)
+
+    @property
+    def expected(self) -> str:
+        """Expected value, in words."""
+        return f'{super().expected}, or "found" for that of the machine under load'
+
+
+Misalignment = Annotated[float | Literal["found"], _Misalignment(units.ANGLE, at_least=-0.1, at_most=0.1)]
 FrictionCoefficient = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.5)]
 HarmonicWeight = Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=1e6)]
 NOMINAL_WIDTH = 10.0
@@ -434,7 +459,8 @@ class GearPair(Table):
 
     `damping` [N s/m] stands in place of `damping_ratio`. `corner_contact`: whether teeth touch beyond their path of
     contact, where a load closes the gap to a corner; None: where the stiffness model is one of pairs of teeth.
-    `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z.
+    `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z; "found": that of the
+    machine's operating point, by its shafts, bearings and housing.
     `backlash` [m] is measured along the line of action; None: that of thicknesses and distance, and where these leave
     none the back flanks never touch. `centre_distance`
     [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
@@ -487,11 +513,12 @@ def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]])
     ]
 
 
-def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]]) -> GearTrain:
-    """Return the gear train of pairs, see :func:`readable_pairs`."""
-    # The package brings numpy and scipy: only a case with gear pairs waits for them.
+def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = ()) -> GearTrain:
+    """Return the gear train of pairs, see :func:`readable_pairs`; without pairs that of single shafts."""
+    # The package brings numpy and scipy: only a case that turns waits for them.
     from coupling.machine.gear_train import GearedShafts, gear_train
 
-    return gear_train(
+    geared = [
         GearedShafts(shaft_of(driver), shaft_of(driven), (driver.teeth, driven.teeth)) for _, driver, driven in pairs
-    )
+    ]
+    return gear_train(geared, shafts)

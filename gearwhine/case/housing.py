@@ -17,7 +17,6 @@ from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
     CaseFile,
-    DampingFromZero,
     DampingRatio,
     Density,
     Direction,
@@ -28,14 +27,13 @@ from gearwhine.case.fields import (
     PositiveFrequency,
     PositiveLength,
     Quantity,
-    StiffnessFromZero,
     Table,
     UnitVector,
     Whole,
     unit_vector,
     wrong,
 )
-from gearwhine.case.fixtures import Joint, LumpedMass, Mount
+from gearwhine.case.fixtures import Dashpots, Joint, LumpedMass, Mount, Springs
 from gearwhine.case.units import QuantityError, parse_quantity
 
 if TYPE_CHECKING:
@@ -219,22 +217,6 @@ class Seat(Table):
         return BuiltSeat(self.name, self.center)
 
 
-class Springs(Table):
-    """Stiffness to ground along x, y, z [N/m], in all, spread over the patch."""
-
-    x: StiffnessFromZero = 0.0
-    y: StiffnessFromZero = 0.0
-    z: StiffnessFromZero = 0.0
-
-
-class Dashpots(Table):
-    """Damping to ground along x, y, z [N s/m], in all, spread over the patch."""
-
-    x: DampingFromZero = 0.0
-    y: DampingFromZero = 0.0
-    z: DampingFromZero = 0.0
-
-
 class Support(Patch):
     """`[[housing.support]]`: a patch of the surface, held fast, or on springs and dashpots."""
 
@@ -309,7 +291,7 @@ class Housing(Table):
     """`[housing]`: geometry (exactly one of box, cad, mesh), material, damping and the modes wanted.
 
     `damping_ratio` is one ratio for all modes, a ratio per mode, or a table from frequency (text with
-    unit, see `damping_points`) to ratio. `frequency_limit` is in Hz.
+    unit, see `damping_points`) to ratio. `frequency_limit` is in Hz. `solver` is the eigensolver of the modes.
     """
 
     material: Name
@@ -321,6 +303,7 @@ class Housing(Table):
     ] = 0.01
     frequency_limit: PositiveFrequency | None = None
     modes: Annotated[int, Whole(1, 5000)] | None = None
+    solver: Literal["lanczos", "eigsh"] = "lanczos"
     box: Box | None = None
     cad: CadFile | None = None
     mesh: MeshFile | None = None

@@ -41,6 +41,15 @@ def bundled_case(name: str) -> Traversable | None:
     return next((entry for entry in _entries() if entry.name == name + _SUFFIX), None)
 
 
+def bundled_files(name: str) -> tuple[Traversable, ...]:
+    """Return the file of a bundled case and those that it reads, which have its name and other endings."""
+    case = bundled_case(name)
+    if case is None:
+        return ()
+    beside = [entry for entry in files("gearwhine.cases").iterdir() if entry.name.partition(".")[0] == name]
+    return (case, *sorted((entry for entry in beside if entry.name != case.name), key=lambda entry: entry.name))
+
+
 def bundled_names() -> tuple[str, ...]:
     """Return the names of the bundled cases, in alphabetical order, without reading them."""
     return tuple(sorted(entry.name.removesuffix(_SUFFIX) for entry in _entries()))

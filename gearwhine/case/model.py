@@ -7,6 +7,7 @@ resolved case: defaults included, every quantity with its unit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -92,9 +93,17 @@ class Case(Table):
         """Return the gear of this name; KeyError where there is none."""
         return _named(self.gear, name)
 
-    def seat_named(self, name: str) -> Seat:
-        """Return the housing's seat of this name; KeyError where there is none."""
-        return _named(self.housing.seat if self.housing else (), name)
+    def centre_distance(self, pair: GearPair) -> float | None:
+        """Return the distance of a pair's shafts [m]: of the rotors' axes, else as given; None: without backlash."""
+        rotors = self.gear_named(pair.driver).rotor, self.gear_named(pair.driven).rotor
+        if rotors[0] is None or rotors[1] is None:
+            return pair.centre_distance
+        first, second = (self.rotor_named(name).axis for name in rotors if name is not None)
+        return math.hypot(second[0] - first[0], second[1] - first[1])
+
+    def finds_load(self, bearing: Bearing) -> bool:
+        """Whether the load of a rolling bearing follows from the machine's operating point."""
+        return bearing.lacks_load and bool(self.gear_pair) and self.operation is not None
 
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""

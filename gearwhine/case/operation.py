@@ -30,6 +30,7 @@ from gearwhine.case.fields import (
 
 if TYPE_CHECKING:
     from coupling import BaseMotion
+    from coupling.machine.gear_train import Output as BuiltOutput
     from coupling.machine.loads import TorqueHistory as BuiltHistory
     from coupling.machine.loads import TorqueRipple as BuiltRipple
 
@@ -252,6 +253,12 @@ class Output(Table):
     at: LengthFromZero | None = None
     over_time: TorqueHistory | None = None
     ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
+
+    def build(self) -> BuiltOutput:
+        """Build the output torque of the gear train."""
+        from coupling.machine.gear_train import Output as BuiltOutput
+
+        return BuiltOutput(self.rotor, self.torque, self.at)
 
 
 class Operation(Table):

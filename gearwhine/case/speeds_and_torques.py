@@ -7,40 +7,22 @@ default. They are speeds of the rotor itself [rad/s], positive counter-clockwise
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from gearwhine.case.gears import Gear, readable_pairs, shaft_of, train_of_pairs
+from gearwhine.case.gears import readable_pairs, train_of_pairs
 from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
 
 if TYPE_CHECKING:
-    from coupling.machine.gear_train import GearTrain
-
-
-@dataclass(frozen=True)
-class AppliedTorque:
-    """A torque from outside on a shaft.
-
-    Attributes
-    ----------
-    shaft
-        The rotor; the gear itself in a case without rotors.
-    at
-        Station from the rotor's left end [m]; None in a case without rotors.
-    torque
-        About +z, counter-clockwise positive [N m].
-    """
-
-    shaft: str
-    at: float | None
-    torque: float
+    from coupling.machine.gear_train import AppliedTorque, GearTrain
 
 
 def gear_train_of(case: Case) -> GearTrain:
-    """Return the gear train of a case."""
-    return train_of_pairs(readable_pairs(case.gear, enumerate(case.gear_pair)))
+    """Return the gear train of a case; without gear pairs every shaft turns at the speed of the first."""
+    shafts = [rotor.name for rotor in case.rotor] or [gear.name for gear in case.gear]
+    return train_of_pairs(readable_pairs(case.gear, enumerate(case.gear_pair)), shafts)
 
 
 def speed_ratios(case: Case) -> dict[str, Fraction]:
@@ -48,8 +30,6 @@ def speed_ratios(case: Case) -> dict[str, Fraction]:
 
     Keys are rotor names, or gear names in a case without rotors.
     """
-    if not case.gear_pair:
-        return {name: Fraction(1) for name in _shafts(case)}
     return dict(gear_train_of(case).ratios)
 
 
@@ -68,22 +48,20 @@ def rotor_speeds(case: Case, speed: float | None = None) -> dict[str, float]:
     CaseError
         When no speed is given and the case has no `[operation]`.
     """
-    if speed is None:
-        require(case, "operation", command="rotor speeds")
-        assert case.operation is not None
-        speed = case.operation.speed
+    speed = _speed(case, speed)
     return {name: speed * float(ratio) for name, ratio in speed_ratios(case).items()}
 
 
 def mesh_frequencies(case: Case, speed: float | None = None) -> tuple[float, ...]:
     """Return the tooth-mesh frequency of each gear pair [Hz], in the order of the file; see `rotor_speeds`."""
-    speeds = rotor_speeds(case, speed)
-    drivers = (case.gear_named(pair.driver) for pair in case.gear_pair)
-    return tuple(abs(speeds[shaft_of(gear)]) * gear.teeth / (2.0 * math.pi) for gear in drivers)
+    return gear_train_of(case).mesh_frequencies(_speed(case, speed))
 
 
 def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTorque, ...]:
     """Return the torques from outside: the input first, then the outputs. They balance through the gears.
+
+    They are those of :meth:`coupling.machine.gear_train.GearTrain.applied_torques`. Without an `at`, the input is at
+    the left end of its rotor, an output at the right end; in a case without rotors torques have no station.
 
     Parameters
     ----------
@@ -91,11 +69,6 @@ def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTor
         With an `[operation]`.
     torque
         Input torque [N m], which the outputs take in their proportions; None: the torque of `[operation]`.
-
-    The input drives the first driver's shaft in its direction of turning; outputs work against the turning of theirs.
-    Without outputs, the shafts that drive no other take equal power. Outputs are scaled, within the 1 % that a case
-    may be off, to balance the input exactly. Without an `at`, the input is at the left end of its rotor, an output at
-    the right end.
 
     Raises
     ------
@@ -105,57 +78,37 @@ def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTor
     require(case, "operation", command="torques")
     operation = case.operation
     assert operation is not None
-    ratios = speed_ratios(case)
     entering = operation.torque if torque is None else torque
-    if entering == 0.0 or not ratios or not (case.gear_pair or operation.output):
-        return ()
-    from coupling.machine.gear_train import GearTrain, Output, shared_torques
-
-    first = next(iter(ratios)) if case.gear_pair else operation.output[0].rotor
-    turning = math.copysign(1.0, operation.speed)
-    applied = [AppliedTorque(first, _station(case, first, operation.at, 0.0), turning * entering)]
-    train = gear_train_of(case) if case.gear_pair else GearTrain((), ratios, ())
-    outputs = [Output(output.rotor, output.torque, output.at) for output in operation.output]
-    speeds = {shaft: float(ratio) for shaft, ratio in ratios.items()}
-    for output, taken in shared_torques(train, speeds, entering, outputs):
-        against = -turning * math.copysign(1.0, ratios[output.shaft])
-        applied.append(AppliedTorque(output.shaft, _station(case, output.shaft, output.at, 1.0), against * taken))
-    return tuple(applied)
+    outputs = [output.build() for output in operation.output]
+    applied = gear_train_of(case).applied_torques(entering, operation.speed, outputs, operation.at)
+    ends = {rotor.name: rotor.length for rotor in case.rotor}
+    defaults = [0.0, *(ends.get(one.shaft) for one in applied[1:])]
+    return tuple(
+        replace(one, at=None if not ends else default if one.at is None else one.at)
+        for one, default in zip(applied, defaults, strict=False)
+    )
 
 
 def pair_torques(case: Case) -> tuple[float, ...]:
     """Return the mean torque that each gear pair takes off its driver [N m], in the order of the file.
 
-    Positive where power flows from driver to driven. Speeds fix the power through every pair of a tree; where pairs
-    form a loop, the smallest flows that balance are taken, which is what equal contacts would carry.
+    Positive where power flows from driver to driven; see :meth:`coupling.machine.gear_train.GearTrain.pair_torques`.
 
     Raises
     ------
     CaseError
         When the case has no `[operation]`.
     """
-    train = gear_train_of(case)
-    turning = 1.0 if case.operation is None else math.copysign(1.0, case.operation.speed)
-    torques = dict.fromkeys(train.ratios, 0.0)
-    for applied in applied_torques(case):
-        torques[applied.shaft] += applied.torque * turning * math.copysign(1.0, train.ratios[applied.shaft])
-    return train.pair_torques(torques)
+    return gear_train_of(case).mean_pair_torques(applied_torques(case), _speed(case))
 
 
-def _shafts(case: Case) -> list[str]:
-    return [rotor.name for rotor in case.rotor] or [gear.name for gear in case.gear]
-
-
-def _station(case: Case, shaft: str, at: float | None, default: float) -> float | None:
-    """Return the station of a torque; by default at this fraction of the rotor's length."""
-    if not case.rotor:
-        return None
-    return at if at is not None else default * case.rotor_named(shaft).length
-
-
-def gears_on(case: Case, shaft: str) -> tuple[Gear, ...]:
-    """Return the gears that turn with a shaft."""
-    return tuple(gear for gear in case.gear if shaft_of(gear) == shaft)
+def _speed(case: Case, speed: float | None = None) -> float:
+    """Return a speed of the first driver's rotor [rad/s], by default that of `[operation]`."""
+    if speed is None:
+        require(case, "operation", command="rotor speeds")
+        assert case.operation is not None
+        speed = case.operation.speed
+    return speed
 
 
 BEYOND_OPERATION = 1.5

@@ -2,6 +2,7 @@
 
 A quantity is a number and a unit of plain symbols multiplied, divided and raised to whole powers. Text is
 held to that grammar before the unit registry sees any of it, so nothing in a case file is ever evaluated.
+For objects made in Python, :func:`rpm` turns a speed into SI.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pint
+
 
 LONGEST_QUANTITY = 100
 """Characters beyond which a string is not taken for a quantity."""
@@ -85,6 +87,8 @@ ANGLE = Dimension("an angle", "rad", "24 deg", 1e6, 1e-12, display="deg")
 FREQUENCY = Dimension("a frequency", "Hz", "3.2 kHz", 1e7, 1e-6)
 SPEED = Dimension("an angular speed", "rad/s", "5500 rpm", 1e6, 1e-6, display="rpm")
 DIAMETRAL_PITCH = Dimension("a diametral pitch", "1/m", "8 1/in", 1e6, 1e-3)
+TEMPERATURE = Dimension("a difference of temperatures", "K", "45 K", 1e4, 1e-6)
+EXPANSION = Dimension("a coefficient of thermal expansion", "1/K", "12e-6 1/K", 1.0, 1e-12)
 RATIO = Dimension("a plain number", "", "0.01", 1e12, 1e-12)
 
 _DIMENSIONS = (
@@ -339,3 +343,13 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
             return text
     short = f"{number:g}"
     return f"{short if float(short) == number else repr(number)} {dimension.unit}"
+
+
+def rpm(value: float) -> float:
+    """Revolutions a minute as an angular speed [rad/s]."""
+    return value * math.pi / 30.0
+
+
+def to_rpm(speed: float) -> float:
+    """Angular speed [rad/s] in revolutions a minute."""
+    return speed * 30.0 / math.pi

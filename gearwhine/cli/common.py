@@ -77,7 +77,7 @@ def on_case(
 ) -> dict[str, Any]:
     """Read the case, do the work under a progress display, hand the result over and return it."""
     from gearwhine.case import load_case
-    from gearwhine.output.warnings import add_warnings
+    from gearwhine.output.quantity import add_warnings
     from gearwhine.progress import shown
 
     loaded = load_case(name, common.settings)

@@ -9,7 +9,7 @@ COMAC and enhanced COMAC are bars over the survey's degrees of freedom, the wors
 beside the model's at the survey's points, as wireframes of one scale and phase.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +25,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -41,11 +40,17 @@ from gearwhine.figures.style import (
     RED,
     SHEET_WIDTH,
     TICK,
+    Label,
+    LabelRow,
+    arrange,
+    draw_row,
     panel,
     sheet,
     shortened,
 )
-from housing.correlation.comparison import Comparison
+from gearwhine.results.comparison import coordinate_names
+from housing.correlation.comparison import Comparison, ShapeCorrelation
+from housing.measured import MeasuredGeometry
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -54,6 +59,23 @@ _PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the roo
 _LARGEST = 60.0  # area of the circle of MAC 1 [points²]
 _FAINT = 0.05  # MACs below it are not drawn
 _TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
+IntArray = npt.NDArray[np.int64]
+
+_COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
+_LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # beside the cells: row names, gap, colours, their numbers [mm]
+_BELOW = 11.0  # for the columns' names, which stand [mm]
+_CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # a cell's largest and least height, and the most of all [mm]
+_FITS = (4.2, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
+_NOTHING = 0.05  # values below it are left blank
+_DARK = 0.5  # values above it are written in white
+_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # of a panel, and between them [mm of paper]
+_NAMED = 6  # at most, of the degrees of freedom that stand out
+_STANDS_OUT = 2.0  # times the median of the enhanced criterion
+_MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # beside the panels, between two pairs, and for a pair's words [mm]
+_IN_A_ROW = 2  # pairs
+_LONGEST = 56  # caption [letters]
+_REACH = 0.09  # largest displacement drawn, as a part of the survey's diagonal
+_FAINTEST = 0.3  # opacity of what is farthest from the eye
 
 
 def draw_comparison(title: str, comparison: Comparison, model_frequencies: FloatArray) -> Figure:
@@ -170,15 +192,6 @@ def _dot(name: str, color: str, *, filled: bool = True) -> Line2D:
     return Line2D([], [], color=color, marker="o", ms=4.5, mfc=color if filled else "none", mew=0.7, ls="", label=name)
 
 
-_COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
-_LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # beside the cells: row names, gap, colours, their numbers [mm]
-_BELOW = 11.0  # for the columns' names, which stand [mm]
-_CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # a cell's largest and least height, and the most of all [mm]
-_FITS = (4.2, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
-_NOTHING = 0.05  # values below it are left blank
-_DARK = 0.5  # values above it are written in white
-
-
 def draw_mac_matrix(
     title: str,
     values: FloatArray,
@@ -252,11 +265,6 @@ def _name(axis: Axis, names: Sequence[str], size: float, *, upright: bool) -> No
     axis.set_ticklabels([names[place] for place in places], size=NOTE, rotation=90.0 if upright else 0.0)
 
 
-_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # of a panel, and between them [mm of paper]
-_NAMED = 6  # at most, of the degrees of freedom that stand out
-_STANDS_OUT = 2.0  # times the median of the enhanced criterion
-
-
 def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray, names: Sequence[str]) -> Figure:
     """Draw both criteria as bars in the survey's order; red what stands out by the one that sees signs and gains.
 
@@ -305,13 +313,81 @@ def _bars(axes: Axes, values: FloatArray, worst: npt.NDArray[np.int64]) -> None:
     axes.grid(visible=False, axis="x")
 
 
-IntArray = npt.NDArray[np.int64]
+def draw_comparison_figures(
+    title: str,
+    comparison: Comparison,
+    model_frequencies: FloatArray,
+    geometry: MeasuredGeometry | None = None,
+) -> Iterator[tuple[str, Figure]]:
+    """Draw measured and model modes beside each other; with shapes also the matrices, and COMAC at each point.
 
-_MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # beside the panels, between two pairs, and for a pair's words [mm]
-_IN_A_ROW = 2  # pairs
-_LONGEST = 56  # caption [letters]
-_REACH = 0.09  # largest displacement drawn, as a part of the survey's diagonal
-_FAINTEST = 0.3  # opacity of what is farthest from the eye
+    Parameters
+    ----------
+    title : str
+        Of the case.
+    comparison, geometry
+        See :func:`gearwhine.results.comparison.write_comparison`.
+    model_frequencies : ndarray, shape (n,)
+        Of all the model's modes [rad/s].
+
+    Yields
+    ------
+    str
+        Name of the figure: ``comparison``; ``mac`` with shapes, ``auto-mac`` of the measured ones,
+        ``cross-orthogonality`` where the survey allows it, ``comac`` where there are pairs.
+    matplotlib.figure.Figure
+    """
+    yield "comparison", draw_comparison(f"Measured and model modes: {title}", comparison, model_frequencies)
+    if comparison.shapes is not None:
+        yield from _draw_matrices(title, comparison, comparison.shapes)
+        if comparison.shapes.comac is not None:
+            yield "comac", _draw_coordinates(title, comparison.shapes, geometry)
+
+
+def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation) -> Iterator[tuple[str, Figure]]:
+    model, measured = shapes.model_frequencies / HERTZ, shapes.measured_frequencies / HERTZ
+    paired = {pair.mode - 1: pair.measured_mode - 1 for pair in comparison.pairs}
+    near = (model >= 0.9 * measured[0]) & (model <= 1.1 * measured[-1])
+    shown = [int(mode) for mode in range(len(model)) if near[mode] or mode in paired]
+    columns = _mode_names(range(len(measured)), measured)
+    if shown:
+        outlined = [(row, paired[mode]) for row, mode in enumerate(shown) if mode in paired]
+        note = "pairs outlined; close modes are paired by their span, not by the single values"
+        figure = draw_mac_matrix(
+            f"MAC: {title}", shapes.mac[shown], _mode_names(shown, model), columns, outlined=outlined, note=note
+        )
+        yield "mac", figure
+    note = "large values off the diagonal: modes found twice, or that the survey cannot tell apart"
+    named = ("measured mode", "measured mode")
+    figure = draw_mac_matrix(
+        f"Auto-MAC of the test: {title}", shapes.measured_auto_mac, columns, columns, axes_named=named, note=note
+    )
+    yield "auto-mac", figure
+    if shapes.cross_orthogonality is not None:
+        modes = [number - 1 for number in shapes.orthogonality_modes]
+        note = "in the model's mass, reduced to the survey by SEREP; squares of a column add up to 1"
+        outlined = [(row, paired[mode]) for row, mode in enumerate(modes) if mode in paired]
+        figure = draw_mac_matrix(
+            f"Cross-orthogonality: {title}",
+            shapes.cross_orthogonality,
+            _mode_names(modes, model),
+            columns,
+            outlined=outlined,
+            named="cross-orthogonality",
+            note=note,
+        )
+        yield "cross-orthogonality", figure
+
+
+def _draw_coordinates(title: str, shapes: ShapeCorrelation, geometry: MeasuredGeometry | None) -> Figure:
+    assert shapes.comac is not None
+    assert shapes.enhanced_comac is not None
+    names = coordinate_names(len(shapes.comac), geometry)
+    return draw_coordinate_criteria(f"Where shapes differ: {title}", shapes.comac, shapes.enhanced_comac, names)
+
+
+def _mode_names(modes: Iterable[int], hertz: FloatArray) -> list[str]:
+    return [f"{mode + 1}   {hertz[mode]:.0f} Hz" for mode in modes]
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,12 @@ from gearwhine.figures.style import BLUE, GREY, INK, NOTE, RED, tidy
 
 _MOST_LINES = 1 << 12
 _DECADES = 5.0  # of the amplitude axis, below its highest line
+FloatArray = npt.NDArray[np.float64]
+
+_ROW_DECADES = 4.0  # that a row shows, below the highest line of all
+_OVERLAP = 1.7  # height of a row over the distance to the next
+_MOST_HARMONICS = 12
+_MOST_ROWS = 40  # that one can still tell apart
 
 
 def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) -> None:
@@ -37,14 +43,6 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) 
         )
         axes.plot(np.repeat(frequencies, 3), heights.T.ravel(), color=color, lw=0.9, solid_capstyle="butt")
     axes.set_xlim(0.0, limit)
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_ROW_DECADES = 4.0  # that a row shows, below the highest line of all
-_OVERLAP = 1.7  # height of a row over the distance to the next
-_MOST_HARMONICS = 12
-_MOST_ROWS = 40  # that one can still tell apart
 
 
 def draw_waterfall(

@@ -1,26 +1,31 @@
 """Gear pairs of a case: geometry, contact law, and static transmission error under the mean torque."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
+from coupling.gears.errors import ThinTipError
+from coupling.gears.geometry.gear import require_tip_thickness
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.machine.parts import inertia_with_discs
 from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
-from gearwhine.case import Gear as GivenGear
 from gearwhine.case import GearPair as GivenPair
-from gearwhine.from_case.rotors import build_gear, build_rotor, gear_inertia
+from gearwhine.from_case.rotors import build_gear, gear_inertia, shaft_gears
 from gearwhine.progress import Progress, silent
 
 FloatArray = npt.NDArray[np.float64]
 
-# Part of the geometry's backlash by which a given one may differ without a word.
-_DIFFERS = 0.1
 
-
-def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair, ...]:
+def solve_gears(
+    case: Case, progress: Progress = silent, gaps: Mapping[tuple[str, str], tuple[float, ...]] | None = None
+) -> tuple[LoadedGearPair, ...]:
     """Solve every gear pair of the case.
+
+    ``gaps`` are those of the flanks over the face by driver and driven gear, where the misalignment is to be found.
 
     Raises
     ------
@@ -33,13 +38,12 @@ def solve_gears(case: Case, progress: Progress = silent) -> tuple[LoadedGearPair
     solved = []
     for number, (given, torque) in enumerate(zip(case.gear_pair, torques, strict=True)):
         progress(f"gear pair {given.driver} -> {given.driven}")
-        driver, driven = case.gear_named(given.driver), case.gear_named(given.driven)
         loaded = load_gear_pair(
-            build_pair(given, number),
+            aligned_pair(build_pair(given, number), gaps or {}),
             pair_geometry(case, given),
             torque=torque,
-            inertias=(_inertia_at(case, driver), _inertia_at(case, driven)),
-            speed=speeds.get(shaft_of(driver)),
+            inertias=(_inertia(case, given.driver), _inertia(case, given.driven)),
+            speed=speeds.get(shaft_of(case.gear_named(given.driver))),
         )
         solved.append(loaded)
     return tuple(solved)
@@ -61,24 +65,16 @@ def build_pair(given: GivenPair, number: int = 0) -> GearPair:
         damping=given.damping,
         backlash=given.backlash,
         friction=given.friction,
-        misalignment=given.misalignment,
+        misalignment=None if given.misalignment == "found" else given.misalignment,
         corner_contact=given.corner_contact,
     )
 
 
-def backlash_warnings(pair: GivenPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
-    """Warn where the given backlash differs from that of the tooth thicknesses and the shafts' centre distance."""
-    made = geometry.designed_backlash
-    if pair.backlash is None or made is None:
-        return []
-    if abs(pair.backlash - made) <= _DIFFERS * made:
-        return []
-    message = (
-        f"{geometry.label}: the backlash of {1e3 * pair.backlash:.4g} mm is not the {1e3 * made:.4g} mm that the "
-        "thickness of the teeth and the distance of the shafts leave along the line of action; leave 'backlash' out "
-        "for that"
-    )
-    return [{"name": "backlash", "message": message}]
+def aligned_pair(pair: GearPair, gaps: Mapping[tuple[str, str], tuple[float, ...]]) -> GearPair:
+    """Give a pair whose misalignment is to be found the gap of its flanks over the face, if there is one."""
+    if pair.misalignment is not None or (pair.driver, pair.driven) not in gaps:
+        return pair
+    return replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
 
 
 def pair_geometries(case: Case) -> tuple[GearPairGeometry, ...]:
@@ -88,12 +84,8 @@ def pair_geometries(case: Case) -> tuple[GearPairGeometry, ...]:
 
 def pair_geometry(case: Case, pair: GivenPair) -> GearPairGeometry:
     """Return the pair's geometry at the centre distance of its shafts, or without backlash where shafts are missing."""
-    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
-    distance = pair.centre_distance
-    if driver.rotor is not None and driven.rotor is not None:
-        axes = case.rotor_named(driver.rotor).axis, case.rotor_named(driven.rotor).axis
-        distance = float(np.hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
-    return GearPairGeometry(build_gear(case, driver), build_gear(case, driven), distance)
+    driver, driven = (build_gear(case, case.gear_named(name)) for name in (pair.driver, pair.driven))
+    return GearPairGeometry(driver, driven, case.centre_distance(pair))
 
 
 def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
@@ -120,13 +112,30 @@ def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
     return columns[0], columns[1]
 
 
-def _inertia_at(case: Case, given: GivenGear) -> float:
-    """Polar inertia of a gear with the discs at its station [kg m²]; of its whole rotor where that is nothing."""
-    inertia = gear_inertia(case, given)[1]
-    if given.rotor is not None and given.at is not None:
-        rotor = case.rotor_named(given.rotor)
-        discs = rotor.build(case.material).discs
-        inertia += sum(disc.polar_inertia for disc in discs if abs(disc.at - given.at) < 1e-6 * rotor.length)
-        if inertia == 0.0:
-            inertia = build_rotor(case, rotor).polar_inertia
-    return inertia if inertia > 0.0 else build_gear(case, given).polar_inertia
+def _inertia(case: Case, name: str) -> float:
+    """Polar inertia that rotates with a gear [kg m²], see :func:`coupling.machine.parts.gear_inertia`."""
+    given = case.gear_named(name)
+    if given.rotor is None:
+        return gear_inertia(case, given)[1] or build_gear(case, given).polar_inertia
+    gears = shaft_gears(case, given.rotor)
+    (gear,) = (one for one in gears if one.name == name)
+    return inertia_with_discs(gear, case.rotor_named(given.rotor).build(case.material), gears)
+
+
+def geometry_warnings(pair: GearPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
+    """Warnings of what runs but is not as it should be."""
+    found = []
+    for gear in (geometry.driver, geometry.driven):
+        try:
+            require_tip_thickness(gear)
+        except ThinTipError as error:
+            found.append({"name": "thin tip", "message": str(error)})
+        if gear.is_undercut:
+            message = (
+                f"gear {gear.name!r}: the teeth are undercut, their flanks begin at a diameter of "
+                f"{2e3 * gear.form_radius:.6g} mm; a profile_shift of "
+                f"{gear.least_generating_shift + gear.profile_shift - gear.generating_shift:.4g} avoids it"
+            )
+            found.append({"name": "undercut", "message": message})
+    backlash = pair.backlash_warning(geometry)
+    return found if backlash is None else [*found, {"name": "backlash", "message": backlash}]

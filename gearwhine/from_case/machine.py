@@ -1,6 +1,10 @@
-"""Machine of a case: shafts, bearings, gears and the reduced housing, assembled into one coupled system."""
+"""Machine of a case: shafts, bearings, gears and the reduced housing, assembled into one coupled system.
 
-from collections.abc import Mapping
+Its excitation is the speed profile, torques over time, ripple, base motion and gravity.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -9,29 +13,35 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Output, Shaft, ShaftGear
+from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Shaft, SpeedProfile, Torque
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
-from coupling.machine.components import HousingComponent, housing_component
-from gearwhine.case import Case, RollingStiffness, Rotor, require
-from gearwhine.from_case.driving import driving
+from coupling.machine.components import HousingComponent, RotorComponent, housing_component
+from coupling.machine.description import LATERAL_LIMIT_HZ
+from coupling.machine.gear_train import AppliedTorque
+from coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
+from coupling.machine.parts import Driving
+from coupling.time.speed_profile import free_speed
+from gearwhine.case import Case, Rotor, TorqueLine, applied_torques, require, speed_ratios
 from gearwhine.from_case.gear_pairs import build_pair, solve_gears
-from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear, gear_inertia
+from gearwhine.from_case.rotors import bearing_law, build_bearings, rolling_elements, rolling_states, shaft_gears
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, base_participation, solve_housing
 from housing import ModeSet
 from housing.model.housing import RESPONSE_ORDERS
 from housing.modes.residual_modes import leading_residual_modes
+from rotors import Bearing
+from rotors.rolling_bearings import RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
-# Shafts keep every bending mode up to this frequency, or several times the housing's limit where that is higher;
-# what lies above answers statically, through attachment vectors at bearings and gears.
-_LATERAL_LIMIT_HZ = 8000.0
-_LIMIT_FACTOR = 2.5
-_REACH = 2.0  # of the shafts' modes in the basis that tells the error of the first
+# Shafts keep every bending mode up to LATERAL_LIMIT_HZ, or several times the housing's limit where that is higher; what
+# lies above answers statically, through attachment vectors at bearings and gears.
+_HOUSING_FACTOR = 2.5
+_MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis that tells the error of the first
+_SLOPE_STEP = 1e-6  # part of the nominal speed to both sides of a corner of a torque line
 
 
 @dataclass(frozen=True)
@@ -87,11 +97,11 @@ def build_machine(
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
     *,
-    reach: float = 1.0,
+    limit_factor: float = 1.0,
 ) -> CoupledMachine:
     """Assemble the machine of a case at its operating speed.
 
-    ``reach`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
+    ``limit_factor`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
 
     Raises
     ------
@@ -103,7 +113,10 @@ def build_machine(
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
     machine = describe_machine(case, None if housing is None else housing.component)
-    components = machine.rotor_components(reach=reach, progress=progress)
+    if any(mounted.needs_load for mounted in machine.bearings):
+        progress("static equilibrium of the machine under its mean load")
+        machine = machine.at_operating_point(gravity=_gravity(case))
+    components = machine.rotor_components(limit_factor=limit_factor, progress=progress)
     return machine.assemble(pairs, components, driving(case, components))
 
 
@@ -134,36 +147,29 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
     assert operation is not None
     bearings = []
     for given in case.rotor:
-        laws = {entry.name: bearing_law(case, n) for n, entry in enumerate(case.bearing) if entry.rotor == given.name}
+        own = [(n, entry) for n, entry in enumerate(case.bearing) if entry.rotor == given.name]
+        laws = {entry.name: bearing_law(case, n) for n, entry in own}
+        elements = {entry.name: rolling_elements(case, n) for n, entry in own}
         # Those of the rotor's own file stand on the ground.
-        seats = {entry.name: entry.seat for entry in case.bearing if entry.rotor == given.name and not entry.grounded}
-        rolling = {
-            entry.name: entry.stiffness.rolling.build(entry.name)
-            for entry in case.bearing
-            if entry.rotor == given.name and isinstance(entry.stiffness, RollingStiffness)
-        }
+        seats = {entry.name: entry.seat for _, entry in own if not entry.grounded}
         bearings += [
             MountedBearing(
                 bearing,
                 given.name,
                 None if grounded else seats.get(bearing.name),
                 laws.get(bearing.name),
-                rolling.get(bearing.name),
+                elements.get(bearing.name),
             )
             for bearing in build_bearings(case, given.name)
         ]
     return Machine(
         shafts=[_shaft(case, given) for given in case.rotor],
         bearings=bearings,
-        gears=[
-            ShaftGear(build_gear(case, gear), gear.rotor, gear.at, gear_inertia(case, gear))
-            for gear in case.gear
-            if gear.rotor is not None and gear.at is not None
-        ],
+        gears=[gear for given in case.rotor for gear in shaft_gears(case, given.name)],
         gear_pairs=[build_pair(given, number) for number, given in enumerate(case.gear_pair)],
         speed=operation.speed,
         torque=operation.torque,
-        outputs=[Output(output.rotor, output.torque, output.at) for output in operation.output],
+        outputs=[output.build() for output in operation.output],
         housing=housing,
         torque_at=operation.at or 0.0,
     )
@@ -198,10 +204,61 @@ def solve_machine(
     """
     require(case, "rotor", "operation", command="system")
     require_machine(case)
-    pairs = solve_gears(case, progress) if case.gear_pair else ()
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+    pairs = solve_pairs(case, housing, progress)
     return housing, pairs, build_machine(case, housing, pairs, progress)
+
+
+def solve_pairs(
+    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+) -> tuple[LoadedGearPair, ...]:
+    """Solve the gear pairs of a case; none for one without.
+
+    The gap of flanks whose misalignment is to be found is that of the operating point, on rigid seats where there is no
+    housing.
+
+    Raises
+    ------
+    CaseError, coupling.gears.GearError, coupling.CouplingError, coupling.EquilibriumNotFoundError
+        Where a pair cannot be solved as it stands, or the machine has no operating point.
+    """
+    if not case.gear_pair:
+        return ()
+    if all(pair.misalignment != "found" for pair in case.gear_pair):
+        return solve_gears(case, progress)
+    progress("misalignment of the flanks at the operating point")
+    if isinstance(housing, SolvedHousing):
+        housing = reduce_housing(case, housing, progress)
+    component = None if housing is None else housing.component
+    point = describe_machine(case, component, grounded=component is None).operating_point(_gravity(case))
+    return solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
+
+
+def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str, RollingState]]]:
+    """Bearings of each rotor and the states of the rolling ones, linearised about the operating point on rigid seats.
+
+    Where no bearing's load is left to the operating point the case gives them all.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
+        Where a bearing's load or geometry does not let it be, or the machine has no operating point.
+    """
+    given = {one.name: (build_bearings(case, one.name), rolling_states(case, one.name)) for one in case.rotor}
+    if not any(case.finds_load(bearing) for bearing in case.bearing):
+        return given
+    point = describe_machine(case, grounded=True).operating_point(_gravity(case))
+    found = {}
+    for name, (_, states) in given.items():
+        own = [one for one in point.bearings if one.mounted.rotor == name]
+        open_loads = {one.name: one.rolling for one in own if one.mounted.needs_load and one.rolling is not None}
+        found[name] = tuple(one.linearised.bearing for one in own), states | open_loads
+    return found
+
+
+def _gravity(case: Case) -> tuple[float, ...] | None:
+    return None if case.operation is None else case.operation.gravity
 
 
 def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
@@ -210,9 +267,9 @@ def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
     if given.modes is not None:
         return None, given.modes
     if given.frequency_limit is not None:
-        return _HERTZ * given.frequency_limit, None
+        return _TWO_PI * given.frequency_limit, None
     limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
-    return _HERTZ * max(_LATERAL_LIMIT_HZ, _LIMIT_FACTOR * limit), None
+    return _TWO_PI * max(LATERAL_LIMIT_HZ, _HOUSING_FACTOR * limit), None
 
 
 def base_motion(case: Case) -> BaseMotion | None:
@@ -238,7 +295,7 @@ def basis_error(
         return None
     progress("comparing with another modal basis")
     other = replace(housing, component=housing.coarser)
-    return BasisError(machine, build_machine(case, other, pairs, reach=_REACH))
+    return BasisError(machine, build_machine(case, other, pairs, limit_factor=_MORE_MODES))
 
 
 def _housing_components(
@@ -280,3 +337,139 @@ def _housing_component(
         sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
         participation=participation,
     )
+
+
+@dataclass(frozen=True)
+class CaseDriving(Driving):
+    """Excitation of the machine of a case.
+
+    Attributes
+    ----------
+    turning : SpeedProfile or None
+        Speed over time; None where it is the nominal one all along.
+    """
+
+    turning: SpeedProfile | None = None
+
+
+def driving(case: Case, rotors: Sequence[RotorComponent]) -> CaseDriving:
+    """Speed profile, torques, base motion and gravity of a case with an operation.
+
+    Raises
+    ------
+    coupling.TransientError
+        Where a free speed cannot start or stalls.
+    """
+    operation = case.operation
+    assert operation is not None
+    nominal = abs(operation.speed)
+    run = None if case.transient is None else case.transient.run
+    shares = applied_torques(case, 1.0)
+    turning = None
+    if run is not None and run.free:
+        assert operation.motor is not None
+        motor, load = operation.motor, operation.load
+        turning = free_speed(
+            lambda speed: _torque(motor, speed),
+            lambda speed: operation.torque if load is None else _torque(load, speed),
+            train_inertia(case, rotors),
+            start=run.line[1][0],
+            duration=run.duration,
+            nominal=nominal,
+        )
+    elif run is not None:
+        times, speeds = (np.array(part) for part in run.line)
+        turning = SpeedProfile(times, speeds / nominal)
+    torques: list[AnyTorque] = []
+    if turning is not None and run is not None and run.free and operation.load is not None:
+        values = np.array([_torque(operation.load, rate * nominal) for rate in turning.rates])
+        torques += [_history(share, turning.times, values) for share in shares]
+    else:
+        torques += [Torque(one.shaft, _place(one), one.torque) for one in applied_torques(case)]
+    if run is not None and run.free:
+        torques += _slopes(case, shares)
+    torques += _variations(case, shares)
+    drives = [Drive(shares[0].shaft, _place(shares[0]))] if shares else []
+    # The nominal speed is among those at which the machine is assembled.
+    rates = np.array([1.0, *(() if turning is None else turning.rates)])
+    return CaseDriving(
+        torques,
+        drives,
+        (float(rates.min()), float(rates.max())),
+        None if operation.base is None else operation.base.build(),
+        operation.gravity,
+        turning,
+    )
+
+
+def train_inertia(case: Case, rotors: Sequence[RotorComponent]) -> float:
+    """Polar inertia of the train, reduced to the first driver's rotor [kg m²]."""
+    ratios = speed_ratios(case)
+    shares = applied_torques(case, 1.0)
+    rotating = set(ratios) if case.gear_pair else {shares[0].shaft}
+    inertias = {rotor.name: float(np.sum(rotor.turning**2)) for rotor in rotors}
+    first = float(ratios[shares[0].shaft])
+    return sum(inertias[name] * (float(ratios[name]) / first) ** 2 for name in inertias if name in rotating)
+
+
+def _torque(line: TorqueLine, speed: float) -> float:
+    return float(np.interp(speed, line.speed, line.torque))
+
+
+def _place(applied: AppliedTorque) -> float:
+    assert applied.at is not None
+    return applied.at
+
+
+def _history(share: AppliedTorque, times: FloatArray, values: FloatArray) -> TorqueHistory:
+    return TorqueHistory(share.shaft, _place(share), times, share.torque * values)
+
+
+def _slopes(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[TorqueSlope]:
+    """Slopes of the motor's and the load's torques over the deviation of a shaft from its nominal rotation.
+
+    A line's torque T(ω) at the first driver stands for ±T share on a rotor of r times the speed, which changes by
+    ±T' share / |r| with the rotor's own speed: the motor's with the turning, the load's against it.
+    """
+    operation = case.operation
+    assert operation is not None
+    ratios = speed_ratios(case)
+    first = abs(float(ratios[shares[0].shaft]))
+    for number, share in enumerate(shares):
+        line = operation.load if number else operation.motor
+        if line is None:
+            continue
+        rates, slopes = _slope_table(line, abs(operation.speed))
+        sense = 1.0 if number == 0 else -1.0
+        factor = sense * abs(share.torque) * first / abs(float(ratios[share.shaft]))
+        name = f"load on {share.shaft}, {number}" if number else "motor"
+        yield TorqueSlope(name, share.shaft, _place(share), rates, factor * slopes)
+
+
+def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArray]:
+    """dT/dω of a line of straight pieces, level beyond its ends, on both sides of every corner."""
+    corners = np.array(line.speed) / nominal
+    steps = np.concatenate([[0.0], np.diff(line.torque) / np.diff(line.speed), [0.0]])
+    hair = min(_SLOPE_STEP, 0.25 * float(np.diff(corners).min()))
+    return np.column_stack([corners - hair, corners + hair]).ravel(), np.repeat(steps, 2)[1:-1]
+
+
+def _variations(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[AnyTorque]:
+    """Histories added to the torques and ripple about them, each in the sense of its torque."""
+    operation = case.operation
+    assert operation is not None
+    if shares:
+        entering, leaving = shares[0], shares[1:]
+    else:
+        turning = math.copysign(1.0, operation.speed)
+        entering, leaving = AppliedTorque(case.rotor[0].name, operation.at or 0.0, turning), ()
+    own = [output.over_time for output in operation.output]
+    if operation.over_time is not None:
+        yield operation.over_time.build(entering.shaft, _place(entering), math.copysign(1.0, entering.torque))
+        if not any(own):
+            yield from (operation.over_time.build(share.shaft, _place(share), share.torque) for share in leaving)
+    yield from (ripple.build(entering.shaft, _place(entering), entering.torque) for ripple in operation.ripple)
+    for output, share in zip(operation.output, leaving, strict=False):
+        if output.over_time is not None:
+            yield output.over_time.build(share.shaft, _place(share), math.copysign(1.0, share.torque))
+        yield from (ripple.build(share.shaft, _place(share), share.torque) for ripple in output.ripple)

@@ -14,7 +14,7 @@ from gearwhine.case.check_housing import wall_volume
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import check_places
 from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from housing import Joint
 from meshes import Mesh, MeshDefect, diagnose, resolution_defects
@@ -24,7 +24,7 @@ from meshes.quality import WaveCarrier
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
 _MANY_UNKNOWNS = 1.5e6
 
@@ -69,7 +69,7 @@ def resolution_warnings(case: Case, mesh: Mesh, limit_hz: float | None) -> list[
 def _wave(case: Case, limit_hz: float) -> WaveCarrier:
     assert case.housing is not None
     given = case.material[case.housing.material]
-    return WaveCarrier(given.youngs_modulus, given.poisson_ratio, given.density, _HERTZ * limit_hz)
+    return WaveCarrier(given.youngs_modulus, given.poisson_ratio, given.density, _TWO_PI * limit_hz)
 
 
 @dataclass(frozen=True)

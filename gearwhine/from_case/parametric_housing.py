@@ -31,6 +31,10 @@ from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
 from meshes.box.morph import MorphError
 
 _SPREAD = 1.0 / 3.0  # of the larger distance from the nominal value to an end of the range
+FloatArray = npt.NDArray[np.float64]
+
+_STEP = 1e-4  # in z, of the differences that give the rates of what a parameter changes
+_WORST_SHAPE = 0.12  # shape number below which a moved mesh is given up for a new one
 
 
 @dataclass(frozen=True)
@@ -178,12 +182,6 @@ def with_entry(document: Any, place: Location, value: Any) -> Any:
     copy = document.copy()
     copy[step] = with_entry(document[step], tuple(rest), value)
     return copy
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_STEP = 1e-4  # in z, of the differences that give the rates of what a parameter changes
-_WORST_SHAPE = 0.12  # shape number below which a moved mesh is given up for a new one
 
 
 @dataclass(frozen=True)

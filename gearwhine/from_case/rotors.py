@@ -6,16 +6,19 @@ Rolling bearings are linearised about their equilibrium under load.
 import numpy as np
 import numpy.typing as npt
 
-from coupling import RollingLaw
+from coupling import RollingLaw, ShaftGear
 from coupling.gears import Gear
 from coupling.machine.connectors import BearingLaw
+from coupling.machine.parts import rotor_with_gears
 from gearwhine.case import Bearing, Case, CaseError, Problem, RollingStiffness, StopStiffness
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
 from gearwhine.case.errors import UNSAID
 from rotors import Bearing as RotorBearing
-from rotors import Disc, EquilibriumError, Rotor, RotorError
+from rotors import EquilibriumError, Rotor, RotorError
 from rotors import rolling_bearings as rolling
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def build_gear(case: Case, given: GivenGear) -> Gear:
@@ -28,19 +31,18 @@ def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
     return given.inertia(case.material_of_gear(given))
 
 
+def shaft_gears(case: Case, rotor: str) -> list[ShaftGear]:
+    """Build the gears on a rotor of the case, in the order of the file."""
+    return [
+        ShaftGear(build_gear(case, gear), rotor, gear.at, gear_inertia(case, gear))
+        for gear in case.gear
+        if gear.rotor == rotor and gear.at is not None
+    ]
+
+
 def build_rotor(case: Case, given: GivenRotor) -> Rotor:
     """Build a rotor of the case, its gears on it as discs."""
-    bare = given.build(case.material)
-    discs = list(bare.discs)
-    for gear in case.gear:
-        if gear.rotor == given.name and gear.at is not None:
-            inertia = gear_inertia(case, gear)
-            if any(inertia):
-                discs.append(Disc(gear.at, *inertia))
-    return Rotor(bare.name, bare.segments, discs, bare.mass_model)
-
-
-FloatArray = npt.NDArray[np.float64]
+    return rotor_with_gears(given.build(case.material), shaft_gears(case, given.name))
 
 
 def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:
@@ -60,7 +62,7 @@ def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:
 
 
 def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
-    """Solve a bearing's equilibrium under its load, its shaft in line with its seat; None for other bearings.
+    """Solve a bearing's equilibrium under the load of the case, its shaft in line with its seat; None for others.
 
     Raises
     ------
@@ -68,7 +70,7 @@ def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
         As `build_bearings`.
     """
     given = case.bearing[index]
-    if not isinstance(given.stiffness, RollingStiffness):
+    if not isinstance(given.stiffness, RollingStiffness) or case.finds_load(given):
         return None
     load = (0.0, 0.0, 0.0) if given.load is None else (given.load.x, given.load.y, given.load.z)
     try:
@@ -90,10 +92,30 @@ def bearing_law(case: Case, index: int) -> BearingLaw | None:
     if isinstance(given, StopStiffness):
         return given.stop.build()
     if isinstance(given, RollingStiffness) and given.rolling.law == "nonlinear":
+        # One whose load is left to the operating point waits for it undeflected.
         state = rolling_state(case, index)
-        assert state is not None
-        return RollingLaw(state)
+        return RollingLaw(rolling.rolling_state(_elements(case, index), np.zeros(5)) if state is None else state)
     return None
+
+
+def rolling_elements(case: Case, index: int) -> rolling.RollingBearing | None:
+    """Build a rolling bearing by its elements; None for other bearings.
+
+    Raises
+    ------
+    CaseError
+        As `build_bearings`.
+    """
+    return _elements(case, index) if isinstance(case.bearing[index].stiffness, RollingStiffness) else None
+
+
+def _elements(case: Case, index: int) -> rolling.RollingBearing:
+    given = case.bearing[index]
+    assert isinstance(given.stiffness, RollingStiffness)
+    try:
+        return given.stiffness.rolling.build(given.name)
+    except RotorError as error:
+        raise _refused(given, index, error) from error
 
 
 def rolling_states(case: Case, rotor: str) -> dict[str, rolling.RollingState]:
@@ -129,6 +151,8 @@ def _stiffness(case: Case, index: int) -> FloatArray:
         return given.stiffness.stop.build().tangent(load)
     if not isinstance(given.stiffness, RollingStiffness):
         return given.stiffness.build()
+    if case.finds_load(given):
+        return np.zeros((5, 5))
     state = rolling_state(case, index)
     assert state is not None
     try:

@@ -16,6 +16,10 @@ rows of like objects::
 
 :func:`document_of` makes the document of it, :func:`gearwhine.output.dataset.arrays_of` the arrays of the file, and
 :func:`gearwhine.output.sections.columns_of` the columns of a table. None of them knows any physics.
+
+Every document has a list ``warnings`` of entries with a ``name``, a ``message`` and the figures that belong to it:
+results that are formally right and physically questionable. The command prints the messages on standard error, the
+report shows them first.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -28,6 +32,8 @@ HERTZ: Final = 2.0 * np.pi
 """Radians per second in one hertz."""
 RPM: Final = 60.0 / (2.0 * np.pi)
 """Revolutions per minute in one radian per second."""
+
+Document = dict[str, Any]
 
 
 class Absent:
@@ -167,3 +173,29 @@ def plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [plain(entry) for entry in value]
     return value
+
+
+def warning(name: str, message: str, **figures: Any) -> Document:
+    """One entry of a document's ``warnings``; ``figures`` have their units in their keys."""
+    return {"name": name, "message": message} | figures
+
+
+def add_warnings(document: Document, found: Iterable[Mapping[str, Any]] = ()) -> None:
+    """Append warnings to those that a document has; a message that it has already is not repeated."""
+    listed = list(document.get("warnings", ()))
+    messages = {entry["message"] for entry in listed}
+    for entry in found:
+        if entry["message"] not in messages:
+            listed.append(dict(entry))
+            messages.add(entry["message"])
+    document["warnings"] = listed
+
+
+def joined(*documents: Mapping[str, Any]) -> Document:
+    """Merge documents: the keys of later ones win, the warnings of all are joined."""
+    whole: Document = {}
+    for document in documents:
+        found = document.get("warnings", ())
+        add_warnings(whole, found)
+        whole |= {key: value for key, value in document.items() if key != "warnings"}
+    return whole

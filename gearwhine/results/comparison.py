@@ -1,7 +1,9 @@
-"""Measured and model modes: quantities of their pairs, MAC and responses, and how terminal and report show them."""
+"""Measured and model modes: quantities of their pairs, MAC and responses; their display, and CSV tables of them."""
 
+import csv
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,8 +16,8 @@ if TYPE_CHECKING:
 
     from gearwhine.solve.comparison import ResponseCorrelation
     from gearwhine.solve.housing_modes import SolvedHousing
-    from housing.correlation.comparison import Comparison
-    from housing.measured import MappedSurvey
+    from housing.correlation.comparison import Comparison, ShapeCorrelation
+    from housing.measured import MappedSurvey, MeasuredGeometry
 
 PAIR = (
     Quantity(
@@ -370,3 +372,105 @@ def _both(pair: Document) -> str:
 
 def _listed(numbers: list[int]) -> str:
     return ", ".join(str(number) for number in numbers)
+
+
+_PAIR_COLUMNS = ("measured_mode", "measured_hz", "model_hz", "error_percent", "mode", "mac", "confidence", "strength")
+_ALONG = 1e-4  # by which a direction may miss an axis and still be named after it
+
+
+def write_comparison(folder: Path, comparison: "Comparison", geometry: "MeasuredGeometry | None" = None) -> list[str]:
+    """Write ``comparison.csv``; with shapes also the MAC matrix, and COMAC at each point.
+
+    Parameters
+    ----------
+    folder : path
+    comparison : Comparison
+    geometry : housing.measured.MeasuredGeometry, optional
+        Of the survey, which names the degrees of freedom; else they are numbered.
+
+    Returns
+    -------
+    list of str
+        The files' names: ``mac.csv`` with shapes, ``comac.csv`` where there are pairs.
+    """
+    _write_table(folder / "comparison.csv", _PAIR_COLUMNS, _pair_rows(comparison))
+    files, shapes = ["comparison.csv"], comparison.shapes
+    if shapes is not None:
+        files.append(_write_mac(folder, shapes))
+        if shapes.comac is not None:
+            files.append(_write_coordinates(folder, shapes, geometry))
+    return files
+
+
+def write_response_correlation(folder: Path, likeness: "ResponseCorrelation") -> str:
+    """Write ``frac.csv``, a row for each degree of freedom and a column for each force; the file's name."""
+    heads = ["response", *dof_names(likeness.references)]
+    rows = [
+        [name, *("" if np.isnan(value) else _cell(value) for value in values)]
+        for name, values in zip(dof_names(likeness.geometry), likeness.frac, strict=True)
+    ]
+    _write_table(folder / "frac.csv", heads, rows)
+    return "frac.csv"
+
+
+def dof_names(geometry: "MeasuredGeometry") -> list[str]:
+    """Each measured degree of freedom by its point and direction, such as ``12 +z`` or ``12 (0.71 0.00 0.71)``."""
+    names = []
+    for point, direction in zip(geometry.points, geometry.directions, strict=True):
+        axis = int(np.argmax(np.abs(direction)))
+        sign = "-" if direction[axis] < 0.0 else "+"
+        along = f"{sign}{'xyz'[axis]}"
+        if np.abs(np.delete(direction, axis)).max() > _ALONG:
+            along = "({:.2f} {:.2f} {:.2f})".format(*direction)
+        names.append(f"{geometry.labels[point]} {along}")
+    return names
+
+
+def _pair_rows(comparison: "Comparison") -> list[list[object]]:
+    """Rows of the source's Table II with the evidence for each pair; a measured mode without a partner has one, too."""
+    of = {quantity.key: quantity.of for quantity in PAIR}
+    rows: list[list[object]] = [[_cell(of[key](pair)) for key in _PAIR_COLUMNS] for pair in comparison.pairs]
+    shapes = comparison.shapes
+    for number in () if shapes is None else shapes.unpaired_measured:
+        assert shapes is not None
+        rows.append([number, _cell(shapes.measured_frequencies[number - 1] / HERTZ), *[""] * 6])
+    return sorted(rows, key=lambda row: int(str(row[0])))
+
+
+def _write_mac(folder: Path, shapes: "ShapeCorrelation") -> str:
+    heads = ["mode", "model_hz", *(f"measured_{number + 1}" for number in range(len(shapes.measured_frequencies)))]
+    model = shapes.model_frequencies / HERTZ
+    table = [[mode + 1, _cell(model[mode]), *map(_cell, shapes.mac[mode])] for mode in range(len(model))]
+    _write_table(folder / "mac.csv", heads, table)
+    return "mac.csv"
+
+
+def _write_coordinates(folder: Path, shapes: "ShapeCorrelation", geometry: "MeasuredGeometry | None") -> str:
+    assert shapes.comac is not None
+    assert shapes.enhanced_comac is not None
+    names = coordinate_names(len(shapes.comac), geometry)
+    table = [
+        [name, _cell(plain), _cell(enhanced)]
+        for name, plain, enhanced in zip(names, shapes.comac, shapes.enhanced_comac, strict=True)
+    ]
+    _write_table(folder / "comac.csv", ["degree_of_freedom", "comac", "enhanced_comac"], table)
+    return "comac.csv"
+
+
+def coordinate_names(count: int, geometry: "MeasuredGeometry | None") -> list[str]:
+    """Names of the measured degrees of freedom; their numbers where no geometry names them."""
+    return [str(dof + 1) for dof in range(count)] if geometry is None else dof_names(geometry)
+
+
+def _cell(value: float | None) -> str | int:
+    """Six digits, which is more than any measurement has; nothing where there is none; a whole number as it is."""
+    if isinstance(value, int):
+        return value
+    return "" if value is None or not np.isfinite(value) else f"{value:.6g}"
+
+
+def _write_table(path: Path, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(heads)
+        writer.writerows(rows)

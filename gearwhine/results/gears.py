@@ -11,10 +11,9 @@ import numpy as np
 from coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of_contact
 from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
 from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
-from gearwhine.from_case.gear_pairs import backlash_warnings
+from gearwhine.from_case.gear_pairs import geometry_warnings
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
-from gearwhine.results.gear_warnings import geometry_warnings
 
 if TYPE_CHECKING:
     from gearwhine.solve.gear_pairs import PairAnalysis
@@ -280,7 +279,7 @@ HARRIS_MAP = (
 """The transmission error over the mesh period for a range of torques."""
 
 STIFFNESS = (
-    Quantity("mean", lambda pair: pair.solved.contact.mean_mesh_stiffness),
+    Quantity("mean", lambda pair: pair.solved.contact.unloaded_mean_mesh_stiffness),
     Quantity("min", lambda pair: pair.stiffness.min()),
     Quantity("max", lambda pair: pair.stiffness.max()),
     Quantity("loaded_mean", lambda pair: pair.solved.static.mean_mesh_stiffness),
@@ -428,8 +427,7 @@ def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
 def _warnings(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
     """Warn of the teeth's shape, the backlash, a runout that the curves leave out, and an overload."""
     solved, geometry = pair.solved, pair.solved.geometry
-    yield from geometry_warnings(geometry)
-    yield from backlash_warnings(pair.given, geometry)
+    yield from geometry_warnings(solved.pair, geometry)
     for gear in (geometry.driver, geometry.driven):
         if gear.eccentricity > 0.0:
             message = (

@@ -85,15 +85,17 @@ MODE = (
 )
 """Of one mode."""
 
-CERTIFICATE = (
+COUNT_CERTIFICATE = (
     Quantity("limit_hz", lambda certificate: certificate.limit / HERTZ),
     Quantity("expected", lambda certificate: certificate.expected),
     Quantity("found", lambda certificate: certificate.found),
     Quantity("complete", lambda certificate: certificate.complete),
     Quantity("max_residual", lambda certificate: certificate.max_residual),
-    Quantity("max_overlap", lambda certificate: certificate.max_overlap),
 )
-"""Proof of the modes by the inertia count."""
+"""Proof of modes by their count below a limit, of a housing or of a rotor."""
+
+CERTIFICATE = (*COUNT_CERTIFICATE, Quantity("max_overlap", lambda certificate: certificate.max_overlap))
+"""Proof of the housing's modes by the inertia count."""
 
 MESH_SIZE = (
     Quantity("nodes", lambda mesh: len(mesh.points)),

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of, warning
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
-from gearwhine.output.warnings import warning
+from gearwhine.results.housing import COUNT_CERTIFICATE
 
 if TYPE_CHECKING:
     from gearwhine.solve.rotors import Crossings, SolvedRotor
@@ -331,15 +331,6 @@ STIFFNESS_MAP = (
     _critical_speed_map("backward", -1),
 )
 
-CERTIFICATE = (
-    Quantity("limit_hz", lambda certificate: certificate.limit / HERTZ),
-    Quantity("expected", lambda certificate: certificate.expected),
-    Quantity("found", lambda certificate: certificate.found),
-    Quantity("complete", lambda certificate: certificate.complete),
-    Quantity("max_residual", lambda certificate: certificate.max_residual),
-)
-"""Proof of the frequencies at rest by their count."""
-
 ROTOR = (
     Quantity("name", lambda one: one.rotor.name, "rotor", heading="rotor"),
     Quantity("mass_kg", lambda one: one.rotor.mass, heading="mass [kg]", shown=".3f"),
@@ -428,7 +419,7 @@ ROTOR = (
     ),
     Part("torsional_response", lambda one: one.torsion, TORSION),
     Part("stiffness_map", lambda one: one.stiffness_map, STIFFNESS_MAP),
-    Part("certificate", lambda one: one.rest.certificate, CERTIFICATE),
+    Part("certificate", lambda one: one.rest.certificate, COUNT_CERTIFICATE),
 )
 """Of one rotor on grounded bearings."""
 

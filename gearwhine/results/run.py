@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import h5netcdf
 import numpy as np
 
-from coupling.signals.histories import HISTORY_QUANTITIES
-from coupling.signals.histories import Quantity as History
+from coupling.signals.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
 from gearwhine.results import comparison
@@ -487,7 +486,7 @@ def run_signature_document(found: "RunSignature") -> dict[str, Any]:
     return document_of(RUN_SIGNATURE, found)
 
 
-_MODAL = History(
+_MODAL = HistoryQuantity(
     "modal_displacement", ("modal_coordinate", "time"), lambda coordinates: coordinates, "m kg0.5", MODAL_COORDINATE
 )
 
@@ -543,7 +542,7 @@ class HistoryStream:
                 self._told(history),
             )
 
-    def _told(self, history: History) -> dict[str, Any]:
+    def _told(self, history: HistoryQuantity) -> dict[str, Any]:
         """Labels of a history; of one that was filtered also by how much."""
         told: dict[str, Any] = {"units": history.unit, "long_name": history.what}
         sampling = self.solved.record.sampling
@@ -555,7 +554,7 @@ class HistoryStream:
 _TIME = {"units": "s", "long_name": "time from static equilibrium"}
 
 
-def _recorded(signals: "Signals") -> list[tuple[History, Any]]:
+def _recorded(signals: "Signals") -> list[tuple[HistoryQuantity, Any]]:
     """Return every recorded history with the values of each of its signals."""
     found = [(history, history.of(signals.histories)) for history in HISTORY_QUANTITIES]
     found.append((_MODAL, signals.modal.coordinates))

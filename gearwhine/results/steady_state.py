@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Section, Table, columns_of, counted, percent, table_of
-from gearwhine.output.warnings import add_warnings
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from gearwhine.output.sections import Column, Document, Section, columns_of, cou
 from gearwhine.results.housing import ORIGIN
 
 if TYPE_CHECKING:
+    from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.housing_modes import SolvedHousing
-    from gearwhine.solve.survey_plan import PlannedSurvey
 
 SENSOR = (
     Quantity("point", lambda row: row[0], heading="point"),

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.case.errors import key_of
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes
-from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of, warning
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
-from gearwhine.output.warnings import warning
 
 if TYPE_CHECKING:
     from gearwhine.case import Case

@@ -4,11 +4,11 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
 :mod:`gearwhine.results`.
 
 - :mod:`~gearwhine.solve.case_summary`: check of a case, without solving.
-- :mod:`~gearwhine.solve.housing_modes`, :mod:`~gearwhine.solve.housing_health`: the housing's modes and their checks.
-- :mod:`~gearwhine.solve.comparison`, :mod:`~gearwhine.solve.updating`, :mod:`~gearwhine.solve.survey_plan`: measured
-  modes beside the model's, model updating, and the plan of a modal survey.
+- :mod:`~gearwhine.solve.housing_modes`: the housing's modes and their checks.
+- :mod:`~gearwhine.solve.comparison`, :mod:`~gearwhine.solve.updating`: measured modes beside the model's with the plan
+  of a survey, and model updating.
 - :mod:`~gearwhine.solve.rotors`: each rotor alone.
-- :mod:`~gearwhine.solve.gear_pairs`, :mod:`~gearwhine.solve.relief_aims`: each gear pair, and its best tip relief.
+- :mod:`~gearwhine.solve.gear_pairs`: each gear pair, and its best tip relief.
 - :mod:`~gearwhine.solve.operating_point`: static equilibrium of the machine under its mean load.
 - :mod:`~gearwhine.solve.coupled_system`, :mod:`~gearwhine.solve.steady_state`, :mod:`~gearwhine.solve.transient`: the
   machine's modes and responses, its periodic motion, and its motion over time.

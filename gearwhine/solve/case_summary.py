@@ -7,15 +7,14 @@ from typing import Any
 from coupling.gears import GearPairGeometry
 from gearwhine.case import Case, GearPair, Rotor, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.from_case import mesh_health
-from gearwhine.from_case.gear_pairs import backlash_warnings, build_pair, pair_geometries
+from gearwhine.from_case.gear_pairs import build_pair, geometry_warnings, pair_geometries
 from gearwhine.from_case.machine import require_machine
 from gearwhine.from_case.mesh import material_of
 from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from gearwhine.results.gear_warnings import geometry_warnings
 from rotors import Rotor as BuiltRotor
 
 
@@ -108,7 +107,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     rotors = tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
     pairs = tuple(_checked_pairs(case))
     for pair in pairs:
-        warnings += [*geometry_warnings(pair.geometry), *backlash_warnings(pair.given, pair.geometry)]
+        warnings += geometry_warnings(build_pair(pair.given), pair.geometry)
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     return CheckedCase(case, mesh, rotors, pairs, warnings)

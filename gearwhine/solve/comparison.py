@@ -1,21 +1,24 @@
-"""Comparison of a solved housing with the measured modes of its case: read, aligned, paired.
+"""Comparison of a solved housing with the measured modes of its case, and the plan of a survey that measures them.
 
-Measured modes are mapped to the model's degrees of freedom. Measured frequency responses are compared with the model's
-at the same points by FRAC.
+Measured modes are read, aligned, mapped to the model's degrees of freedom, and paired. Measured frequency responses are
+compared with the model's at the same points by FRAC. A planned survey has sensors, a hammer position, and files for a
+test program.
 """
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
+from gearwhine.from_case.fixtures import build_supports
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing, pair_modes
+from gearwhine.solve.housing_modes import SolvedHousing
 from housing import HousingError
 from housing.correlation import frac, synthesised_responses
-from housing.correlation.comparison import Comparison
+from housing.correlation.comparison import Comparison, compare_by_dominance, compare_by_shapes
 from housing.correlation.pairing import PairingRule
 from housing.measured import (
     Alignment,
@@ -23,16 +26,29 @@ from housing.measured import (
     MeasuredGeometry,
     MeasuredModes,
     MeasuredResponses,
+    SurveyData,
+    SurveyPlan,
     align_landmarks,
     align_to_surface,
+    candidate_points,
     identify_modes,
     map_survey,
+    plan_survey,
+    planned_geometry,
+    write_table,
+    write_universal,
 )
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
+_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
+
+# Places looked at for each sensor, and in all at least: more of them stand closer, and the method takes neighbours,
+# which say the same twice.
+_PLACES, _FEWEST = 4, 100
+_PLAN_FILES = ("survey.uff", "survey.csv")
 
 
 def read_measured(case: Case, progress: Progress = silent) -> MeasuredModes:
@@ -49,7 +65,7 @@ def read_measured(case: Case, progress: Progress = silent) -> MeasuredModes:
     if given.survey is None:
         assert given.frequencies is not None
         ratios = None if given.damping_ratios is None else np.array(given.damping_ratios)
-        return MeasuredModes(_HERTZ * np.array(given.frequencies), ratios)
+        return MeasuredModes(_TWO_PI * np.array(given.frequencies), ratios)
     if given.survey.modes is not None:
         return given.survey.modes
     assert given.survey.responses is not None
@@ -177,7 +193,7 @@ def compare_responses(
     lines = np.flatnonzero((responses.frequencies > 0.0) & (responses.frequencies <= limit))
     if len(lines) < 2:
         raise HousingError(
-            f"the responses have {len(lines)} lines between 0 and {limit / _HERTZ:.0f} Hz, up to where the model's "
+            f"the responses have {len(lines)} lines between 0 and {limit / _TWO_PI:.0f} Hz, up to where the model's "
             "modes are known: expected two at least"
         )
     forces = replace(
@@ -211,3 +227,113 @@ def compare_responses_document(
         return compare_responses(case, solved, survey, responses)
     except HousingError as error:  # of the responses: the pairs of modes stand without them
         return str(error)
+
+
+def pair_modes(
+    solved: SolvedHousing,
+    measured: MeasuredModes,
+    shapes: FloatArray | None = None,
+    rule: PairingRule | None = None,
+) -> Comparison:
+    """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
+
+    Parameters
+    ----------
+    solved : SolvedHousing
+    measured : housing.measured.MeasuredModes
+    shapes : ndarray, shape (n_modes, n_dofs), optional
+        The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
+    rule : PairingRule, optional
+        Of the pairing by shape.
+
+    Raises
+    ------
+    CaseError
+        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
+        no seats to be driven at.
+    housing.HousingError
+        Where the model has too few modes in the band, or its shapes do not fit the measured ones.
+    """
+    if measured.shapes is None or shapes is None:
+        return _compare_by_dominance(solved, measured.frequencies)
+    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
+    return compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
+
+
+def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Comparison:
+    if solved.strengths is None:
+        raise CaseError(
+            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
+        )
+    comparison = compare_by_dominance(frequencies, solved.strengths)
+    _require_modes_up_to(solved, comparison.band[1], "dominant modes are looked for")
+    return comparison
+
+
+def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> None:
+    limit = solved.modes.certificate.limit
+    if limit < highest:
+        expected = (
+            f"at least {highest / _TWO_PI:.5g} Hz: {why} up to there, and the model's are known only below the limit"
+        )
+        raise CaseError([Problem("housing.frequency_limit", f"{limit / _TWO_PI:.5g} Hz", expected)])
+
+
+@dataclass(frozen=True)
+class PlannedSurvey:
+    """Planned survey and its quality.
+
+    Attributes
+    ----------
+    geometry : MeasuredGeometry
+        Sensors, the best first.
+    candidates : MeasuredGeometry
+    plan : SurveyPlan
+    modes : list of int
+        Numbers of the modes to separate, from 1.
+    frequencies_hz : ndarray, shape (n_modes,)
+        Natural frequencies of these modes [Hz].
+    """
+
+    geometry: MeasuredGeometry
+    candidates: MeasuredGeometry
+    plan: SurveyPlan
+    modes: list[int]
+    frequencies_hz: npt.NDArray[np.float64]
+
+
+def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | None = None) -> PlannedSurvey:
+    """Plan a survey of the lowest modes that bend the housing.
+
+    Parameters
+    ----------
+    case : Case
+    solved : SolvedHousing
+    sensors : int
+    modes : int, optional
+        Number of modes; all that are known where not given. Rigid motions of a free housing are left out.
+
+    Raises
+    ------
+    CaseError
+        Where the sensors cannot separate the modes.
+    """
+    elastic = np.flatnonzero(solved.modes.frequencies > 0.0)[:modes]
+    seats = [block for name in solved.seats for block in solved.mesh.surface(name)]
+    held = [block for support in build_supports(case) for block in support.facets(solved.mesh)]
+    try:
+        candidates = candidate_points(solved.mesh, max(_FEWEST, _PLACES * sensors), without=(*seats, *held))
+        shapes = map_survey(solved.mesh, candidates).shapes(solved.modes.shapes[elastic])
+        plan = plan_survey(shapes, sensors)
+    except HousingError as error:
+        raise CaseError([Problem("--sensors", str(sensors), f"sensors that can be placed; {error}")]) from error
+    geometry = planned_geometry(candidates, plan.sensors)
+    frequencies = solved.modes.frequencies_hz[elastic]
+    return PlannedSurvey(geometry, candidates, plan, (elastic + 1).tolist(), frequencies)
+
+
+def write_plan(place: Path, planned: PlannedSurvey) -> None:
+    """Write the survey plan as a universal file (points, directions, trace lines) and as a table."""
+    survey = SurveyData(planned.geometry)
+    write_universal(place / _PLAN_FILES[0], survey, points=15)
+    write_table(place / _PLAN_FILES[1], survey)

@@ -26,7 +26,7 @@ from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
 _LOWEST_HZ = 20.0  # of a frequency response
 _HARMONICS = 4.0  # of the mesh that a response covers where no housing says how far the model goes
@@ -180,7 +180,7 @@ def _mesh_responses(
     if not touching:
         return (), None
     limit = _frequency_limit(case, housing)
-    frequencies = resonance_grid(modes, _HERTZ * min(_LOWEST_HZ, 0.1 * limit), _HERTZ * limit)
+    frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit)
     try:
         found = [
             mesh_error_response(machine, frequencies, mesh=number, contact=contact, modes=modes) for number in touching
@@ -201,7 +201,7 @@ def _mesh_responses(
 def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:
     """Return the upper frequency of responses [Hz]: that of the housing's modes, or some harmonics of the meshes."""
     if housing is not None:
-        return housing.modes.certificate.limit / _HERTZ
+        return housing.modes.certificate.limit / _TWO_PI
     return _HARMONICS * max(mesh_frequencies(case)) if max(mesh_frequencies(case)) > 0.0 else 1000.0
 
 

@@ -1,11 +1,14 @@
 """Analysis of a gear pair under the case's torque: load sharing, contact pressure, transmission error.
 
-Over a range of torques these give Harris maps and the optimal tip relief.
+Over a range of torques these give Harris maps and the optimal tip relief, whose aim is peak to peak, weighted
+harmonics, or the level at a sensor.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -29,21 +32,28 @@ from coupling.gears.loaded.optimal_relief import (
     PeakToPeak,
     ReliefAim,
     ReliefOptimum,
+    WeightedHarmonics,
     transmission_error_harmonics,
 )
-from gearwhine.case import Case
+from coupling.linear.frequency_response import mesh_error_response
+from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import GearPair as GivenPair
+from gearwhine.case.errors import NOTHING
+from gearwhine.case.gears import ReliefAim as GivenAim
+from gearwhine.from_case.machine import build_machine
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import solve_housing
 
 FloatArray = npt.NDArray[np.float64]
 
 HARMONICS = 8
 _PHASES = 400  # of the mesh period, evenly, for curves that pairs have in common
 _PLACES = 200  # along a flank
+_AIMED_AT = 8  # harmonics of the mesh frequency, where the case does not name them
 
 
 @dataclass(frozen=True, eq=False)
-class ToothPairCurves:
+class MeshPeriodCurves:
     """A gear pair at even phases of its mesh period, (n,), with every pair of teeth (n, m); NaN where one is absent.
 
     Attributes
@@ -159,7 +169,7 @@ class PairAnalysis:
         place = np.unravel_index(int(known.argmax()), known.shape)
         return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
 
-    def curves(self) -> ToothPairCurves:
+    def curves(self) -> MeshPeriodCurves:
         """Return the pair's curves at even phases of the mesh period."""
         phases = np.arange(_PHASES) / _PHASES
         contact, faces = self.solved.contact, self.solved.contact.faces
@@ -170,7 +180,7 @@ class PairAnalysis:
             whole = mesh_pressure(self.solved.geometry, contact, mesh)
             # Over the face the largest; what lies off the path has none.
             pressure = whole if whole.ndim == 2 else np.fmax.reduce(whole, axis=2)
-        return ToothPairCurves(
+        return MeshPeriodCurves(
             phases=phases,
             mesh=mesh,
             stiffness=mesh_stiffness(contact, phases),
@@ -325,3 +335,48 @@ def _alike(pair: GearPairGeometry) -> GearPairGeometry:
     """Return the pair with all teeth of a gear alike: a relief is cut for all of them."""
     driver, driven = (replace(gear, pitch_deviations=(), faults=()) for gear in (pair.driver, pair.driven))
     return replace(pair, driver=driver, driven=driven)
+
+
+def relief_aims(
+    case: Case, pairs: tuple[LoadedGearPair, ...], progress: Progress = silent, *, folder: Path | None = None
+) -> tuple[ReliefAim, ...]:
+    """Objective of the tip-relief search for each pair.
+
+    The aim at a sensor is the root mean square of its acceleration over the multiples n of the mesh frequency,
+    √(½ Σ (w_n |H_n| e_n)²), with H_n the transmissibility about the mesh as the case has it under its load. The
+    housing is solved for it.
+
+    Raises
+    ------
+    CaseError
+        Where a sensor is aimed at and the pair does not turn, or no multiple lies below the model's limit.
+    """
+    aims = [given.relief_aim for given in case.gear_pair]
+    if all(aim is None or aim.sensor is None for aim in aims):
+        return tuple(_without_sensor(aim) for aim in aims)
+    require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
+    housing = solve_housing(case, progress, folder=folder)
+    machine = build_machine(case, housing, pairs, progress)
+    limit = housing.trusted_limit_hz
+    found = []
+    for number, (pair, aim) in enumerate(zip(pairs, aims, strict=True)):
+        if aim is None or aim.sensor is None:
+            found.append(_without_sensor(aim))
+            continue
+        key = f"gear_pair[{number}].relief_aim"
+        if not pair.mesh_frequency:
+            raise CaseError([Problem(key, NOTHING, "a speed: the level at a sensor is of gears that turn")])
+        given = aim.weights or dict.fromkeys(range(1, _AIMED_AT + 1), 1.0)
+        weights = {n: weight for n, weight in given.items() if weight and n * pair.mesh_frequency <= limit}
+        if not weights:
+            expected = f"multiples of the mesh frequency of {pair.mesh_frequency:.5g} Hz below {limit:.5g} Hz"
+            raise CaseError([Problem(f"{key}.harmonics", list(given), f"{expected}, up to which the modes are known")])
+        frequencies = 2.0 * np.pi * pair.mesh_frequency * np.array(list(weights))
+        response = mesh_error_response(machine, frequencies, mesh=number)
+        levels = np.abs(response.sensor_acceleration[aim.sensor]) / math.sqrt(2.0)
+        found.append(WeightedHarmonics({n: weights[n] * float(h) for n, h in zip(weights, levels, strict=True)}))
+    return tuple(found)
+
+
+def _without_sensor(aim: GivenAim | None) -> ReliefAim:
+    return PeakToPeak() if aim is None else WeightedHarmonics(aim.weights)

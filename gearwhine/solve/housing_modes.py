@@ -1,4 +1,4 @@
-"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance; and their cache.
+"""Housing modes of a case: mesh, certified natural modes, damping, seats, sensors, dominance; their cache and checks.
 
 The mode cache is a file in the results folder that is read again while the housing is unchanged. Modes are identified
 by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys that do not enter the
@@ -27,30 +27,25 @@ from gearwhine.from_case.fixtures import attach_all, build_attachments, check_pl
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.mesh_health import noted_on_failure, require_meshable, resolution_warnings
 from gearwhine.output.files import file_contents, installed, source_digest, texts_in, with_contents
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_health import bearing_places, housing_checks
 from housing import (
+    HealthReport,
     Housing,
     HousingError,
     ModeSet,
-    compare_by_dominance,
-    compare_by_shapes,
     effective_mass,
     modal_damping,
     read_modes,
-    solve_modes,
     write_modes,
 )
-from housing.correlation.comparison import Comparison
-from housing.correlation.pairing import PairingRule
 from housing.errors import ModeFileError
-from housing.measured import MeasuredModes
 from housing.measured.survey_planning import Survey, survey_grid
-from housing.model.housing import RESPONSE_ORDERS, bearing_port
-from housing.model.patches import rigid_motions
+from housing.model.housing import RESPONSE_ORDERS, bearing_port, certified_modes
+from housing.model.material import mass_properties
 from housing.model.seats import SensorPort
 from housing.modes.dominance import Dominance, dominance
+from housing.modes.effective_mass import EffectiveMass
 from housing.modes.effective_mass import damping_ratios as housing_damping_ratios
 from housing.modes.receptance import Selection, select_modes
 from housing.storage.mesh_arrays import mesh_digest
@@ -58,11 +53,18 @@ from housing.storage.mode_file import ModeRecord, with_sensors
 from housing.storage.netcdf import LabelledArray, content_key
 from meshes import Mesh
 
+FloatArray = npt.NDArray[np.float64]
+
 MODE_CACHE_FILE = "modes.nc"
 
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
+_TWO_PI = 2.0 * np.pi
+_COORDINATES = ("coordinate", "other_coordinate")
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
+_DAMPING = "modal_damping"  # its name in a mode-set file
+_DIRECTIONS = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
 
 
 def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
@@ -104,15 +106,6 @@ def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord
     except ModeFileError as error:
         return None, f"{error}; the modes are solved again"
     return (record if record.key == content_key(inputs) else None), None
-
-
-FloatArray = npt.NDArray[np.float64]
-
-_HERTZ = 2.0 * np.pi
-_COORDINATES = ("coordinate", "other_coordinate")
-_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
-_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
-_DAMPING = "modal_damping"  # its name in a mode-set file
 
 
 @dataclass(frozen=True)
@@ -178,13 +171,11 @@ class SolvedHousing:
     @property
     def trusted_limit_hz(self) -> float:
         """Frequency below which the modes are complete [Hz]."""
-        return self.modes.certificate.limit / _HERTZ
+        return self.modes.certificate.limit / _TWO_PI
 
     @property
     def total_damping_ratios(self) -> FloatArray:
         """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
-        if self.damping_matrix is None:
-            return self.damping_ratios
         return housing_damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
 
     @property
@@ -278,7 +269,7 @@ def solve_housing(
         if cached is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
-            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _HERTZ)
+            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _TWO_PI)
         else:
             modes, mass, checks = cached.modes, cached.mass, cached.notes["checks"]
             damping_matrix = cached.extras[_DAMPING].values if _DAMPING in cached.extras else None
@@ -339,12 +330,12 @@ def _solve_modes(
     assembled = time.perf_counter() - begin
     wanted = "modes" if given.frequency_limit is None else "frequency_limit"
     try:
-        modes = solve_modes(
+        modes = certified_modes(
             matrices,
-            frequency_limit=None if given.frequency_limit is None else _HERTZ * given.frequency_limit,
+            loaded,
+            below_hz=given.frequency_limit,
             count=given.modes,
-            ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-            port_orders=RESPONSE_ORDERS,
+            solver=given.solver,
             progress=progress,
         )
     except HousingError as error:
@@ -386,61 +377,10 @@ def write_mode_cache(place: Path, solved: SolvedHousing) -> None:
 def base_participation(case: Case, mesh: Mesh, modes: ModeSet) -> FloatArray:
     """Participation of modes and attachments in the motions of the ground, about the origin, shape (n, 6) [√kg, √kg m].
 
-    φᵀ M R over every degree of freedom: what is fixed moves with the ground, and pulls by the consistent mass.
+    See :meth:`housing.Housing.participation`.
     """
-    mass = describe_housing(case, mesh).matrices().mass
-    moved = mass @ rigid_motions(mesh.points, np.zeros(3)).reshape(-1, 6)
-    return modes.project_all(sparse.csr_array(moved.T))
-
-
-def pair_modes(
-    solved: SolvedHousing,
-    measured: MeasuredModes,
-    shapes: FloatArray | None = None,
-    rule: PairingRule | None = None,
-) -> Comparison:
-    """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
-
-    Parameters
-    ----------
-    solved : SolvedHousing
-    measured : housing.measured.MeasuredModes
-    shapes : ndarray, shape (n_modes, n_dofs), optional
-        The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
-    rule : PairingRule, optional
-        Of the pairing by shape.
-
-    Raises
-    ------
-    CaseError
-        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
-        no seats to be driven at.
-    housing.HousingError
-        Where the model has too few modes in the band, or its shapes do not fit the measured ones.
-    """
-    if measured.shapes is None or shapes is None:
-        return _compare_by_dominance(solved, measured.frequencies)
-    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
-    return compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
-
-
-def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Comparison:
-    if solved.strengths is None:
-        raise CaseError(
-            [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
-        )
-    comparison = compare_by_dominance(frequencies, solved.strengths)
-    _require_modes_up_to(solved, comparison.band[1], "dominant modes are looked for")
-    return comparison
-
-
-def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> None:
-    limit = solved.modes.certificate.limit
-    if limit < highest:
-        expected = (
-            f"at least {highest / _HERTZ:.5g} Hz: {why} up to there, and the model's are known only below the limit"
-        )
-        raise CaseError([Problem("housing.frequency_limit", f"{limit / _HERTZ:.5g} Hz", expected)])
+    described = describe_housing(case, mesh)
+    return described.participation(described.matrices(), modes)
 
 
 def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
@@ -464,3 +404,70 @@ def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:
         return np.array(given[: len(frequencies_hz)])
     assert isinstance(given, float | int)
     return np.full(len(frequencies_hz), float(given))
+
+
+def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
+    """Bearing positions on the housing: by bearing, its seat and its distance along z from the seat's centre [m].
+
+    Where no bearing has a seat, each seat stands for one at its centre. The housing's attachments are for these.
+    """
+    assert case.housing is not None
+    centers = {seat.name: seat.center[2] for seat in case.housing.seat}
+    places = {
+        bearing.name: (bearing.seat, case.rotor_named(bearing.rotor).start + bearing.at - centers[bearing.seat])
+        for bearing in case.bearing
+        if bearing.seat in centers
+    }
+    return places or {name: (name, 0.0) for name in centers}
+
+
+def housing_checks(given: Housing, health: HealthReport, masses: EffectiveMass) -> dict[str, Any]:
+    """Health report, effective masses and the solid's mass, for the documents and for whatever keeps the modes."""
+    solid = mass_properties(given.mesh, given.material, given.materials)
+    return {
+        "health": _health_document(health),
+        "effective_mass": _mass_document(masses),
+        "solid": {"mass_kg": solid.mass, "center_of_mass_m": solid.center.tolist()},
+    }
+
+
+def _health_document(health: HealthReport) -> dict[str, Any]:
+    body, held = health.body, health.grounding
+    return {
+        "ok": health.ok,
+        "lines": [
+            {
+                "name": line.name,
+                "value": line.value,
+                "bound": line.bound,
+                "ok": line.ok,
+                "essential": line.essential,
+                "why": line.why,
+            }
+            for line in health.lines
+        ],
+        "mass_kg": body.mass,
+        "center_of_gravity_m": body.center.tolist(),
+        "inertia_kg_m2": body.inertia.tolist(),
+        "free_motions": held.free_motions,
+        "supports": [
+            {
+                "name": support.name,
+                "fixes": support.fixes,
+                "stiffness_n_per_m": support.stiffness[:3].tolist(),
+                "stiffness_n_m_per_rad": support.stiffness[3:].tolist(),
+                "share": dict(zip(_DIRECTIONS, support.share.tolist(), strict=True)),
+            }
+            for support in held.supports
+        ],
+    }
+
+
+def _mass_document(masses: EffectiveMass) -> dict[str, Any]:
+    return {
+        "directions": list(_DIRECTIONS),
+        "fractions": masses.fractions.tolist(),
+        "captured": masses.captured.tolist(),
+        "missing": masses.missing.tolist(),
+        "held_by_supports": (1.0 - masses.free / masses.total).tolist(),
+    }

@@ -18,7 +18,7 @@ from coupling import Machine
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
 from gearwhine.from_case.machine import describe_machine, reduce_housing, require_machine
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.plausibility import bearing_load_warnings
@@ -333,7 +333,7 @@ def _misalignment_warnings(case: Case, solved: SolvedLoad) -> Iterator[dict[str,
         if "misalignment" not in given.model_fields_set:
             continue
         typed, found = pair.misalignment, one.misalignment
-        if abs(typed - found) <= _DIFFERENCE * max(abs(typed), abs(found)):
+        if typed is None or abs(typed - found) <= _DIFFERENCE * max(abs(typed), abs(found)):
             continue
         yield warning(
             "misalignment",

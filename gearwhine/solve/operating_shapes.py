@@ -17,7 +17,7 @@ from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displac
 FloatArray = npt.NDArray[np.float64]
 
 RESULTS_FILE = "results.nc"
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _TOLD = 2  # modes in a picture
 _SAME = 1e-9  # of frequencies and shapes, for the run's housing to be this one
@@ -40,7 +40,7 @@ class RunLine:
     @property
     def hertz(self) -> float:
         """[Hz]."""
-        return self.shape.frequency / _HERTZ
+        return self.shape.frequency / _TWO_PI
 
 
 def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
@@ -78,7 +78,7 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
         chosen.add(place)
     return [
         RunLine(
-            OperatingShape(_HERTZ * float(lines[place]), spectrum[:, place, 0] + 1j * spectrum[:, place, 1]),
+            OperatingShape(_TWO_PI * float(lines[place]), spectrum[:, place, 0] + 1j * spectrum[:, place, 1]),
             _name(content, float(lines[place]), spacing),
         )
         for place in sorted(chosen)

@@ -17,7 +17,7 @@ from coupling.linear.complex_modes import Stability
 from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,7 +43,8 @@ def bearing_load_warnings(
     """
     found = []
     for given in case.bearing:
-        if not isinstance(given.stiffness, RollingStiffness | StopStiffness) or given.name not in mean_force:
+        depends = isinstance(given.stiffness, RollingStiffness | StopStiffness) and not case.finds_load(given)
+        if not depends or given.name not in mean_force:
             continue
         load = given.load
         assumed = np.zeros(3) if load is None else np.array([load.x, load.y, load.z])
@@ -71,7 +72,7 @@ def bearing_load_warnings(
     return found
 
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _TOLD = 5  # growing modes named one by one
 
 
@@ -79,7 +80,7 @@ def unstable_modes_warnings(stability: Stability) -> list[dict[str, Any]]:
     """One warning for each growing mode, the fastest first; beyond a few they are counted."""
     found = []
     for mode in stability.growing[:_TOLD]:
-        frequency = abs(mode.eigenvalue) / _HERTZ
+        frequency = abs(mode.eigenvalue) / _TWO_PI
         where = f" ({mode.where})" if mode.where else ""
         fed = ", ".join(part.name for part, _ in mode.feeders[:3])
         found.append(
@@ -134,7 +135,7 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
     rows = [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
     frequencies = np.unique([line["frequency_hz"] for _, line in rows])
-    told = error.at(_HERTZ * frequencies)
+    told = error.at(_TWO_PI * frequencies)
     for name, line in rows:
         line["uncertainty"] = float(told[name][np.searchsorted(frequencies, line["frequency_hz"])])
     if limit_hz is not None:
@@ -146,7 +147,7 @@ def _bands(error: BasisError, limit_hz: float) -> list[dict[str, Any]]:
     edges = np.linspace(0.0, limit_hz, _BANDS + 1)
     inner = (np.arange(_OF_A_BAND) + 0.5) / _OF_A_BAND
     frequencies = edges[:-1, None] + np.diff(edges)[:, None] * inner
-    told = {name: values.reshape(_BANDS, -1) for name, values in error.at(_HERTZ * frequencies.ravel()).items()}
+    told = {name: values.reshape(_BANDS, -1) for name, values in error.at(_TWO_PI * frequencies.ravel()).items()}
     return [
         {
             "from_hz": float(edges[band]),

@@ -25,7 +25,8 @@ from gearwhine.case import (
     whirl_speeds,
 )
 from gearwhine.case import Rotor as GivenRotor
-from gearwhine.from_case.rotors import build_bearings, build_rotor, rolling_states
+from gearwhine.from_case.machine import rotor_bearings
+from gearwhine.from_case.rotors import build_rotor
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from rotors import (
@@ -66,6 +67,15 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _DEFLECTION_PLACES = 201  # along a rotor, of its static deflection
+
+_TWO_PI = 2.0 * np.pi
+_STEPS = 400  # of frequency, where none are given
+_MODES, _BEYOND = 3, 1.25  # up to this elastic mode, and a little beyond
+_RIGID = 1000.0 * _TWO_PI  # highest frequency for a rotor that has no elastic mode [rad/s]
+_TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
+Bearings = tuple[Bearing, ...]
+Crossings = tuple[Crossing, ...] | str
+_PLACES = 101  # along a rotor, of its shapes
 
 
 @dataclass(frozen=True)
@@ -204,13 +214,6 @@ def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Prob
     return [Probe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
 
 
-_HERTZ = 2.0 * np.pi
-_STEPS = 400  # of frequency, where none are given
-_MODES, _BEYOND = 3, 1.25  # up to this elastic mode, and a little beyond
-_RIGID = 1000.0 * _HERTZ  # highest frequency for a rotor that has no elastic mode [rad/s]
-_TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
-
-
 @dataclass(frozen=True)
 class TorsionReading:
     """Torsional response at a probe over the frequencies, Re(amplitude e^{iωt}) each.
@@ -312,7 +315,7 @@ def solve_torsion(
 def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bool) -> FloatArray:
     """Return given frequencies, or even steps beyond the third elastic mode, with the modes' own where damped."""
     if wanted.frequency is not None:
-        return _HERTZ * np.array(wanted.frequency.frequencies)
+        return _TWO_PI * np.array(wanted.frequency.frequencies)
     elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
     highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID
     steps = highest * np.arange(1, _STEPS + 1) / _STEPS
@@ -327,12 +330,6 @@ def _torsion_probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: Rotor) 
     for number, torque in enumerate((one for one in wanted.torques if one.rotor == given.name), start=1):
         places[torque.at] = f"torque {number}"
     return [TorsionProbe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
-
-
-Bearings = tuple[Bearing, ...]
-Crossings = tuple[Crossing, ...] | str
-
-_PLACES = 101  # along a rotor, of its shapes
 
 
 @dataclass(frozen=True)
@@ -446,10 +443,11 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
     """
     require(case, "rotor", command="rotors")
     analysis = case.rotor_analysis or RotorAnalysis()
+    held = rotor_bearings(case)
     solved = []
     for given in case.rotor:
         progress(f"rotor {given.name}")
-        rotor, bearings = build_rotor(case, given), build_bearings(case, given.name)
+        rotor, (bearings, rolling) = build_rotor(case, given), held[given.name]
         lowest, _ = table_range(case, given.name)
         resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
         speeds = whirl_speeds(case, given.name)
@@ -460,10 +458,9 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         diagram = campbell_speeds(case, given.name)
         solver = WhirlSolver(rotor, bearings)
         campbell = rotor_campbell(rotor, bearings, diagram, count=analysis.modes, solver=solver) if diagram else None
-        held = not isinstance(weight, str)
+        stands = not isinstance(weight, str)
         rest = rest_frequencies(rotor, resting, count=analysis.modes)
         torsional = solve_torsional_modes(rotor)
-        rolling = rolling_states(case, given.name)
         solved.append(
             SolvedRotor(
                 rotor=rotor,
@@ -483,7 +480,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 critical=critical_speeds(rotor, bearings, count=analysis.modes).lateral,
                 operation=operation,
                 weight=weight,
-                response=solve_response(case, analysis, given, rotor, bearings, operation, held=held),
+                response=solve_response(case, analysis, given, rotor, bearings, operation, held=stands),
                 torsion=solve_torsion(analysis, given, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling,

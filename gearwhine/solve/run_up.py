@@ -10,12 +10,12 @@ import numpy.typing as npt
 from coupling import signals as signature
 from coupling.signals.excitation import excitation_lines
 from gearwhine.case import Case, speed_ratios
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.solve.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _SLOWEST = 0.1  # part of the highest speed below which nothing is looked at: a turn would take samples without end
 _ROWS = 28  # of the waterfall; its stretches overlap by half
 _WINDOWS = 60  # of the order map, about, each overlapping the next by half
@@ -108,7 +108,7 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
     span, named = cut.span, cut.named
     times = solved.histories.times[span]
     interval = float(times[1] - times[0])
-    turns_per_second = abs(case.operation.speed) / _HERTZ
+    turns_per_second = abs(case.operation.speed) / _TWO_PI
     slowest = turns_per_second * float(turning.at(times)[1].min())
     per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
     per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * max(named.values())))
@@ -155,7 +155,7 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
     times = times[span]
     if len(times) < 2 * _ROWS:
         return f"{len(times)} samples in which the machine turns; expected {2 * _ROWS} or more"
-    turns_per_second = abs(case.operation.speed) / _HERTZ
+    turns_per_second = abs(case.operation.speed) / _TWO_PI
     total = math.floor(turns_per_second * float(np.diff(turning.at(times[[0, -1]])[0])[0]) - 1.0)
     if total < _FEWEST_TURNS:
         return f"{max(total, 0)} whole turns of the leading shaft in the record; expected {_FEWEST_TURNS} or more"

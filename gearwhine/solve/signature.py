@@ -13,7 +13,7 @@ from gearwhine.solve.transient import SolvedTransient
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _HARMONICS = 3  # of each mesh whose sidebands are looked at
 _TOLD = 5  # modes, and bearings, of each line
 _FAINT = 1e-6  # sidebands below this part of their carrier are rounding
@@ -259,7 +259,7 @@ def _traced(
     values = solved.record.spectrum(solved.histories.sensor_acceleration[sensor], solved.trusted_limit).lines[places]
     by_mode = signature.mode_parts(machine.housing, sensor, modal.lines[:, places].T, values)
     forces = {name: tie.lines[:, places].T for name, tie in ties.items()}
-    paths = signature.housing_paths(machine, _HERTZ * at, forces).at(sensor)
+    paths = signature.housing_paths(machine, _TWO_PI * at, forces).at(sensor)
     free = values - paths.total
     mode_names = [f"housing mode {i} ({hz:.0f} Hz)" for i, hz in enumerate(frequencies.tolist(), start=1)]
     mode_names.append("local compliance")
@@ -309,9 +309,9 @@ def _sidebands(
         ]
         together: dict[float, list[str]] = {}
         for rotor in (mesh.driver.rotor, mesh.driven.rotor):
-            together.setdefault(round(abs(machine.speeds[rotor]) / _HERTZ, 9), []).append(rotor)
+            together.setdefault(round(abs(machine.speeds[rotor]) / _TWO_PI, 9), []).append(rotor)
         for shafts in together.values():
-            turning = abs(machine.speeds[shafts[0]]) / _HERTZ
+            turning = abs(machine.speeds[shafts[0]]) / _TWO_PI
             if turning * length >= (1.0 if window == "uniform" else 2.0):
                 pairs = signature.sidebands(signal, interval, carriers, turning, window=window)
                 found.append(ShaftSidebands(contact.name, tuple(shafts), tuple(pairs)))

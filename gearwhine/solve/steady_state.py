@@ -23,13 +23,13 @@ from coupling.signals.spectrum import Spectrum
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.speeds_and_torques import BEYOND_OPERATION
-from gearwhine.output.warnings import warning
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _SLOWEST = 0.5  # of the speed of operation, where a case names no range
 _OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: little folds back below it
 _LEAST_SAMPLES = 512

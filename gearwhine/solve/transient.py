@@ -24,8 +24,7 @@ from coupling.time.integration import Checkpoint
 from coupling.time.settings import MotionRecord
 from coupling.time.transient import TransientFigures, fingerprint, integrate_blocks, integration_key, transient_figures
 from gearwhine.case import Case, require
-from gearwhine.from_case.driving import driving
-from gearwhine.from_case.machine import ReducedHousing, base_motion
+from gearwhine.from_case.machine import ReducedHousing, base_motion, driving
 from gearwhine.output.files import installed, source_digest
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
@@ -44,7 +43,7 @@ from housing.storage.netcdf import content_key
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 
 
@@ -105,7 +104,7 @@ class SolvedTransient:
         """Turns of the first driver's rotor over a run; zero at steady speed."""
         if self.turning is None:
             return 0.0
-        return float(self.turning.at(self.turning.times[-1])[0][0]) * abs(self.speed) / _HERTZ
+        return float(self.turning.at(self.turning.times[-1])[0][0]) * abs(self.speed) / _TWO_PI
 
     @property
     def averages(self) -> int:
@@ -265,7 +264,7 @@ def _with_code(key: str, chosen: Sampling) -> str:
 
 
 class _InMemory(list[Arrays]):
-    """Blocks that nobody keeps."""
+    """Record in memory, without files to resume from."""
 
 
 def starting_state(case: Case, machine: CoupledMachine) -> tuple[FloatArray, FloatArray] | None:

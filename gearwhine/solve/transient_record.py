@@ -42,6 +42,18 @@ _FOLDER_PREFIX = ".resume-"
 _KEY_DIGITS = 16  # of the folder's name: no two integrations of one folder share them by chance
 
 Arrays = Mapping[str, npt.NDArray[Any]]
+FloatArray = npt.NDArray[np.float64]
+
+_TWO_PI = 2.0 * math.pi
+_OVERSAMPLING = 100.0  # of the integration over the highest frequency of interest
+_FEWEST_SAMPLES = 16  # of an integration: fewer show nothing
+_STORED_SAMPLING = 4.0  # of stored long records: what folds onto that frequency is a wide transition away
+RECORD_BYTES = 128 << 20
+"""The longest record that is stored as it was sampled, all signals together."""
+_STRETCH_BYTES = 64 << 20
+_LONGEST_STRETCH = 1 << 18  # samples
+_BLOCK_BYTES = 32 << 20
+_LARGEST_BLOCK = 1 << 18  # samples
 
 
 class Blocks(Protocol):
@@ -169,18 +181,6 @@ def _force_names(folder: Path) -> None:
         os.close(handle)
 
 
-_HERTZ = 2.0 * math.pi
-_OVERSAMPLING = 100.0  # of the integration over the highest frequency of interest
-_FEWEST_SAMPLES = 16  # of an integration: fewer show nothing
-_STORED_SAMPLING = 4.0  # of stored long records: what folds onto that frequency is a wide transition away
-RECORD_BYTES = 128 << 20
-"""The longest record that is stored as it was sampled, all signals together."""
-_STRETCH_BYTES = 64 << 20
-_LONGEST_STRETCH = 1 << 18  # samples
-_BLOCK_BYTES = 32 << 20
-_LARGEST_BLOCK = 1 << 18  # samples
-
-
 @dataclass(frozen=True)
 class Sampling:
     """Sampling of a transient.
@@ -251,7 +251,7 @@ def sampling(
     assert case.operation is not None
     assert case.transient is not None
     given = case.transient
-    nominal = _HERTZ / abs(case.operation.speed)
+    nominal = _TWO_PI / abs(case.operation.speed)
     period = nominal / (1.0 if turning is None else float(turning.rates.max()))
     per_revolution = _power_of_two(max(given.points_per_revolution, _OVERSAMPLING * limit * period))
     settings = TransientSettings(
@@ -292,7 +292,7 @@ def transient_duration(case: Case) -> float:
     if case.transient.run is not None:
         return case.transient.run.duration
     assert case.transient.revolutions is not None
-    return case.transient.revolutions * (_HERTZ / abs(case.operation.speed))
+    return case.transient.revolutions * (_TWO_PI / abs(case.operation.speed))
 
 
 def _record_from(case: Case, period: float, turning: SpeedProfile | None) -> float:
@@ -310,8 +310,8 @@ def _record_from(case: Case, period: float, turning: SpeedProfile | None) -> flo
     time = float(turning.times_of(np.array([discard * period]))[0])
     duration = transient_duration(case)
     if not time < duration:
-        turned = float(turning.at(duration)[0][0]) / period
-        expected = f"fewer revolutions than the {turned:g} that the run turns"
+        revolutions = float(turning.at(duration)[0][0]) / period
+        expected = f"fewer revolutions than the {revolutions:g} that the run turns"
         raise CaseError([Problem("transient.discard", discard, expected)])
     return time
 
@@ -328,9 +328,6 @@ def _window(case: Case) -> Window:
     recorded = case.transient.revolutions - case.transient.discard
     turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
     return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def block_arrays(columns: FloatArray, held: FloatArray, after: Checkpoint) -> Arrays:

@@ -70,7 +70,7 @@ from housing.updating import (
 )
 from meshes import Mesh
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 _MARGIN = 1.0 / 3.0  # of the least gap, for the two measures beside the one that decides
 
 Observer = Callable[[Mesh], sparse.csr_array]
@@ -118,7 +118,7 @@ def measurement_of(case: Case, progress: Progress = silent) -> Measurement:
         band=dominance_band(measured.frequencies),
         gap=given.gap,
         margin=_MARGIN * given.gap if given.gap else -np.inf,
-        count=None if known is None else ModeCount(_HERTZ * known.below, known.least, known.most),
+        count=None if known is None else ModeCount(_TWO_PI * known.below, known.least, known.most),
     )
     if measured.shapes is not None:
         return _with_shapes(case, target, measured)

@@ -89,8 +89,8 @@ def run_sweep(
                 shared, uncached = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
                 if scheduler is None:
                     await_workers(client, workers)
-                told = _teller(len(points), len(resumed), progress)
-                told(0)
+                report = _teller(len(points), len(resumed), progress)
+                report(0)
                 futures = in_thread(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
                 # Now, not before: the points need not wait for this.
                 _cache(uncached, folder)
@@ -98,7 +98,7 @@ def run_sweep(
                 for count, (number, outcome) in enumerate(each_from_thread(_as_they_end(client, futures)), start=1):
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
-                    told(count)
+                    report(count)
     for path in outdated_points(folder, tuple(points)):
         path.unlink(missing_ok=True)
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
@@ -183,13 +183,13 @@ def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None
     """Progress by the number of points done, with an estimate of the time left."""
     start = time.perf_counter()
 
-    def told(count: int) -> None:
+    def report(count: int) -> None:
         done = before + count
         left = (time.perf_counter() - start) * (total - done) / count if count else None
         text = "" if left is None or done == total else f", about {_duration(left)} left"
         progress(f"sweep: {done} of {total} points{text}", done / total)
 
-    return told
+    return report
 
 
 def _duration(seconds: float) -> str:

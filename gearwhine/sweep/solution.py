@@ -19,10 +19,9 @@ import numpy.typing as npt
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case, mesh_frequencies
 from gearwhine.failures import explain
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing
+from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.output import finite, json_text
-from gearwhine.output.warnings import add_warnings
+from gearwhine.output.quantity import add_warnings
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, machine_warnings
@@ -33,7 +32,7 @@ from housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 
 FloatArray = npt.NDArray[np.float64]
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -102,7 +101,7 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        pairs = solve_gears(case) if case.gear_pair else ()
+        pairs = solve_pairs(case, housing)
         machine = build_machine(case, housing, pairs)
         frequencies = mesh_frequencies(case) if case.gear_pair else ()
         solved = solve_transient(case, machine, frequencies, housing=housing)
@@ -144,7 +143,7 @@ def _failure(error: Exception) -> PointFailure:
 
 def _reduced(case: Case, solved: SolvedTransient, housing: ReducedHousing | None, seconds: float) -> PointResult:
     assert case.operation is not None
-    turning_hz = abs(case.operation.speed) / _HERTZ
+    turning_hz = abs(case.operation.speed) / _TWO_PI
     spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
     lines = spectra[0].frequencies if spectra else np.empty(0)
     count = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))

@@ -23,10 +23,6 @@ from housing.correlation.comparison import ShapeCorrelation as ShapeCorrelation
 from housing.correlation.comparison import compare_by_dominance as compare_by_dominance
 from housing.correlation.comparison import compare_by_shapes as compare_by_shapes
 from housing.correlation.comparison import dominance_band as dominance_band
-from housing.correlation.complexity import complexity_factor as complexity_factor
-from housing.correlation.complexity import phase_collinearity as phase_collinearity
-from housing.correlation.complexity import phase_deviation as phase_deviation
-from housing.correlation.complexity import real_shapes as real_shapes
 from housing.correlation.frequency_responses import amplitude_correlation as amplitude_correlation
 from housing.correlation.frequency_responses import fdac as fdac
 from housing.correlation.frequency_responses import frac as frac
@@ -34,11 +30,15 @@ from housing.correlation.frequency_responses import response_vector_assurance as
 from housing.correlation.frequency_responses import synthesised_responses as synthesised_responses
 from housing.correlation.modal_assurance_criterion import auto_mac as auto_mac
 from housing.correlation.modal_assurance_criterion import comac as comac
+from housing.correlation.modal_assurance_criterion import complexity_factor as complexity_factor
 from housing.correlation.modal_assurance_criterion import enhanced_comac as enhanced_comac
 from housing.correlation.modal_assurance_criterion import largest_off_diagonal as largest_off_diagonal
 from housing.correlation.modal_assurance_criterion import modal_assurance_criterion as modal_assurance_criterion
 from housing.correlation.modal_assurance_criterion import modal_scale_factor as modal_scale_factor
+from housing.correlation.modal_assurance_criterion import phase_collinearity as phase_collinearity
+from housing.correlation.modal_assurance_criterion import phase_deviation as phase_deviation
 from housing.correlation.modal_assurance_criterion import pole_weighted_mac as pole_weighted_mac
+from housing.correlation.modal_assurance_criterion import real_shapes as real_shapes
 from housing.correlation.orthogonality import cross_orthogonality as cross_orthogonality
 from housing.correlation.orthogonality import outside_span as outside_span
 from housing.correlation.orthogonality import self_orthogonality as self_orthogonality

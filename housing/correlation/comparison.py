@@ -19,7 +19,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.complexity import phase_collinearity
 from housing.correlation.modal_assurance_criterion import (
     ComplexArray,
     ShapeArray,
@@ -28,6 +27,7 @@ from housing.correlation.modal_assurance_criterion import (
     enhanced_comac,
     largest_off_diagonal,
     modal_assurance_criterion,
+    phase_collinearity,
     two_sets,
 )
 from housing.correlation.orthogonality import cross_orthogonality, outside_span

@@ -10,14 +10,14 @@
 
 from housing.fem.surface import outer_facets as outer_facets
 from housing.measured.alignment import Alignment as Alignment
+from housing.measured.alignment import MappedSurvey as MappedSurvey
 from housing.measured.alignment import RigidMotion as RigidMotion
 from housing.measured.alignment import align_landmarks as align_landmarks
 from housing.measured.alignment import align_to_surface as align_to_surface
+from housing.measured.alignment import map_survey as map_survey
 from housing.measured.identification import IdentifiedModes as IdentifiedModes
 from housing.measured.identification import StabilityRule as StabilityRule
 from housing.measured.identification import identify_modes as identify_modes
-from housing.measured.mapping import MappedSurvey as MappedSurvey
-from housing.measured.mapping import map_survey as map_survey
 from housing.measured.survey_data import MeasuredGeometry as MeasuredGeometry
 from housing.measured.survey_data import MeasuredModes as MeasuredModes
 from housing.measured.survey_data import MeasuredResponses as MeasuredResponses

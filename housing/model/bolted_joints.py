@@ -127,7 +127,7 @@ def bolted_joint(
             "diameter"
         )
     steel = parts if bolt is None else bolt
-    modulus, shear = parts.youngs_modulus, _shear_modulus(parts)
+    modulus, shear = parts.youngs_modulus, parts.shear_modulus
     own = bolt_stiffness(diameter, grip, steel.youngs_modulus)
     half = frustum_stiffness(grip / 2, _HEAD * diameter, diameter, modulus, outer=outer)
     clamped = half / 2  # two halves, one after the other
@@ -142,10 +142,6 @@ def bolted_joint(
             # The bolt itself is clamped at both ends, and adds little.
             shear=shear * area / grip + 12 * steel.youngs_modulus * bolt_bending / grip**3,
             tilting=(modulus * bending + steel.youngs_modulus * bolt_bending) / grip,
-            torsional=2 * (shear * bending + _shear_modulus(steel) * bolt_bending) / grip,
+            torsional=2 * (shear * bending + steel.shear_modulus * bolt_bending) / grip,
         ),
     )
-
-
-def _shear_modulus(material: Material) -> float:
-    return material.youngs_modulus / (2 * (1 + material.poisson_ratio))

@@ -17,8 +17,7 @@ from housing.fem.assembly import assemble
 from housing.fem.matrices import Matrices
 from housing.model.bolted_joints import bolted_joint
 from housing.model.bushings import Bushing, Joint, Mount
-from housing.model.fixtures import Fixture, attach_fixtures
-from housing.model.lumped_mass import LumpedMass
+from housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
 from housing.model.material import Material, enclosed_volume, mass_properties
 from housing.model.patches import Patch, rigid_motions
 from housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port
@@ -34,7 +33,7 @@ FloatArray = npt.NDArray[np.float64]
 RESPONSE_ORDERS = 3
 """Responses of the discarded modes at each motion of a bearing: at rest, at the limit, and its derivative there."""
 
-_HERTZ = 2.0 * np.pi
+_TWO_PI = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -259,27 +258,17 @@ class Housing:
         progress(f"assembling {3 * len(self.mesh.points)} degrees of freedom")
         free = self.free_matrices()
         whole = self.matrices(free)
-        found = solve_modes(
-            whole,
-            frequency_limit=None if below_hz is None else _HERTZ * below_hz,
-            count=count,
-            ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-            port_orders=RESPONSE_ORDERS,
-            solver=solver,
-            progress=progress,
-        )
+        found = certified_modes(whole, loaded, below_hz=below_hz, count=count, solver=solver, progress=progress)
         health = self.health(free, whole, found)
         health.require()
-        damping = modal_damping(found, whole) if whole.damping.nnz else None
-        moved = whole.mass @ rigid_motions(self.mesh.points, np.zeros(3)).reshape(-1, 6)
         return HousingModes(
             housing=self,
             mode_set=found,
             health=health,
             seats={name: found.project_all(port) for name, port in seat_ports.items()},
             sensors={name: found.project_all(port.matrix)[:, 0] for name, port in self.sensor_ports().items()},
-            damping_matrix=damping,
-            participation=found.project_all(sparse.csr_array(moved.T)),
+            damping_matrix=modal_damping(found, whole) if whole.damping.nnz else None,
+            participation=self.participation(whole, found),
         )
 
     def require_sound_mesh(self) -> None:
@@ -298,6 +287,15 @@ class Housing:
         ]
         if wrong:
             raise HousingError("expected a sound mesh; " + "; ".join(f"{one.name}: {one.message}" for one in wrong))
+
+    def participation(self, whole: Matrices, modes: ModeSet) -> FloatArray:
+        """Participation φᵀ M R of modes and residual modes in the motions of the ground, shape (n, 6) [√kg, √kg m].
+
+        R are the rigid motions along and about x, y, z through the origin. The sum is over every degree of freedom:
+        what is fixed moves with the ground, and pulls by the consistent mass.
+        """
+        moved = whole.mass @ rigid_motions(self.mesh.points, np.zeros(3)).reshape(-1, 6)
+        return modes.project_all(sparse.csr_array(moved.T))
 
     def health(self, free: Matrices, whole: Matrices, modes: ModeSet) -> HealthReport:
         """Check a solved housing from its geometry to its modes.
@@ -365,13 +363,34 @@ class HousingModes:
     def damping_ratios(self) -> FloatArray:
         """Fraction of critical damping of each mode with its own share of the dashpots, shape (n_modes,)."""
         own = np.full(len(self.mode_set.frequencies), self.housing.damping_ratio)
-        if self.damping_matrix is None:
-            return own
         return damping_ratios(self.mode_set.frequencies, own, self.damping_matrix)
 
 
+def certified_modes(
+    whole: Matrices,
+    loaded: Mapping[str, sparse.csr_array],
+    *,
+    below_hz: float | None,
+    count: int | None,
+    solver: Solver,
+    progress: Callable[[str], None],
+) -> ModeSet:
+    """Certified modes of a housing with residual modes for the bearings' ports, see :meth:`Housing.modes`."""
+    return solve_modes(
+        whole,
+        frequency_limit=None if below_hz is None else _TWO_PI * below_hz,
+        count=count,
+        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
+        port_orders=RESPONSE_ORDERS,
+        solver=solver,
+        progress=progress,
+    )
+
+
 def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
-    """Return a seat's motions x, y, z and rotations about x, y at a distance from its centre [m], shape (5, 3 n_nodes).
+    """Return the port of a bearing: motions x, y, z and rotations about x, y from the nodes', shape (5, 3 n_nodes).
+
+    They are those of its seat at a distance from its centre [m]. The transpose spreads a bearing force over the nodes.
 
     Any bearing can load these; none loads the rotation about z, in which the shaft turns.
     """

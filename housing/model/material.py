@@ -19,7 +19,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Material:
-    """A linear elastic, isotropic material.
+    """A linear elastic, isotropic material, of a housing and of anything else: a shaft's segments take it as it is.
 
     Attributes
     ----------
@@ -43,10 +43,15 @@ class Material:
             raise HousingError(f"Poisson's ratio {self.poisson_ratio} must be at least 0 and below 0.5")
 
     @property
+    def shear_modulus(self) -> float:
+        """G = E / 2(1 + ν) [Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+    @property
     def lame(self) -> tuple[float, float]:
         """Lamé's constants λ and μ [Pa]."""
         e, nu = self.youngs_modulus, self.poisson_ratio
-        return e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu))
+        return e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), self.shear_modulus
 
     @property
     def elasticity(self) -> npt.NDArray[np.float64]:
@@ -57,6 +62,10 @@ class Material:
             lam * np.einsum("ij,kl->ijkl", d, d)
             + mu * (np.einsum("ik,jl->ijkl", d, d) + np.einsum("il,jk->ijkl", d, d))
         )
+
+
+STEEL = Material(youngs_modulus=207e9, poisson_ratio=0.3, density=7850.0)
+"""Steel, of housings, shafts and gears alike."""
 
 
 def element_constants(mesh: Mesh, material: Material, materials: Mapping[str, Material]) -> npt.NDArray[np.float64]:

@@ -58,9 +58,9 @@ class Dominance:
         ln(weakest chosen / strongest left out); negative where the measure would choose other modes, infinite where
         there are no others.
         """
-        inside = np.flatnonzero((self.frequencies >= band[0]) & (self.frequencies <= band[1]))
-        left = np.setdiff1d(inside, chosen)
-        if not len(left):
+        left = (self.frequencies >= band[0]) & (self.frequencies <= band[1])
+        left[chosen] = False
+        if not left.any():
             return float("inf"), float("inf")
         measures = (self.acceleration, self.velocity, self.absolute)
         deciding, *others = (float(np.log(measure[chosen].min() / measure[left].max())) for measure in measures)

@@ -43,7 +43,7 @@ def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
     return np.asarray(0.5 * (full + full.T))
 
 
-def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatArray) -> FloatArray:
+def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatArray | None) -> FloatArray:
     """Each mode's own ratio and its share of the modal damping matrix, ζ + (Φᵀ C Φ)_ii / 2ω.
 
     Parameters
@@ -52,13 +52,15 @@ def damping_ratios(frequencies: FloatArray, ratios: FloatArray, damping: FloatAr
         ω [rad/s]; a rigid-body mode has none, so its ratio stays as it is.
     ratios : ndarray, shape (n_modes,)
         ζ, parts of critical.
-    damping : ndarray, shape (n, n)
-        Φᵀ C Φ [1/s], the modes first.
+    damping : ndarray, shape (n, n), or None
+        Φᵀ C Φ [1/s], the modes first; None without dashpots.
 
     Returns
     -------
     ndarray, shape (n_modes,)
     """
+    if damping is None:
+        return ratios
     elastic = frequencies > 0.0
     added = np.zeros_like(ratios)
     added[elastic] = damping.diagonal()[: len(ratios)][elastic] / (2.0 * frequencies[elastic])

@@ -218,26 +218,16 @@ def arpack_modes(
 ) -> tuple[FloatArray, FloatArray]:
     """Solve for the modes nearest to a shift on one side of it by ``scipy.sparse.linalg.eigsh`` (ARPACK).
 
+    Values, vectors and errors are as of :func:`block_lanczos`.
+
     Parameters
     ----------
     solve, mass, shift, count, above
-        As :func:`housing.modes.eigensolver.block_lanczos`.
+        As of :func:`block_lanczos`.
     seed : int
         Of the start vector; each also doubles the basis.
     tolerance : float
         Of a Ritz pair's residual as a part of ν; 0 is rounding.
-
-    Returns
-    -------
-    values : ndarray, shape (count,)
-        λ, ascending [rad²/s²].
-    vectors : ndarray, shape (n, count)
-        φ, with φᵀ M φ = 1.
-
-    Raises
-    ------
-    IncompleteModesError
-        Where the modes do not converge.
     """
     n = mass.shape[0]
     start = solve(mass @ np.random.default_rng(seed).standard_normal(n))
@@ -274,7 +264,9 @@ def nearest_modes(
     threads: int = 1,
     tolerance: float | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Find the modes nearest to a shift on one side of it by the eigensolver that is asked for.
+    """Choose the eigensolver by its name, and find the modes nearest to a shift on one side of it.
+
+    Values, vectors and errors are as of :func:`block_lanczos`.
 
     Parameters
     ----------
@@ -284,18 +276,6 @@ def nearest_modes(
         As :func:`block_lanczos`; ``eigsh`` has one thread beside those of ``solve``.
     tolerance : float, optional
         Residual of a Ritz pair as a part of ν; by default the finest that the solver has.
-
-    Returns
-    -------
-    values : ndarray, shape (count,)
-        λ, ascending [rad²/s²].
-    vectors : ndarray, shape (n, count)
-        φ, with φᵀ M φ = 1.
-
-    Raises
-    ------
-    IncompleteModesError
-        Where the modes do not converge.
     """
     if solver == "eigsh":
         return arpack_modes(solve, mass, shift, count, above=above, seed=seed, tolerance=tolerance or 0.0)

@@ -30,9 +30,9 @@ from housing.updating.multistart import multistart_search as multistart_search
 from housing.updating.multistart import polish as polish
 from housing.updating.multistart import serial_map as serial_map
 from housing.updating.parameters import Parameter as Parameter
+from housing.updating.parameters import Posterior as Posterior
+from housing.updating.parameters import posterior as posterior
 from housing.updating.parameters import values_at as values_at
-from housing.updating.posterior import Posterior as Posterior
-from housing.updating.posterior import posterior as posterior
 from housing.updating.sensitivities import ModelSensitivity as ModelSensitivity
 from housing.updating.sensitivities import modal_sensitivities as modal_sensitivities
 from housing.updating.surrogate import ModalState as ModalState

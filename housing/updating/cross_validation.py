@@ -14,8 +14,7 @@ import numpy.typing as npt
 
 from housing.updating.misfit import UNPAIRED, Misfit, Target, is_met, measure
 from housing.updating.multistart import Each, Meshes, multistart_search, polish, serial_map
-from housing.updating.parameters import Parameter
-from housing.updating.posterior import Posterior, posterior
+from housing.updating.parameters import Parameter, Posterior, posterior
 from housing.updating.trust_region import AnyDesign, Effort, Solve
 
 FloatArray = npt.NDArray[np.float64]

@@ -16,6 +16,8 @@ thresholds the best choice in order of frequency (dynamic programming), from sev
 """
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +27,7 @@ from housing.modes.dominance import Dominance
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
+_Shortfalls: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
 
 GAP_SCALE = 0.02
 """Shortfall of a gap that costs as much as an error of one σ."""
@@ -78,7 +81,7 @@ class _Strengths:
     beyond: FloatArray  # ln ω beyond the end of the band, negative inside; (n_modes,)
     upward: FloatArray  # 1 where that is the upper end, else -1; (n_modes,)
 
-    @property
+    @cached_property
     def edge(self) -> FloatArray:
         """Shortfall of each mode from being clearly beyond the band, in units of the penalty's scale."""
         return np.maximum(_CLEAR - self.beyond, 0.0) / self.end_scale
@@ -93,7 +96,7 @@ class _Strengths:
         lacks = self.logarithms - thresholds[..., None] + 0.5 * self.asked[:, None]
         return np.asarray(np.maximum(lacks, 0.0) / self.scale)
 
-    def split(self, taken: BoolArray, thresholds: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def split(self, taken: BoolArray, thresholds: FloatArray) -> _Shortfalls:
         """Shortfalls of the modes chosen, of those left as weak, and of those left as beyond the band.
 
         Parameters
@@ -158,7 +161,7 @@ def choice_shortfall(
     known = _strengths(strengths, band, gap, margin, firmness)
     taken = np.zeros(known.logarithms.shape[1], dtype=bool)
     taken[chosen] = True
-    below, above, edge = known.split(taken, _settled(known, taken))
+    _, (below, above, edge) = _settled(known, taken)
     parts = []
     for values, sign in ((below, -1.0), (above, 1.0)):
         rows, modes = np.nonzero(values)
@@ -209,9 +212,8 @@ def choose_modes(
     best, least = inside[:n], np.inf
     for _ in range(_TURNS):
         taken = _best_choices(known, inside, errors, thresholds)
-        thresholds = _settled(known, taken)
+        thresholds, (below, above, edge) = _settled(known, taken)
         numbers = np.nonzero(taken[:, inside])[1].reshape(-1, n)
-        below, above, edge = known.split(taken, thresholds)
         costs = (
             (below**2 + above**2).sum(axis=(1, 2)) + (edge**2).sum(axis=1) + errors[np.arange(n), numbers].sum(axis=1)
         )
@@ -222,21 +224,26 @@ def choose_modes(
     return best
 
 
-def _settled(known: _Strengths, taken: BoolArray) -> FloatArray:
-    """Find the thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures)."""
+def _settled(known: _Strengths, taken: BoolArray) -> tuple[FloatArray, _Shortfalls]:
+    """Find the thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures).
+
+    Beside them the shortfalls there, as of :meth:`_Strengths.split`.
+    """
     inside = known.beyond <= 0.0
     weakest = np.where(taken[..., None, :], known.logarithms, np.inf).min(axis=-1)
     strongest = np.where((~taken & inside)[..., None, :], known.logarithms, -np.inf).max(axis=-1)
     # Initially midway; where no other mode is left, low enough for all.
     thresholds = np.where(np.isfinite(strongest), 0.5 * (weakest + strongest), weakest - 0.5 * known.asked)
     for _ in range(_TURNS):
-        below, above, _ = known.split(taken, thresholds)
+        shortfalls = below, above, _ = known.split(taken, thresholds)
         active = np.count_nonzero(below, axis=-1) + np.count_nonzero(above, axis=-1)
         step = known.scale * (above.sum(axis=-1) - below.sum(axis=-1)) / np.maximum(active, 1)
+        if not step.any():
+            return thresholds, shortfalls
         thresholds = thresholds + step
-        if np.abs(step).max(initial=0.0) < _SETTLED:
+        if np.abs(step).max() < _SETTLED:
             break
-    return np.asarray(thresholds)
+    return thresholds, known.split(taken, thresholds)
 
 
 def _best_choices(known: _Strengths, inside: IntArray, errors: FloatArray, thresholds: FloatArray) -> BoolArray:

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
 
 from housing.modes.dominance import Dominance, dominance
 from housing.updating.sensitivities import ModalSensitivities
@@ -159,7 +158,7 @@ class Surrogate:
         whole = np.tensordot(step, self.rates, axes=1)
         diagonal = np.arange(len(whole))
         whole[diagonal, diagonal] += 2.0 * np.log(self.state.frequencies)
-        values, mixture = linalg.eigh(whole, check_finite=False)
+        values, mixture = np.linalg.eigh(whole)
         slopes = 0.5 * np.einsum("am,pam->pm", mixture, self.rates @ mixture)
         carried = mixture - 0.5 * np.tensordot(step, self.mass, axes=1) @ mixture
         state = self.state

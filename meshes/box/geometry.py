@@ -119,11 +119,6 @@ class BoxGeometry:
             return (-half - length, -half + self.wall.back)
         return (half - self.wall.front, half + length)
 
-    @property
-    def inside_height(self) -> tuple[float, float]:
-        """Ends of the cavity along y [m]."""
-        return (self.wall.bottom, self.size[1] - self.wall.top)
-
 
 def _check_sizes(bore: Bore) -> None:
     """Raise where a bore or its boss has no sound size of its own."""

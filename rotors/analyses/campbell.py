@@ -21,8 +21,14 @@ from rotors.certificate import ACCEPTED
 from rotors.errors import IncompleteModesError, require, require_finite
 from rotors.model.bearing import Bearing
 from rotors.model.shaft import Rotor
-from rotors.modes.lateral import LateralModes
-from rotors.numerics.branch_following import BranchPoint, extended_branches, paired_modes, refined_crossing
+from rotors.numerics.branch_following import (
+    BranchPoint,
+    along_branches,
+    extended_branches,
+    order_intervals,
+    paired_modes,
+    refined_crossing,
+)
 from rotors.whirl.circular_coordinates import coupled_motions
 from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, negative_count, oscillating
 from rotors.whirl.eigenvalues import NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each, refine_roots
@@ -30,17 +36,30 @@ from rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_rea
 from rotors.whirl.modal_projection import ModalProjection
 from rotors.whirl.motion import ShaftMotion
 from rotors.whirl.planar_basis import DEFAULT_COUNT
-from rotors.whirl.whirl_modes import NEUTRAL, START_REACH, WhirlSolver
+from rotors.whirl.whirl_modes import NEUTRAL, START_REACH, ComplexFrequencies, WhirlSolver
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
 
 # A jump by this part of the eigenvalue weighs as much as no likeness at all; no jump weighs more than so many of these.
 JUMP_SCALE = 0.1
 MOST_JUMPS = 100.0
 # A branch that would have to jump further than this part of its frequency has ended.
 LONGEST_JUMP = 0.5
+# Damped sets are proved at this many speeds, spread over the range.
+PROOFS = 3
+# Branches are followed this far beyond the limit at every speed.
+WINDOW = 1.1
+# Narrower gaps between starting values may vanish between the roots.
+WIDE_GAP = 1e-3
+# With whirl direction and axial share in place of the shape.
+Point = BranchPoint[tuple[float, float]]
+# A root further from its starting value than this part of it belongs to another branch.
+CROSSING_JUMP = 0.1
+CROSSING_STEPS = 30
+CROSSING_TOLERANCE = 1e-11
 
 
 @dataclass(frozen=True)
@@ -83,14 +102,12 @@ def followed(equations: WhirlEquations, roots: Sequence[ExactRoots], speeds: Flo
                 jump, likeness, jump_scale=JUMP_SCALE, most_jumps=MOST_JUMPS, longest_jump=LONGEST_JUMP
             )
         table = extended_branches(table, partner, one.eigenvalues.size)
-    ways = _characters_of_all(equations, roots, speeds)
-    branches = []
-    for column in table.T:
-        values, way = np.full(speeds.size, complex(np.nan, np.nan)), np.full((speeds.size, 2), np.nan)
-        for k in np.flatnonzero(column >= 0).tolist():
-            values[k], way[k] = roots[k].eigenvalues[column[k]], ways[k][column[k]]
-        branches.append(Branch(values, way[:, 0], way[:, 1]))
-    return branches
+    values = along_branches(table, [one.eigenvalues for one in roots], complex(np.nan, np.nan))
+    ways = along_branches(table, _characters_of_all(equations, roots, speeds), np.nan)
+    return [
+        Branch(eigenvalues, direction, axial_share)
+        for eigenvalues, direction, axial_share in zip(values.T, ways[:, :, 0].T, ways[:, :, 1].T, strict=True)
+    ]
 
 
 def characters(equations: WhirlEquations, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
@@ -125,16 +142,6 @@ def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray)
         values = roots[1].eigenvalues[last]
         expected[last] = values + part * (values - roots[0].eigenvalues[before])
     return expected
-
-
-BoolArray = npt.NDArray[np.bool_]
-
-# Damped sets are proved at this many speeds, spread over the range.
-PROOFS = 3
-# Branches are followed this far beyond the limit at every speed.
-WINDOW = 1.1
-# Narrower gaps between starting values may vanish between the roots.
-WIDE_GAP = 1e-3
 
 
 def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None, count: int | None) -> FloatArray:
@@ -225,15 +232,6 @@ def _expected(
     return np.array([row[0] - row[1] for row in rows])
 
 
-# With whirl direction and axial share in place of the shape.
-Point = BranchPoint[tuple[float, float]]
-
-# A root further from its starting value than this part of it belongs to another branch.
-CROSSING_JUMP = 0.1
-CROSSING_STEPS = 30
-CROSSING_TOLERANCE = 1e-11
-
-
 @dataclass(frozen=True)
 class Crossing:
     """A speed at which a damped whirl frequency is a multiple of the speed of rotation.
@@ -267,8 +265,38 @@ class Crossing:
         return float(-2.0 * np.pi * self.eigenvalue.real / self.eigenvalue.imag)
 
 
+def stability_onset(speeds: FloatArray, damping_ratios: FloatArray) -> tuple[float, int] | None:
+    """Lowest speed from which a branch is unstable, between the speeds of a diagram, and that branch.
+
+    Parameters
+    ----------
+    speeds
+        (s,): ascending in size, rad/s.
+    damping_ratios
+        (s, m): of the branches, taken as linear between two speeds; NaN where a branch is not.
+
+    Returns
+    -------
+    (float, int) or None
+        None where all are stable.
+    """
+    found: list[tuple[float, int]] = []
+    for branch, ratios in enumerate(damping_ratios.T):
+        unstable = np.flatnonzero(np.nan_to_num(ratios) < -NEUTRAL)
+        if not unstable.size:
+            continue
+        first = int(unstable[0])
+        if first == 0 or np.isnan(ratios[first - 1]):
+            found.append((float(speeds[first]), branch))
+            continue
+        before, after = max(float(ratios[first - 1]), 0.0), float(ratios[first])
+        step = float(speeds[first] - speeds[first - 1])
+        found.append((float(speeds[first - 1]) + step * before / (before - after), branch))
+    return min(found, default=None)
+
+
 @dataclass(frozen=True)
-class Campbell:
+class Campbell(ComplexFrequencies):
     """Whirl over speed, one column for each branch; NaN where a branch does not oscillate or is outside the range.
 
     Attributes
@@ -294,28 +322,11 @@ class Campbell:
     blocks: tuple[tuple[int, ...], ...] = field(repr=False)
 
     @property
-    def frequencies(self) -> FloatArray:
-        """Natural frequency |λ|, rad/s, (s, m)."""
-        return np.asarray(np.abs(self.eigenvalues))
-
-    @property
-    def damped_frequencies(self) -> FloatArray:
-        """Im λ, rad/s, (s, m)."""
-        return np.asarray(self.eigenvalues.imag)
-
-    @property
-    def damping_ratios(self) -> FloatArray:
-        """−Re λ / |λ|, (s, m); negative where a mode grows."""
-        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
-
-    @property
-    def log_decrements(self) -> FloatArray:
-        """−2π Re λ / Im λ, (s, m)."""
-        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
-
-    @property
     def unstable_from(self) -> float | None:
-        """Lowest speed of the diagram, without its sense, at which a mode grows, rad/s; None where none does."""
+        """Lowest speed of the diagram, without its sense, at which a mode grows, rad/s; None where none does.
+
+        The onset between two speeds is :func:`stability_onset`.
+        """
         # Branches that do not oscillate at a speed are NaN there, which compares as stable.
         grows = (self.log_decrements < -2.0 * np.pi * NEUTRAL).any(axis=1)
         return float(np.abs(self.speeds[grows]).min()) if grows.any() else None
@@ -329,13 +340,9 @@ class Campbell:
             A crossing seen between two speeds cannot be refined; more speeds would separate it.
         """
         require_finite("order", order, positive=True)
-        found = []
-        for branch in range(self.eigenvalues.shape[1]):
-            gap = self.eigenvalues[:, branch].imag - order * np.abs(self.speeds)
-            for left in np.flatnonzero((gap[:-1] > 0.0) != (gap[1:] > 0.0)):
-                if np.isfinite(gap[left]) and np.isfinite(gap[left + 1]) and gap[left] != gap[left + 1]:
-                    found.append(self._crossing(branch, int(left), order))
-        return tuple(sorted(found, key=lambda crossing: abs(crossing.speed)))
+        intervals = order_intervals(self.damped_frequencies, order, self.speeds)
+        found = [self._crossing(branch, left, order) for left, branch in intervals]
+        return tuple(sorted(found, key=lambda crossing: (abs(crossing.speed), crossing.branch)))
 
     def _crossing(self, branch: int, left: int, order: float) -> Crossing:
         """Find the crossing between two neighbouring speeds, every λ on the way refined on the exact equations."""
@@ -378,7 +385,6 @@ def campbell(
     *,
     frequency_limit: float | None = None,
     count: int | None = None,
-    basis: LateralModes | None = None,
     prove_all: bool = False,
     solver: WhirlSolver | None = None,
 ) -> Campbell:
@@ -394,8 +400,6 @@ def campbell(
         rad/s: branches below it at some speed.
     count
         Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
-    basis
-        From `rotors.whirl.modal_projection.whirl_basis`, to avoid building it.
     prove_all
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
     solver
@@ -410,7 +414,7 @@ def campbell(
     """
     turning = finite_values("speeds", speeds)
     require(bool((np.diff(turning) > 0.0).all()), "speeds", turning.tolist(), "ascending speeds")
-    shared = WhirlSolver(rotor, bearings, basis) if solver is None else solver
+    shared = WhirlSolver(rotor, bearings) if solver is None else solver
     same = shared.rotor is rotor and shared.bearings == tuple(bearings)
     require(same, "rotor of the solver", shared.rotor.name, f"{rotor.name}, on the same bearings")
     chosen = shared.planar_basis(frequency_limit, count)

@@ -17,11 +17,10 @@ from rotors.certificate import ACCEPTED, ModeCertificate
 from rotors.errors import RotorError, require, require_count
 from rotors.model.bearing import Bearing, undamped
 from rotors.model.shaft import Rotor
-from rotors.modes.lateral import LateralModes
 from rotors.whirl.circular_coordinates import coupled_motions
 from rotors.whirl.completeness import NO_OSCILLATION
 from rotors.whirl.eigenvalues import SYNCHRONOUS
-from rotors.whirl.modal_projection import ModalProjection, basis_for
+from rotors.whirl.modal_projection import ModalProjection
 from rotors.whirl.planar_basis import DEFAULT_COUNT, planar_basis
 from rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
 
@@ -73,7 +72,6 @@ def critical_speeds(
     *,
     speed_limit: float | None = None,
     count: int | None = None,
-    basis: LateralModes | None = None,
 ) -> CriticalSpeeds:
     """Undamped critical speeds: where a whirl frequency equals the speed of rotation.
 
@@ -95,8 +93,6 @@ def critical_speeds(
         rad/s: all critical speeds strictly below.
     count
         Number of critical speeds, instead of a limit; with neither, 12.
-    basis
-        From `rotors.whirl.modal_projection.whirl_basis`, to avoid building it.
 
     Raises
     ------
@@ -104,9 +100,9 @@ def critical_speeds(
         As `rotors.solve_whirl`.
     """
     free = [undamped(bearing) for bearing in bearings]
-    chosen = basis_for(rotor, free, speed_limit, count, basis)
+    chosen = planar_basis(rotor, free, speed_limit, count)
     if any(bearing.speeds is not None for bearing in free):
-        return _tabled_critical_speeds(rotor, free, speed_limit, count, basis)
+        return _tabled_critical_speeds(rotor, free, speed_limit, count)
     sets = [ModalProjection.of(rotor, free, blocks, chosen) for blocks in coupled_motions(free)]
     roots, certificate = certified_criticals(rotor, free, sets, speed_limit, count)
     speeds = roots.eigenvalues.imag
@@ -116,16 +112,14 @@ def critical_speeds(
 
 
 def _tabled_critical_speeds(
-    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None, basis: LateralModes | None
+    rotor: Rotor, bearings: Sequence[Bearing], limit: float | None, count: int | None
 ) -> CriticalSpeeds:
     """Crossings of a Campbell diagram whose stiffness follows the speed, within all tables."""
     tables = [bearing.speeds for bearing in bearings if bearing.speeds is not None]
     low, high = max(float(table[0]) for table in tables), min(float(table[-1]) for table in tables)
     high = min(high, limit or np.inf)
     require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
-    diagram = campbell(
-        rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high, basis=basis
-    )
+    diagram = campbell(rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high)
     found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
     speeds = np.array([crossing.speed for crossing in found])
     proof = ModeCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")

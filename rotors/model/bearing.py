@@ -1,4 +1,4 @@
-"""Bearings as linear springs and dashpots: 2×2 or 5×5 matrices, pedestals, supports in one plane, axis springs.
+"""Bearings as linear springs and dashpots: 2x2 or 5x5 matrices, pedestals, supports in one plane, axis springs.
 
 A `Bearing` holds the shaft in both planes by its stiffness and damping matrices, over speed where they are tables, and
 may stand on a `Pedestal`. A `RadialSupport` is a spring to ground in one plane. An `AxisSpring` is an axial or a
@@ -13,6 +13,8 @@ import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
 from rotors.errors import RotorError, require, require_finite
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -34,9 +36,6 @@ class AxisSpring:
         """Check the position, and that the stiffness is not negative; it may be infinite."""
         require_finite("axis spring position", self.at, minimum=0.0)
         require(self.stiffness >= 0.0, "axis spring stiffness", self.stiffness, "zero, a positive number or infinity")
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

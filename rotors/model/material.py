@@ -5,16 +5,40 @@ A `Section` gives area, second moment, stiffness and mass per length.
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 from rotors.errors import require, require_finite
 
 ShearFormula = Literal["cowper", "hutchinson"]
 
 
+class ElasticMaterial(Protocol):
+    """Material of a shaft segment, whatever its class: :class:`ShaftMaterial`, or the `Material` of a housing.
+
+    Rotors and housings share no package below them, so that they agree on these names and not on a class. Poisson's
+    ratio is E / 2G − 1.
+    """
+
+    @property
+    def youngs_modulus(self) -> float:
+        """E in Pa."""
+
+    @property
+    def shear_modulus(self) -> float:
+        """G in Pa."""
+
+    @property
+    def poisson_ratio(self) -> float:
+        """ν."""
+
+    @property
+    def density(self) -> float:
+        """Mass per volume in kg/m³."""
+
+
 @dataclass(frozen=True)
 class ShaftMaterial:
-    """A linear elastic, isotropic shaft material.
+    """A linear elastic shaft material whose shear modulus is a number of its own, as of shafts drawn or wound.
 
     Parameters
     ----------
@@ -92,7 +116,7 @@ class Section:
 
     outer_diameter: float
     inner_diameter: float
-    material: ShaftMaterial
+    material: ElasticMaterial
     shear_coefficient: ShearFormula | float
 
     @property

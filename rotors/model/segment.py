@@ -4,11 +4,24 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from rotors.errors import require, require_finite
-from rotors.model.material import Section, ShaftMaterial, ShearFormula
-from rotors.numerics.quadrature import gauss_rule
+from rotors.model.material import ElasticMaterial, Section, ShearFormula
+
+FloatArray = npt.NDArray[np.float64]
 
 DAMPINGS = ("lateral_damping", "tilt_damping", "torsional_damping", "axial_damping")
+
+
+def gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss–Legendre rule: fractions of a length and weights that add up to one, (points,) both.
+
+    Exact to the degree 2 points − 1.
+    """
+    places, weights = np.polynomial.legendre.leggauss(points)
+    return np.asarray(0.5 * (places + 1.0)), np.asarray(0.5 * weights)
 
 
 @dataclass(frozen=True)
@@ -103,7 +116,7 @@ class Segment:
     length: float
     outer_diameter: float
     inner_diameter: float
-    material: ShaftMaterial
+    material: ElasticMaterial
     shear_coefficient: ShearFormula | float = "cowper"
     right_outer_diameter: float | None = None
     right_inner_diameter: float | None = None

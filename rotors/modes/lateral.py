@@ -25,6 +25,7 @@ RELATIVE_WIDTH = 1e-13
 MOST_DOUBLINGS = 100
 # A shaft that is free to tilt buckles under any compression: a factor below this is zero.
 LEAST_FACTOR = 1e-9
+FloatArray = npt.NDArray[np.float64]
 
 
 def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> float:
@@ -89,9 +90,6 @@ def _has_buckled(rotor: Rotor, supports: Sequence[RadialSupport], factor: float)
     # The shaft has one scale at every frequency; the elements of a standstill are the longest.
     shaft = continuous_shaft.cut(STANDSTILL * continuous_shaft.likely_frequency(1))
     return wittrick_williams_count(shaft, shaft.highest) > int(shaft.rigid_shapes.shape[0])
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

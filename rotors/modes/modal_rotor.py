@@ -29,12 +29,11 @@ import numpy.typing as npt
 
 from rotors.errors import require, require_finite
 from rotors.model.bearing import Bearing, RadialSupport
-from rotors.model.segment import Segment
+from rotors.model.segment import Segment, gauss_rule
 from rotors.model.shaft import Rotor, station_inertias
 from rotors.modes.lateral import LateralModes, solve_lateral_modes
 from rotors.modes.residual_modes import add_attachment_modes, add_rod_attachment_modes
 from rotors.modes.torsional_and_axial import AxialModes, TorsionalModes, solve_axial_modes, solve_torsional_modes
-from rotors.numerics.quadrature import gauss_rule
 from rotors.transfer_matrix.rotor_shafts import bending_shaft, rod_shaft
 from rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
 

@@ -4,9 +4,9 @@ A Campbell diagram connects the modes of neighbouring speeds. Where two modes cr
 which is which; where they veer, the shape alone does not. Both are weighed in a linear assignment.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -83,6 +83,42 @@ def extended_branches(table: IntArray, partner: IntArray, count: int) -> IntArra
     longer[:speeds, :branches] = table
     longer[speeds, :branches], longer[speeds, branches:] = row, begun
     return longer
+
+
+def along_branches(table: IntArray, values: Sequence[npt.NDArray[Any]], missing: Any) -> npt.NDArray[Any]:
+    """Values of the modes along the branches, (s, b, ...).
+
+    Parameters
+    ----------
+    table
+        (s, b): index of each branch's mode at every speed, −1 where the branch is not.
+    values
+        For each speed an array over its modes, (m, ...).
+    missing
+        Stands where a branch is not.
+    """
+    rows = []
+    for row, of in zip(table, values, strict=True):
+        taken = of[np.maximum(row, 0)] if of.size else np.full((row.size, *of.shape[1:]), missing)
+        rows.append(np.where((row >= 0).reshape(-1, *(1,) * (of.ndim - 1)), taken, missing))
+    return np.stack(rows)
+
+
+def order_intervals(damped_frequencies: FloatArray, order: float, speeds: FloatArray) -> list[tuple[int, int]]:
+    """Intervals of speed in which a branch crosses an order: index of the lower speed, and branch.
+
+    Parameters
+    ----------
+    damped_frequencies
+        (s, b): of the branches, rad/s; NaN where a branch is not.
+    order
+        Multiple of the speed.
+    speeds
+        (s,): rad/s.
+    """
+    gap = damped_frequencies - order * np.abs(speeds)[:, None]
+    crosses = ((gap[:-1] > 0.0) != (gap[1:] > 0.0)) & np.isfinite(gap[:-1]) & np.isfinite(gap[1:])
+    return [(int(left), int(branch)) for left, branch in np.argwhere(crosses)]
 
 
 @dataclass(frozen=True)

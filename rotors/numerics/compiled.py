@@ -1,4 +1,4 @@
-"""Compilation of kernels by numba: the decorators :func:`counted`, :func:`uncounted` and :func:`inner`.
+"""Compilation of kernels by numba: decorators :func:`counted`, :func:`uncounted` and :func:`inner`, and the cache.
 
 Importing this module imports numba.
 
@@ -10,25 +10,42 @@ of an error that ``a[:] = b`` could raise: write a loop.
 A called kernel is compiled on its own, and again within every kernel that inlines it. So few kernels call many, and
 kernels that only kernels call have no entry points from Python or C.
 
-Compiled kernels are cached by :mod:`rotors.numerics.kernel_cache`.
+Kernel cache: numba stamps a cached kernel with its own source file only. Its machine code also holds the kernels that
+it calls and the constants that it reads from other files, and would stay outdated when one of those changes. Here the
+folder's name is a digest of all sources of machine code and of the versions of numba, llvmlite and NumPy, so that
+changed sources find an empty folder. numba itself separates Python versions and processors. The folder stands below
+``NUMBA_CACHE_DIR`` where that is set, else beside the sources, else, where these are read-only, in the user's cache.
+Folders that no process has used for a month are removed.
 """
 
-from collections.abc import Callable
+import hashlib
+import os
+import re
+import shutil
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
+import llvmlite
 import numba
+import numpy as np
 from numba import njit
 
-from rotors.numerics.kernel_cache import cache_folder
-
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
-
 # A product and the sum it goes into may be rounded once.
 FUSED = {"contract"}
 # The same without infinities and NaN, so that products with the zero imaginary part of a real factor vanish.
 FINITE = {"contract", "nnan", "ninf", "nsz"}
-
 _ALL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+_PACKAGES = ("rotors", "coupling")
+_UNUSED = 30 * 86400.0
+"""Age of a folder that is removed [s]."""
+_KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
+_IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
 
 
 def counted(**options: Any) -> Callable[[Kernel], Kernel]:
@@ -54,3 +71,78 @@ def uncounted(**options: Any) -> Callable[[Kernel], Kernel]:
 def inner(**options: Any) -> Callable[[Kernel], Kernel]:
     """Compile as `uncounted` does, for a function that kernels alone call."""
     return uncounted(no_cpython_wrapper=True, **options)
+
+
+def kernel_sources(root: Path) -> list[Path]:
+    """List the sources of the machine code: files with kernels, and the files that these import from.
+
+    Parameters
+    ----------
+    root : Path
+        The folder that holds the packages ``rotors`` and ``coupling``.
+
+    Returns
+    -------
+    list of Path
+        Ascending.
+    """
+    found: set[Path] = set()
+    for path in _python_files(root):
+        text = path.read_bytes()
+        if _KERNELS.search(text):
+            found.add(path)
+            found.update(_imported(root, path, text))
+    return sorted(found)
+
+
+def _python_files(root: Path) -> Iterable[Path]:
+    for package in _PACKAGES:
+        yield from sorted((root / package).rglob("*.py"))
+
+
+def _imported(root: Path, path: Path, text: bytes) -> Iterable[Path]:
+    """Files of the packages that a file imports names from."""
+    for match in _IMPORT.findall(text):
+        name = match.decode()
+        dots = len(name) - len(name.lstrip("."))
+        folder = path.parents[dots - 1] if dots else root
+        module = folder.joinpath(*filter(None, name.split(".")))
+        for source in (module.with_suffix(".py"), module / "__init__.py"):
+            if source.is_file():
+                yield source
+
+
+def sources_digest(root: Path) -> str:
+    """Digest of the sources' bytes and of the compiler's versions."""
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__} {np.__version__}".encode())
+    for path in kernel_sources(root):
+        text = path.read_bytes()
+        digest.update(f"\n{path.relative_to(root).as_posix()} {len(text)}\n".encode())
+        digest.update(text)
+    return digest.hexdigest()[:16]
+
+
+@cache
+def cache_folder() -> str:
+    """Folder of this process's kernels, made where it can be; empty where there is none to write to."""
+    root = next(folder for folder in Path(__file__).resolve().parents if folder.name == "rotors").parent
+    name = f"kernels-{sources_digest(root)}"
+    given = str(numba.config.CACHE_DIR)  # type: ignore[attr-defined]  # set by numba from its environment variables
+    user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "gearwhine"
+    for base in [Path(given)] if given else [root / "rotors" / "__pycache__", user]:
+        folder = base / name
+        with suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            if os.access(folder, os.W_OK):
+                os.utime(folder)
+                _remove_unused(base)
+                return str(folder)
+    return given
+
+
+def _remove_unused(base: Path) -> None:
+    """Remove folders of kernels that no process has used for a month."""
+    for folder in base.glob("kernels-*"):
+        with suppress(OSError):
+            if time.time() - folder.stat().st_mtime > _UNUSED:
+                shutil.rmtree(folder, ignore_errors=True)

@@ -12,6 +12,8 @@ FloatArray = npt.NDArray[np.float64]
 MOST_ITERATIONS = 500
 # Eigenvalues below this part of the largest are directions in which the function is flat.
 _FLAT = 1e-14
+# A function that still falls so many first radii away is taken to have no minimum.
+_FARTHEST = 1e12
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
@@ -63,12 +65,13 @@ def minimise(function: Callable[[FloatArray], Local], start: FloatArray, radius:
     radius
         Length of the first step at most; it adapts.
     tolerance
-        Of the gradient over the size of its terms; rounding may stop the iteration above it.
+        Of the gradient over the size of its terms; rounding, or a function without a minimum, may stop the iteration
+        above it.
     """
-    here, place, stalled = function(start), start, 0
+    here, place, stalled, farthest = function(start), start, 0, _FARTHEST * radius
     best = Minimum(place, _residual(here), 0)
     for iteration in range(1, MOST_ITERATIONS + 1):
-        if best.residual <= tolerance or stalled == 3:
+        if best.residual <= tolerance or stalled == 3 or radius > farthest:
             break
         step, predicted = _step(here, radius)
         if not step.any():

@@ -4,13 +4,15 @@
     state = rolling_equilibrium(RollingBearing([row]), [1000.0, 0.0, 0.0, 0.0, 0.0])
     bearing = linearised_bearing(state, "drive end", at=0.02)
 
-A state carries the displacement, the 5×5 tangent stiffness, each element's load, contact angles and pressures, and the
+A state carries the displacement, the 5x5 tangent stiffness, each element's load, contact angles and pressures, and the
 residual of its equilibrium. `RollingElements` is the energy of the elements at any displacement, with reaction and
 tangent, for the equilibrium of a whole machine; `rolling_state` is the state at a displacement found so.
 `catalogue_row` estimates a row from bore, outer diameter and width; `paired` sets two against each other. Coordinates
 are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
+from rotors.rolling_bearings.catalogue import CatalogueType, catalogue_bearing, catalogue_row, standing_rows
+from rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
 from rotors.rolling_bearings.element_contacts import ElementLoads
 from rotors.rolling_bearings.equilibrium import (
     COORDINATES,
@@ -23,30 +25,49 @@ from rotors.rolling_bearings.equilibrium import (
     rolling_equilibrium,
     rolling_state,
 )
+from rotors.rolling_bearings.frequencies import CharacteristicFrequencies, characteristic_frequencies
 from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, point_contact
-from rotors.rolling_bearings.rolling_bearing import RollingBearing, catalogue_row, paired, preload_offset, static_rating
-from rotors.rolling_bearings.rows import BallRow, RollerRow
+from rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
+from rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, SphericalRollerRow, TaperedRollerRow
+from rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
+from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 __all__ = [
     "COORDINATES",
     "LARGEST_APPROACH",
     "STEEL",
     "BallRow",
+    "CatalogueType",
+    "CharacteristicFrequencies",
     "ContactElasticity",
     "ElementLoads",
+    "FourPointRow",
+    "LineContactRow",
+    "OperatingClearance",
     "PointContact",
+    "RingFit",
     "RollerRow",
     "RollingBearing",
     "RollingElements",
     "RollingState",
+    "Row",
+    "SphericalRollerRow",
+    "TaperedRollerRow",
+    "catalogue_bearing",
     "catalogue_row",
+    "characteristic_frequencies",
+    "dynamic_rating",
     "kramer_ball_stiffness",
     "kramer_roller_stiffness",
     "linearised_bearing",
+    "operating_clearance",
     "paired",
     "point_contact",
     "preload_offset",
     "rolling_equilibrium",
     "rolling_state",
+    "spherical_groove",
+    "standing_rows",
     "static_rating",
+    "thermal_offset",
 ]

@@ -20,13 +20,17 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import EquilibriumError, RotorError, require, require_count, require_finite
+from rotors.errors import EquilibriumError, require, require_count, require_finite
 from rotors.model.bearing import Bearing
 from rotors.numerics.trust_region import Local, minimise
 from rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
-from rotors.rolling_bearings.element_contacts import ElementLoads, RollerSlices, RowContacts, StaticBalls
-from rotors.rolling_bearings.rolling_bearing import RollingBearing, Row
-from rotors.rolling_bearings.rows import BallRow
+from rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
+from rotors.rolling_bearings.four_point_balls import FourPointBalls
+from rotors.rolling_bearings.ratings import Row
+from rotors.rolling_bearings.roller_rows import LineContactRow
+from rotors.rolling_bearings.roller_slices import RollerSlices
+from rotors.rolling_bearings.rolling_bearing import RollingBearing
+from rotors.rolling_bearings.rows import BallRow, FourPointRow
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -119,7 +123,7 @@ class RollingElements:
     bearing
         By its geometry.
     speed
-        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on balls.
+        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on the elements.
     cage_angle
         Azimuth of the first element of every row, rad.
 
@@ -201,7 +205,7 @@ def rolling_equilibrium(
         Displacement of constrained coordinates, by their names in `COORDINATES`, m and rad. Rotations held at zero
         represent a stiff, aligned shaft.
     speed
-        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on balls.
+        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on the elements.
     cage_angle
         Azimuth of the first element of every row, rad.
 
@@ -230,7 +234,7 @@ def rolling_equilibrium(
         not pushed,
         f"axial load on {bearing.name}",
         float(applied[2]),
-        "none, or z held: cylindrical rollers carry none",
+        "none, or z held: cylindrical rollers without flanges carry none",
     )
 
     # Rotations as displacements of the pitch circle, so that all five are lengths.
@@ -316,12 +320,12 @@ def _state(
 
 def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:
     azimuths = cage_angle + 2.0 * math.pi * np.arange(row.count) / row.count
-    if isinstance(row, BallRow):
-        thrown = row.centrifugal_force(speed)
-        return CentrifugalBalls(row, azimuths, thrown) if thrown > 0.0 else StaticBalls(row, azimuths)
-    if speed != 0.0:
-        raise RotorError(f"speed is {speed!r}; expected 0 for rollers, whose centrifugal forces are left out")
-    return RollerSlices(row, azimuths)
+    thrown = row.centrifugal_force(speed)
+    if isinstance(row, LineContactRow):
+        return RollerSlices(row, azimuths, thrown)
+    if isinstance(row, FourPointRow):
+        return FourPointBalls(row, azimuths, thrown)
+    return CentrifugalBalls(row, azimuths, thrown) if thrown > 0.0 else StaticBalls(row, azimuths)
 
 
 def _require_proof(state: RollingState) -> None:
@@ -335,12 +339,13 @@ def _require_proof(state: RollingState) -> None:
                 f"expected at most {100 * LARGEST_APPROACH:g} %: less load, preload, interference or tilt, or a larger "
                 "bearing"
             )
-        if isinstance(row, BallRow):
+        if isinstance(row, BallRow) and not isinstance(row, FourPointRow):
             _require_grooves(name, number, row, loads)
     if state.residual > _ACCEPTED:
         raise EquilibriumError(
             f"{name}: no equilibrium after {state.iterations} steps, {state.residual:.3g} of the loads is left; "
-            f"expected {_ACCEPTED:g}: check that load and geometry are in N, N·m and m"
+            f"expected {_ACCEPTED:g}: check that load and geometry are in N, N·m and m, and that rows which "
+            "carry axial load one way only have it, or an opposed row, a preload or z held"
         )
     values = np.linalg.eigvalsh(state.even_stiffness)
     if values[0] < -1e-9 * max(values[-1], 1.0):

@@ -1,15 +1,14 @@
-"""Ball and roller rows of a rolling bearing, by their geometry: elements, grooves, raceways and contact constants.
+"""Rows of balls of a rolling bearing, by their geometry: balls, grooves and contact constants.
 
-The elements of a row must fit side by side on the pitch circle.
+The elements of a row must fit side by side on the pitch circle. Balls of a `BallRow` touch one arc of either ring,
+those of a `FourPointRow` up to two: each of its rings is ground with two arcs whose centres are a shim apart, a Gothic
+arch. In a self-aligning bearing the outer groove is a sphere about the bearing's centre (`spherical_groove`).
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Literal
-
-import numpy as np
-import numpy.typing as npt
+from typing import Self
 
 from rotors.errors import require, require_count, require_finite
 from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, in_series, point_contact
@@ -41,7 +40,7 @@ class BallRow:
     contact_angle
         Nominal, without clearance, rad; 0 for deep grooves.
     inner_groove, outer_groove
-        Groove radius over ball diameter, above 0.5.
+        Groove radius over ball diameter, above 0.5 and up to 1; of an outer ring up to `spherical_groove`.
     clearance
         Diametral, m; negative is an interference.
     axial_offset
@@ -54,6 +53,8 @@ class BallRow:
         Contact angles between which there is a groove, in the row's direction, rad: its shoulders.
     elasticity
         Steel unless given.
+    estimated
+        Whether the geometry is an estimate (`rotors.rolling_bearings.catalogue`).
 
     Raises
     ------
@@ -73,21 +74,26 @@ class BallRow:
     direction: int = 1
     groove_limits: tuple[float, float] = (-RIGHT_ANGLE, RIGHT_ANGLE)
     elasticity: ContactElasticity = STEEL
+    estimated: bool = False
 
     def __post_init__(self) -> None:
         """Check that the balls fit on the pitch circle, and angles, grooves, clearance and direction."""
         require_space("ball", self.count, self.ball_diameter, self.pitch_diameter)
         within = 0.0 <= self.contact_angle < RIGHT_ANGLE
         require(within, "contact angle", self.contact_angle, "an angle from 0 to below a right angle, rad")
-        for what in ("inner_groove", "outer_groove"):
+        widest = max(1.0, 1.001 * spherical_groove(self.ball_diameter, self.pitch_diameter, self.contact_angle))
+        for what, most in (("inner_groove", 1.0), ("outer_groove", widest)):
             ratio = getattr(self, what)
-            require(0.5 < ratio <= 1.0, what, ratio, "a groove radius over 0.5 and up to 1 of the ball's diameter")
+            require(
+                0.5 < ratio <= most,
+                what,
+                ratio,
+                f"a groove radius over 0.5 and up to {most:.4g} of the ball's diameter",
+            )
         for what in ("clearance", "axial_offset", "position"):
             require_finite(what.replace("_", " "), getattr(self, what))
-        widest = 2.0 * self.groove_distance * math.cos(self.contact_angle)
-        require(
-            self.clearance < widest, "clearance", self.clearance, f"less than {widest:g} m, which its grooves leave"
-        )
+        room = 2.0 * self.groove_distance * math.cos(self.contact_angle)
+        require(self.clearance < room, "clearance", self.clearance, f"less than {room:g} m, which its grooves leave")
         require(self.direction in (1, -1), "direction of a row", self.direction, "1 or -1")
         low, high = self.groove_limits
         ordered = -RIGHT_ANGLE <= low <= self.contact_angle <= high <= RIGHT_ANGLE
@@ -126,14 +132,30 @@ class BallRow:
         radius = 0.5 * self.pitch_diameter + arm * math.cos(self.contact_angle)
         return radius, self.position + self.direction * arm * math.sin(self.contact_angle)
 
+    @property
+    def has_axial_stiffness(self) -> bool:
+        """Whether the row carries axial load: always."""
+        return True
+
+    @property
+    def self_aligning(self) -> bool:
+        """Whether the outer groove is the sphere about the bearing's centre."""
+        sphere = spherical_groove(self.ball_diameter, self.pitch_diameter, self.contact_angle)
+        return self.outer_groove >= 0.999 * sphere
+
+    @property
+    def slack_offset(self) -> float:
+        """Axial offset at which a centred row carries no axial force, m."""
+        return -self.groove_distance * math.sin(self.contact_angle)
+
     def cage_speed(self, speed: float) -> float:
         """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω, rad/s.
 
         γ = D cos α / D_pw, of pure rolling at the nominal contact angle (Harris and Kotzalas 2006).
         """
-        return 0.5 * (1.0 - self._gamma) * speed
+        return 0.5 * (1.0 - self.gamma) * speed
 
-    def facing(self, direction: int) -> "BallRow":
+    def facing(self, direction: int) -> Self:
         """Return the same row with another direction."""
         return replace(self, direction=direction)
 
@@ -146,12 +168,12 @@ class BallRow:
     @cached_property
     def inner_contact(self) -> PointContact:
         """A ball in the inner groove: curvatures 2/D and γ/(1 − γ) · 2/D along, 2/D and −1/(f D) across."""
-        return self._contact(self.inner_groove, self._gamma / (1.0 - self._gamma))
+        return self._contact(self.inner_groove, self.gamma / (1.0 - self.gamma))
 
     @cached_property
     def outer_contact(self) -> PointContact:
         """A ball in the outer groove: curvatures 2/D and −γ/(1 + γ) · 2/D along, 2/D and −1/(f D) across."""
-        return self._contact(self.outer_groove, -self._gamma / (1.0 + self._gamma))
+        return self._contact(self.outer_groove, -self.gamma / (1.0 + self.gamma))
 
     @cached_property
     def stiffness(self) -> float:
@@ -176,103 +198,54 @@ class BallRow:
         return float(self.count * self.stiffness * approach**1.5 * axial / distance)
 
     @property
-    def _gamma(self) -> float:
+    def gamma(self) -> float:
+        """γ = D cos α / D_pw."""
         return self.ball_diameter * math.cos(self.contact_angle) / self.pitch_diameter
 
     def _contact(self, groove: float, along: float) -> PointContact:
-        across = (2.0 - 1.0 / groove) / self.ball_diameter
-        return point_contact(across, 2.0 * (1.0 + along) / self.ball_diameter, self.elasticity.contact_modulus)
+        curvatures = (2.0 - 1.0 / groove) / self.ball_diameter, 2.0 * (1.0 + along) / self.ball_diameter
+        # A sphere has the same curvature along and across, but for rounding.
+        return point_contact(min(curvatures), max(curvatures), self.elasticity.contact_modulus)
 
 
-FloatArray = npt.NDArray[np.float64]
+def spherical_groove(ball_diameter: float, pitch_diameter: float, contact_angle: float) -> float:
+    """Outer groove of a self-aligning bearing, the sphere about its centre: its radius over the ball's diameter.
 
-Profile = Literal["straight", "logarithmic"]
-# ISO 16281's line contact of both raceways in series: q = 35 948 L^{8/9} δ^{10/9} in N and mm.
-_PALMGREN_STEEL = 35948.0 * 1000.0 ** (8.0 / 9.0) * 1000.0 ** (10.0 / 9.0)
+    The contact lines meet in the centre of the bearing, so the radius is D_pw / (2 cos α) + D/2.
+    """
+    return 0.5 + 0.5 * pitch_diameter / (ball_diameter * math.cos(contact_angle))
 
 
 @dataclass(frozen=True)
-class RollerRow:
-    """One row of cylindrical rollers, which carry no axial load.
+class FourPointRow(BallRow):
+    """One row of balls in four-point contact: either ring has two arcs, and the row carries axial load both ways.
 
-    Parameters
-    ----------
-    count
-        Rollers, three or more.
-    roller_diameter, length, pitch_diameter
-        D, the effective length L of contact and the diameter of the rollers' centres, m.
-    clearance
-        Diametral, m; negative is an interference.
-    profile
-        ``"straight"``, or ``"logarithmic"`` as ISO 16281 takes it where nothing else is known.
-    slices
-        Number of laminae of a roller; ISO 16281 requires 30 or more.
-    position
-        Of the rollers' middles from the bearing's centre along z, m.
-    elasticity
-        Steel unless given.
+    Parameters as of `BallRow`. ``contact_angle`` is the one at which a ball touches all four arcs without clearance,
+    the shim angle; the arcs' centres of a ring are a shim (2f − 1) D sin α apart.
 
     Raises
     ------
     RotorError
-        Invalid geometry, such as rollers that do not fit on the pitch circle.
+        As `BallRow`, and a contact angle of zero, with which the arcs of a ring are one.
     """
 
-    count: int
-    roller_diameter: float
-    length: float
-    pitch_diameter: float
-    clearance: float = 0.0
-    profile: Profile = "logarithmic"
-    slices: int = 31
-    position: float = 0.0
-    elasticity: ContactElasticity = STEEL
-
     def __post_init__(self) -> None:
-        """Check that the rollers fit on the pitch circle, and length, slices, profile and clearance."""
-        require_space("roller", self.count, self.roller_diameter, self.pitch_diameter)
-        require_finite("roller length", self.length, positive=True)
-        require_count("count of slices", self.slices)
-        known = self.profile in ("straight", "logarithmic")
-        require(known, "roller profile", self.profile, "'straight' or 'logarithmic'")
-        for what in ("clearance", "position"):
-            require_finite(what, getattr(self, what))
+        """Check as of any balls, and that there are two arcs."""
+        super().__post_init__()
+        require(self.contact_angle > 0.0, "contact angle of four-point balls", self.contact_angle, "more than 0")
 
     @property
-    def element_diameter(self) -> float:
-        """Of the rollers, m."""
-        return self.roller_diameter
-
-    def cage_speed(self, speed: float) -> float:
-        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − D/D_pw) Ω, rad/s."""
-        return 0.5 * (1.0 - self.roller_diameter / self.pitch_diameter) * speed
+    def arcs(self) -> tuple[BallRow, BallRow]:
+        """Rows that the ball makes with the arcs of one diagonal alone: loaded by +z along the row, and by −z."""
+        given = {one.name: getattr(self, one.name) for one in fields(BallRow)}
+        given["groove_limits"] = (-RIGHT_ANGLE, RIGHT_ANGLE)
+        return BallRow(**given), BallRow(**given | {"direction": -self.direction, "axial_offset": -self.axial_offset})
 
     @property
-    def stiffness(self) -> float:
-        """Contact constant c of one straight roller between both raceways, Q = c δ^{10/9}, N/m^{10/9}.
-
-        35 948 L^{8/9} in N and mm (Palmgren; ISO 16281), for the steel that `ContactElasticity` holds by default, and
-        in proportion to E* for others: Palmgren's δ goes as (1/E*)^{0.9}.
-        """
-        relative = self.elasticity.contact_modulus / STEEL.contact_modulus
-        return float(_PALMGREN_STEEL * self.length ** (8.0 / 9.0) * relative)
-
-    @property
-    def slice_places(self) -> FloatArray:
-        """Middles of the slices from the roller's middle, (slices,), m."""
-        return self.length * ((np.arange(self.slices) + 0.5) / self.slices - 0.5)
-
-    @property
-    def slice_drops(self) -> FloatArray:
-        """Profile drop P at each slice, (slices,), m.
-
-        ISO 16281: P = 0.00035 D ln[1 / (1 − (2x/L)²)] for L ≤ 2.5 D; for longer rollers the middle is straight and
-        P = 0.0005 D ln[1 / (1 − ((2|x| − L + 2.5 D) / 2.5 D)²)] at its ends.
-        """
-        if self.profile == "straight":
-            return np.zeros(self.slices)
-        x, span = np.abs(self.slice_places), 2.5 * self.roller_diameter
-        if self.length <= span:
-            return np.asarray(-0.00035 * self.roller_diameter * np.log1p(-((2.0 * x / self.length) ** 2)))
-        into_end = np.maximum(2.0 * x - self.length + span, 0.0) / span
-        return np.asarray(-0.0005 * self.roller_diameter * np.log1p(-(into_end**2)))
+    def shims(self) -> tuple[float, float]:
+        """Distance of the arcs' centres of the inner and of the outer ring, m."""
+        inner, outer = (
+            (2.0 * groove - 1.0) * self.ball_diameter * math.sin(self.contact_angle)
+            for groove in (self.inner_groove, self.outer_groove)
+        )
+        return inner, outer

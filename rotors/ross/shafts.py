@@ -19,7 +19,7 @@ from typing import Final
 import numpy as np
 
 from rotors.errors import RotorError
-from rotors.model.material import Section, ShaftMaterial, ShearFormula
+from rotors.model.material import ElasticMaterial, Section, ShaftMaterial, ShearFormula
 from rotors.model.segment import Coupling, Segment
 from rotors.model.shaft import Disc
 from rotors.ross.tables import Entry, Remarks
@@ -193,7 +193,7 @@ def _material(entry: Entry) -> ShaftMaterial:
 
 
 def _shear(
-    entry: Entry, material: ShaftMaterial, diameters: tuple[float, float, float, float], remarks: Remarks
+    entry: Entry, material: ElasticMaterial, diameters: tuple[float, float, float, float], remarks: Remarks
 ) -> float | ShearFormula:
     """Shear coefficient as in ROSS, with remarks on properties that the exact segment cannot have."""
     for flag, kept in (("rotary_inertia", "rotary inertia"), ("gyroscopic", "gyroscopic moment")):

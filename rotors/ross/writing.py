@@ -12,7 +12,7 @@ import tomli_w
 
 from rotors.errors import require, require_finite
 from rotors.model.bearing import Bearing, Pedestal
-from rotors.model.material import ShaftMaterial
+from rotors.model.material import ElasticMaterial
 from rotors.model.segment import Coupling, Segment
 from rotors.model.shaft import STATION_TOLERANCE, Disc, Rotor, merged_positions, station_index
 from rotors.ross.reading import PLACES
@@ -117,7 +117,7 @@ def _nodes(rotor: Rotor, bearings: Sequence[Bearing], longest: float) -> tuple[F
 
 
 def _shaft(rotor: Rotor, nodes: FloatArray, owners: Sequence[int], remarks: Remarks) -> list[Table]:
-    materials: dict[ShaftMaterial, Table] = {}
+    materials: dict[ElasticMaterial, Table] = {}
     tables = []
     for owner, segment in enumerate(rotor.segments):
         if isinstance(segment, Coupling):
@@ -169,7 +169,7 @@ def _remark_on_shear(rotor: Rotor, number: int, segment: Segment, remarks: Remar
         )
 
 
-def _material(name: str, material: ShaftMaterial) -> Table:
+def _material(name: str, material: ElasticMaterial) -> Table:
     moduli = {"E": material.youngs_modulus, "G_s": material.shear_modulus}
     return {"name": name, "rho": material.density, **moduli, "color": "#525252"}
 

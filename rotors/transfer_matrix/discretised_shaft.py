@@ -25,8 +25,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rotors.errors import RotorError
+from rotors.model.segment import gauss_rule
 from rotors.model.shaft import merged_positions, restricted, station_index
-from rotors.numerics.quadrature import gauss_rule
 from rotors.transfer_matrix.timoshenko import NumberArray, ShaftElements
 
 FloatArray = npt.NDArray[np.float64]

@@ -40,6 +40,9 @@ REACH = np.array(
 # Most terms of the power series along a cone; about 25 are needed.
 MOST_TERMS = 80
 NEGLIGIBLE = 1e-18
+BoolArray = npt.NDArray[np.bool_]
+
+ElementArrays = tuple[FloatArray, IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray]
 
 
 @inner(error_model="python", fastmath=FINITE)
@@ -232,11 +235,6 @@ def place_transfer_matrices(
             element_transfer_matrices(
                 lengths[e], given[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1]
             )
-
-
-BoolArray = npt.NDArray[np.bool_]
-
-ElementArrays = tuple[FloatArray, IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray]
 
 
 @inner(error_model="python")

@@ -1,7 +1,8 @@
-"""Compiled Newton iteration for whirl eigenvalues, each root by itself, and tests of the eigenvalues.
+"""Compiled whirl eigenvalues: perturbation by damping for starting values, Newton iteration, and tests of eigenvalues.
 
-The tests decide whether eigenvalues oscillate, are separated, or lie inside a sector; the derivation of the iteration
-is in `rotors.whirl.eigenvalues`. Importing this module imports numba.
+The second-order perturbation is derived in `rotors.whirl.modal_projection`, the iteration for each root by itself in
+`rotors.whirl.eigenvalues`. The tests decide whether eigenvalues oscillate, are separated, or lie inside a sector.
+Importing this module imports numba.
 """
 
 import cmath
@@ -18,6 +19,18 @@ from rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+
+# Slopes are recomputed after steps longer than this.
+STALE = 1e-4
+# A step larger than this part of the root is shortened: its start is not near a root.
+LONGEST_STEP = 0.3
+# After a smaller relative step the existing factors serve for the next one.
+CLOSE = 1e-6
+# Largest correction of the vector in that step: its remaining error is a few times the square of the correction.
+TURNED = 1e-7
+# Relative step of the forward difference for slopes of the entries, accurate to about 1e-6.
+FORWARD = 1e-6
 
 
 @inner(error_model="python")
@@ -79,20 +92,6 @@ def edge_distance(place: complex, bounds: FloatArray) -> float:
     across: float = max(bounds[0] - place.real, place.real - bounds[1])
     along: float = max(bounds[2] - place.imag, place.imag - bounds[3])
     return max(across, along)
-
-
-IntArray = npt.NDArray[np.intp]
-
-# Slopes are recomputed after steps longer than this.
-STALE = 1e-4
-# A step larger than this part of the root is shortened: its start is not near a root.
-LONGEST_STEP = 0.3
-# After a smaller relative step the existing factors serve for the next one.
-CLOSE = 1e-6
-# Largest correction of the vector in that step: its remaining error is a few times the square of the correction.
-TURNED = 1e-7
-# Relative step of the forward difference for slopes of the entries, accurate to about 1e-6.
-FORWARD = 1e-6
 
 
 @inner(error_model="python", fastmath=FUSED)
@@ -209,3 +208,95 @@ def newton(
                 break
         roots[root] = at
     return roots, vectors, residuals, scales
+
+
+@inner(error_model="python")
+def _project(matrix: FloatArray, motions: FloatArray, spare: FloatArray, out: FloatArray) -> None:
+    """½ MᵀDM of motions M (n, N) into ``out`` (N, N); ``spare`` (n, N) is scratch space for DM."""
+    for i in range(matrix.shape[0]):
+        for k in range(out.shape[0]):
+            spare[i, k] = 0.0
+        for j in range(matrix.shape[0]):
+            for k in range(out.shape[0]):
+                spare[i, k] += matrix[i, j] * motions[j, k]
+    for k in range(out.shape[0]):
+        for other in range(out.shape[0]):
+            out[k, other] = 0.0
+    for i in range(matrix.shape[0]):
+        for k in range(out.shape[0]):
+            for other in range(out.shape[0]):
+                out[k, other] += 0.5 * motions[i, k] * spare[i, other]
+
+
+@counted(error_model="python")
+def squares(frequencies: FloatArray, gyroscopic: FloatArray, speeds: FloatArray) -> FloatArray:
+    """CᵀC at every speed, (speeds, N, N)."""
+    order, (y, x) = frequencies.size, gyroscopic.shape
+    whole = np.zeros((speeds.size, order, order))
+    for speed in range(speeds.size):
+        turning = speeds[speed]
+        for k in range(order):
+            whole[speed, k, k] = frequencies[k] * frequencies[k]
+        for i in range(y):
+            for j in range(x):
+                coupled = turning * gyroscopic[i, j]
+                whole[speed, j, x + i] = whole[speed, x + i, j] = coupled * frequencies[x + i]
+                for k in range(x):
+                    whole[speed, j, k] += coupled * turning * gyroscopic[i, k]
+    return whole
+
+
+@counted(error_model="python")
+def damped(
+    squared: FloatArray,
+    right: FloatArray,
+    frequencies: FloatArray,
+    gyroscopic: FloatArray,
+    speeds: FloatArray,
+    damping_x: FloatArray,
+    damping_y: FloatArray,
+) -> tuple[ComplexArray, FloatArray]:
+    """λ and conjugates at every speed, (speeds, 2N), and how strongly damping couples the lower half, (speeds,).
+
+    ``squared`` (speeds, N) and ``right`` (speeds, N, N) are σ² and V.
+    """
+    count, order = squared.shape
+    x, y = damping_x.shape[0], damping_y.shape[0]
+    values, mixed = np.empty((count, 2 * order), dtype=np.complex128), np.zeros(count)
+    by_x, by_y = np.empty((order, order)), np.empty((order, order))
+    moving, spare, sizes = np.empty((y, order)), np.empty((max(x, y), order)), np.empty(order)
+    for speed in range(count):
+        for k in range(order):
+            sizes[k] = math.sqrt(squared[speed, k])
+        # p = C s / σ; the velocities of y come last.
+        for i in range(y):
+            for k in range(order):
+                moving[i, k] = frequencies[x + i] * right[speed, x + i, k]
+            for j in range(x):
+                for k in range(order):
+                    moving[i, k] += speeds[speed] * gyroscopic[i, j] * right[speed, j, k]
+            for k in range(order):
+                moving[i, k] /= sizes[k]
+        _project(damping_x, right[speed, :x], spare, by_x)
+        _project(damping_y, moving, spare, by_y)
+        for k in range(order):
+            shift, most = 0.0, 0.0
+            for j in range(order):
+                # (A − B)(A − B) has the sign of neither.
+                far = (by_x[k, j] - by_y[k, j]) * (by_x[j, k] - by_y[j, k]) / (sizes[k] + sizes[j])
+                near = 0.0
+                if j != k:
+                    apart = sizes[k] - sizes[j]
+                    near = (by_x[k, j] + by_y[k, j]) * (by_x[j, k] + by_y[j, k])
+                    # Equal frequencies: any coupling mixes them completely.
+                    if abs(near) > apart * apart:
+                        most, near = math.inf, 0.0
+                    elif near != 0.0:
+                        most += abs(near) / (apart * apart)
+                        near /= apart
+                shift += near + far
+            values[speed, k] = complex(-by_x[k, k] - by_y[k, k], sizes[k] - shift)
+            values[speed, order + k] = values[speed, k].conjugate()
+            if k < order // 2:
+                mixed[speed] = max(mixed[speed], most)
+    return values, mixed

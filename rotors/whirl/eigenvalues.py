@@ -295,14 +295,7 @@ SAME_PLACE = 1e-3
 def refine_roots(equations: WhirlEquations, starts: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots near starting values; fewer where several lead to one root, or one to none.
 
-    Parameters
-    ----------
-    equations
-        The exact equations.
-    starts
-        (w,) complex, rad/s.
-    speed
-        Speed of rotation as an analytic function of λ.
+    Arguments are as of `converged_roots`.
     """
     roots, crawling = converged_roots(equations, starts, speed)
     if crawling.size == 0:

@@ -11,7 +11,7 @@ equations of `rotors.transfer_matrix.timoshenko` with
     ω² → −λ² for translation,     ω² → −λ² ± 2iΩλ for rotation.
 
 So the exact transfer matrices of both senses follow for any λ, with no modal truncation. Only the bearings couple the
-two senses, and the shaft's axial motion where their 5×5 matrices do. At λ = iω forward whirl is r+.
+two senses, and the shaft's axial motion where their 5x5 matrices do. At λ = iω forward whirl is r+.
 
 The unknowns are the states (displacements u, forces f to the right) at some nodes, the forces g of bearings and the
 displacements p of pedestals; the equations are those of multiple shooting,

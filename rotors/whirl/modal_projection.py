@@ -34,23 +34,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from rotors.errors import require, require_count, require_finite
 from rotors.model.bearing import Bearing
 from rotors.model.shaft import Rotor
-from rotors.modes.lateral import LateralModes, solve_lateral_modes
 from rotors.modes.modal_rotor import gyroscopic_matrix, section_motions
-from rotors.modes.residual_modes import add_attachment_modes
 from rotors.modes.torsional_and_axial import solve_axial_modes
-from rotors.transfer_matrix.rotor_shafts import bending_shaft, rod_shaft
+from rotors.transfer_matrix.rotor_shafts import rod_shaft
 from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
 from rotors.whirl.planar_basis import (
-    BASIS_REACH,
-    LEAST_MODES,
     PlanarBasis,
-    loaded_places,
-    mean_supports,
-    modes_needed,
-    planar_basis,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -65,6 +56,12 @@ MOST_MIXED = 0.01
 LEAST_SQUARED = 1e-10
 # Stiffness may lack this part of its size to be symmetric, from rounding.
 ROUNDING = 1e-12
+IntArray = npt.NDArray[np.intp]
+NumberArray = npt.NDArray[Any]
+
+AXIAL_MODES = 8
+# Mass of a massless pedestal in the projection, as a part of the rotor's: every coordinate needs a mass.
+PEDESTAL_MASS = 1e-6
 
 
 @dataclass(frozen=True)
@@ -114,80 +111,12 @@ class CoupledPlanes:
 
     def eigenvalues(self, speeds: FloatArray) -> tuple[ComplexArray, BoolArray]:
         """All λ with conjugates, (speeds, 2N), rad/s, and the speeds at which damping couples modes too strongly."""
-        from rotors.whirl.modal_projection_kernels import damped, squares
+        from rotors.whirl.eigenvalue_kernels import damped, squares
 
         squared, right = np.linalg.eigh(squares(self.frequencies, self.gyroscopic, speeds))
         undamped = self.frequencies, self.gyroscopic, speeds
         values, mixed = damped(squared, right, *undamped, self.damping_x, self.damping_y)
         return values, mixed > MOST_MIXED
-
-
-IntArray = npt.NDArray[np.intp]
-NumberArray = npt.NDArray[Any]
-
-AXIAL_MODES = 8
-# Mass of a massless pedestal in the projection, as a part of the rotor's: every coordinate needs a mass.
-PEDESTAL_MASS = 1e-6
-
-
-def whirl_basis(
-    rotor: Rotor,
-    bearings: Sequence[Bearing],
-    *,
-    frequency_limit: float | None = None,
-    count: int | None = None,
-) -> LateralModes:
-    """Planar basis for whirl: modes at averaged bearing stiffness, and attachment modes.
-
-    It holds every mode below 1.5 times ``frequency_limit``, or three more than half of ``count``, and at least six;
-    then the static responses to a force at each bearing and to a moment at each disc, where the compensation and
-    gyroscopic terms act. Tables over speed enter with the stiffness at the middle of the table.
-
-    Parameters
-    ----------
-    rotor, bearings
-        The rotor and what holds it.
-    frequency_limit
-        Highest whirl frequency of interest, rad/s.
-    count
-        Number of whirl modes of interest, instead.
-
-    Raises
-    ------
-    RotorError, IncompleteModesError
-        As `rotors.solve_lateral_modes`.
-    """
-    both = (frequency_limit, count)
-    require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
-    supports = mean_supports(bearings)
-    available = bending_shaft(rotor, supports).available_modes
-    if frequency_limit is None:
-        modes = solve_lateral_modes(rotor, supports, count=modes_needed(count, available))
-    else:
-        require_finite("frequency_limit", frequency_limit, positive=True)
-        modes = solve_lateral_modes(rotor, supports, frequency_limit=BASIS_REACH * frequency_limit)
-        if modes.count < min(LEAST_MODES, available):
-            modes = solve_lateral_modes(rotor, supports, count=int(min(LEAST_MODES, available)))
-    forces, moments = loaded_places(rotor, bearings)
-    return add_attachment_modes(modes, forces_at=forces, moments_at=moments)
-
-
-def basis_for(
-    rotor: Rotor,
-    bearings: Sequence[Bearing],
-    frequency_limit: float | None,
-    count: int | None,
-    basis: LateralModes | None,
-) -> PlanarBasis:
-    """Planar basis from the given modes, which must be on the bearings' averaged stiffness, or a new one."""
-    require_count("count of modes", count)
-    for bearing in bearings:
-        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
-    if basis is None:
-        return planar_basis(rotor, bearings, frequency_limit, count)
-    expected = mean_supports(bearings)
-    require(basis.supports == expected, "supports of the basis", basis.supports, f"{expected}, the bearings'")
-    return PlanarBasis.of_modes(basis, bearings)
 
 
 def slowest(bearing: Bearing) -> float:

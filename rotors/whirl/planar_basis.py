@@ -1,9 +1,9 @@
 """Planar basis of whirl: modes of one plane, and static responses to loads at bearings and discs.
 
-`rotors.whirl.modal_projection.whirl_basis` gives the same space as certified modes. Starting values need less: any
-mass-orthonormal basis of the space gives the same, and the roots have a proof of their own. Here the modes'
-fields and the responses are made orthonormal one after another, by Gram-Schmidt on their values at the quadrature
-points, so that the small part that a response adds to the modes keeps its digits.
+It serves starting values, so that its modes are not certified: any mass-orthonormal basis of the space gives the same,
+and the roots have a proof of their own. The modes' fields and the responses are made orthonormal one after another, by
+Gram-Schmidt on their values at the quadrature points, so that the small part that a response adds to the modes keeps
+its digits.
 """
 
 from collections.abc import Sequence
@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import require, require_finite
+from rotors.errors import require, require_count, require_finite
 from rotors.model.bearing import Bearing, RadialSupport
 from rotors.model.shaft import Rotor
-from rotors.modes.lateral import LateralModes, require_unbuckled
+from rotors.modes.lateral import require_unbuckled
 from rotors.modes.residual_modes import FREE_SHIFT, NOTHING_LEFT
 from rotors.transfer_matrix.discretised_shaft import GAUSS_FRACTIONS, GAUSS_WEIGHTS, ContinuousShaft, DiscretisedShaft
 from rotors.transfer_matrix.mode_shapes import responses, rigid_states, shaft_with_modes, shared_roots
@@ -58,21 +58,6 @@ class PlanarBasis:
         """Number of motions b."""
         return int(self.stiffness.shape[0])
 
-    @classmethod
-    def of_modes(cls, modes: LateralModes, bearings: Sequence[Bearing]) -> "PlanarBasis":
-        """Return the basis of certified modes and attachment modes, at the given bearings."""
-        displacement = slope = np.zeros((modes.count, 0))
-        if bearings:
-            displacement, slope = modes.evaluate([bearing.at for bearing in bearings])
-        moving = modes.frequencies[modes.frequencies > 0.0]
-        return cls(
-            stiffness=modes.free_stiffness,
-            polar_inertia=modes.polar_inertia_matrix,
-            displacement=displacement,
-            slope=slope,
-            floor=float(moving.min()) if moving.size else 1.0,
-        )
-
 
 def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
     """Planar springs of a basis: averaged bearing stiffness, of tables over speed at the middle of the table."""
@@ -99,16 +84,31 @@ def modes_needed(count: int | None, available: float) -> int:
 def planar_basis(
     rotor: Rotor, bearings: Sequence[Bearing], frequency_limit: float | None, count: int | None
 ) -> PlanarBasis:
-    """Assemble the planar basis: the space of `rotors.whirl.modal_projection.whirl_basis`, without its proof.
+    """Assemble the planar basis: modes at averaged bearing stiffness, and attachment modes.
+
+    It holds every mode below 1.5 times ``frequency_limit``, or three more than half of ``count``, and at least six;
+    then the static responses to a force at each bearing and to a moment at each disc, where the compensation and
+    gyroscopic terms act. Tables over speed enter with the stiffness at the middle of the table.
+
+    Parameters
+    ----------
+    rotor, bearings
+        The rotor and what holds it.
+    frequency_limit
+        Highest whirl frequency of interest, rad/s.
+    count
+        Number of whirl modes of interest, instead.
 
     Raises
     ------
     RotorError, IncompleteModesError
-        As `rotors.whirl.modal_projection.whirl_basis`, of wrong arguments, or where the root count does not
-        reach the modes.
+        Wrong arguments, or the root count does not reach the modes.
     """
     from rotors.transfer_matrix.mode_shape_kernels import energy_rows, energy_weights, mass_orthonormal, null_states
 
+    require_count("count of modes", count)
+    for bearing in bearings:
+        rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     both = (frequency_limit, count)
     require(frequency_limit is None or count is None, "frequency_limit and count", both, "one of the two")
     supports = mean_supports(bearings)

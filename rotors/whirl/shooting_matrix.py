@@ -27,6 +27,14 @@ from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing
 
 IntArray = npt.NDArray[np.intp]
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
+UNIT_DENOMINATOR = np.array([0.0, 1.0])  # entries that are polynomials of λ
+FORCE_DENOMINATOR = np.array([1.0, 0.0])  # entries over the unit of force
+NO_PLACES = np.zeros(0, dtype=np.intp)
+NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NO_PLACES, np.zeros(1, dtype=np.intp), NO_PLACES)
 
 
 @dataclass(frozen=True)
@@ -98,16 +106,6 @@ class Layout:
         )
 
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-Runs = tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]
-
-ALONE = np.array([0.0, 1.0])
-OVER_FORCE = np.array([1.0, 0.0])
-NOWHERE = np.zeros(0, dtype=np.intp)
-NO_RUNS = (np.zeros(0), np.zeros((0, 2, 1)), NOWHERE, np.zeros(1, dtype=np.intp), NOWHERE)
-
-
 @dataclass(frozen=True)
 class ShootingMatrix:
     """The shooting matrix of one set of equations, as a table of its entries.
@@ -174,7 +172,7 @@ def shooting_matrix(
         rows, columns = (np.concatenate([*places[:, :, own]], axis=1) for places in (reached, states))
         runs.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
         first = own.stop
-    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], OVER_FORCE)
+    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], FORCE_DENOMINATOR)
     terms.add(layout.continuity, layout.displacements[1:], [1.0])
     terms.add(layout.balances[:-1], layout.forces, [1.0])
     for node_bearing, own_places in zip(node_bearings, layout.bearings, strict=True):
@@ -249,7 +247,11 @@ class _Terms:
         self.denominators: list[FloatArray] = []
 
     def add(
-        self, rows: IntArray, columns: IntArray, numerator: Sequence[npt.ArrayLike], denominator: FloatArray = ALONE
+        self,
+        rows: IntArray,
+        columns: IntArray,
+        numerator: Sequence[npt.ArrayLike],
+        denominator: FloatArray = UNIT_DENOMINATOR,
     ) -> None:
         """Entries at rows and columns that broadcast, with the leading coefficients of their numerators."""
         shape = np.broadcast(rows, columns).shape
@@ -267,6 +269,6 @@ class _Terms:
         """Rows and columns of varying and of constant entries, the terms of the former and the values of the latter."""
         places = np.concatenate(self.places, axis=1)
         top, bottom = np.concatenate(self.numerators), np.concatenate(self.denominators)
-        held = ~top[:, 1:].any(axis=1) & (bottom == ALONE).all(axis=1)
+        held = ~top[:, 1:].any(axis=1) & (bottom == UNIT_DENOMINATOR).all(axis=1)
         varying, others = top.any(axis=1) & ~held, held & (top[:, 0] != 0.0)
         return [places[:, varying], places[:, others]], top[varying], bottom[varying], top[others, 0]

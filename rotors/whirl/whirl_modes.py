@@ -20,13 +20,12 @@ from rotors.certificate import ModeCertificate, combined_certificate
 from rotors.errors import require_finite
 from rotors.model.bearing import Bearing
 from rotors.model.shaft import Rotor
-from rotors.modes.lateral import LateralModes
 from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, is_conservative, oscillating
 from rotors.whirl.eigenvalues import ExactRoots, Speed, constant_speed, refine_roots
 from rotors.whirl.equations import WhirlEquations, reach_step, whirl_equations_in_runs, whirl_reach
-from rotors.whirl.modal_projection import Pencil, basis_for, pencils
+from rotors.whirl.modal_projection import Pencil, pencils
 from rotors.whirl.motion import ShaftMotion, StrainShares, strain_shares
-from rotors.whirl.planar_basis import DEFAULT_COUNT, PlanarBasis
+from rotors.whirl.planar_basis import DEFAULT_COUNT, PlanarBasis, planar_basis
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -48,8 +47,37 @@ LEAST_GAP = 1e-6
 MOST_HELD = 16
 
 
+class ComplexFrequencies:
+    """Frequencies and damping that complex eigenvalues λ [rad/s] stand for, of one speed or of a Campbell diagram.
+
+    All arrays have the shape of ``eigenvalues``; what is NaN there is NaN in them.
+    """
+
+    eigenvalues: ComplexArray
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Natural frequency |λ|, rad/s."""
+        return np.asarray(np.abs(self.eigenvalues))
+
+    @property
+    def damped_frequencies(self) -> FloatArray:
+        """Im λ, rad/s."""
+        return np.asarray(self.eigenvalues.imag)
+
+    @property
+    def damping_ratios(self) -> FloatArray:
+        """−Re λ / |λ|; negative where a mode grows."""
+        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
+
+    @property
+    def log_decrements(self) -> FloatArray:
+        """Logarithmic decrement −2π Re λ / Im λ."""
+        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
+
+
 @dataclass(frozen=True)
-class WhirlModes:
+class WhirlModes(ComplexFrequencies):
     """Complex modes at one speed of rotation, ascending in frequency, without overdamped motions.
 
     Attributes
@@ -90,26 +118,6 @@ class WhirlModes:
     def axial_share(self) -> FloatArray:
         """Share of the kinetic energy along the axis, (w,): 0 where no bearing couples axial and lateral motion."""
         return self.roots.motion.axial_share
-
-    @property
-    def frequencies(self) -> FloatArray:
-        """Natural frequency |λ|, rad/s, (w,)."""
-        return np.asarray(np.abs(self.eigenvalues))
-
-    @property
-    def damped_frequencies(self) -> FloatArray:
-        """Im λ, rad/s, (w,)."""
-        return np.asarray(self.eigenvalues.imag)
-
-    @property
-    def damping_ratios(self) -> FloatArray:
-        """−Re λ / |λ|, (w,); negative is unstable."""
-        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
-
-    @property
-    def log_decrements(self) -> FloatArray:
-        """Logarithmic decrement −2π Re λ / Im λ, (w,)."""
-        return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
 
     @property
     def stable(self) -> bool:
@@ -169,9 +177,6 @@ class WhirlSolver:
     ----------
     rotor, bearings
         The rotor and its bearings; tables over speed are read at each speed.
-    basis
-        From `rotors.whirl.modal_projection.whirl_basis`, of the same rotor and bearings; without it the
-        solver makes its own.
 
     Examples
     --------
@@ -181,7 +186,6 @@ class WhirlSolver:
 
     rotor: Rotor
     bearings: Sequence[Bearing]
-    basis: LateralModes | None = None
     _held: dict[tuple[Hashable, ...], object] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -210,7 +214,7 @@ class WhirlSolver:
         """Planar basis for whirl below a limit (rad/s), or for the lowest ``count`` modes."""
         return self._hold(
             ("basis", frequency_limit, count),
-            lambda: basis_for(self.rotor, self.bearings, frequency_limit, count, self.basis),
+            lambda: planar_basis(self.rotor, self.bearings, frequency_limit, count),
         )
 
     def equations(self, bearings: Sequence[Bearing], blocks: tuple[int, ...], highest: float) -> WhirlEquations:
@@ -243,7 +247,6 @@ def solve_whirl(
     *,
     frequency_limit: float | None = None,
     count: int | None = None,
-    basis: LateralModes | None = None,
 ) -> WhirlModes:
     """Complex modes of the turning rotor on grounded bearings or pedestals, certified complete.
 
@@ -259,17 +262,15 @@ def solve_whirl(
         rad/s: modes whose natural frequency |λ| is below it.
     count
         Number of modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with fewer gives all.
-    basis
-        From `rotors.whirl.modal_projection.whirl_basis`, of the same rotor and bearings; without it one is made.
 
     Raises
     ------
     RotorError
-        Wrong arguments, or a basis with other supports.
+        Wrong arguments.
     IncompleteModesError
-        The modes fail their own proof, or the basis does.
+        The modes fail their own proof.
     """
-    return WhirlSolver(rotor, bearings, basis).modes(speed, frequency_limit=frequency_limit, count=count)
+    return WhirlSolver(rotor, bearings).modes(speed, frequency_limit=frequency_limit, count=count)
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import signal
 
 from coupling import CouplingError, amplitude_spectrum
 from coupling.signals.decimation import decimation
@@ -35,6 +36,13 @@ def test_a_sine_in_the_band_is_kept_in_place_and_one_that_folds_is_gone(factor: 
     for cycles in (0.75, 0.9, 1.1, 1.25):  # these would stand at 0.25 or below
         wave = np.cos(2.0 * np.pi * cycles / factor * n + 0.3)
         assert np.abs(plan.through(np.zeros((0, 1)), wave[:, None])[0]).max() < 3e-6
+
+
+@pytest.mark.parametrize("factor", [2, 5, 32])
+def test_the_filter_is_the_textbook_s(factor: int) -> None:
+    taps = decimation(factor, 0.2).taps
+    window = ("kaiser", signal.kaiser_beta(120.0))
+    np.testing.assert_allclose(taps, signal.firwin(len(taps), 1.0 / factor, window=window), rtol=0.0, atol=1e-14)
 
 
 @pytest.mark.parametrize(("factor", "band"), [(0, 0.25), (4, 0.5), (4, 0.0)])

@@ -31,9 +31,12 @@ from coupling.time.transient import TransientResult
 from rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 from rotors.rolling_bearings import (
     BallRow,
+    FourPointRow,
     RollerRow,
     RollingBearing,
     RollingState,
+    SphericalRollerRow,
+    TaperedRollerRow,
     linearised_bearing,
     paired,
     rolling_equilibrium,
@@ -47,7 +50,15 @@ ANGULAR_ROW = BallRow(12, 10e-3, 55e-3, contact_angle=0.4, inner_groove=0.515)
 ANGULAR = RollingBearing([ANGULAR_ROW], axial_preload=300.0)
 PAIRED = paired(ANGULAR_ROW, "back to back", 0.02, preload=200.0)
 ROLLERS = RollingBearing([RollerRow(13, 9e-3, 9e-3, 50e-3, clearance=8e-6)])
+TAPERED = paired(TaperedRollerRow(15, 8e-3, 12e-3, 55e-3, angle=0.25), "face to face", 0.02, preload=800.0)
+SPHERICAL_ROW = SphericalRollerRow(15, 8e-3, 8e-3, 55e-3, angle=0.2)
+SPHERICAL = RollingBearing([SPHERICAL_ROW.facing(1), SPHERICAL_ROW.facing(-1)])
 ALL = pytest.mark.parametrize("bearing", [DEEP, ANGULAR, PAIRED, ROLLERS], ids=["deep", "angular", "paired", "rollers"])
+LAWS = pytest.mark.parametrize(
+    "bearing",
+    [DEEP, ANGULAR, PAIRED, ROLLERS, TAPERED, SPHERICAL],
+    ids=["deep", "angular", "paired", "rollers", "tapered", "spherical"],
+)
 FREE = np.eye(5)
 
 
@@ -75,7 +86,7 @@ def everything(n: int) -> TransientOutputs:
 # ------------------------------------------------------------------------------------------------------------ the law
 
 
-@ALL
+@LAWS
 def test_the_compiled_law_is_that_of_the_room_of_rotors(bearing: RollingBearing) -> None:
     """Forces and tangent by the rolling room's own code; energy and its slopes by differences."""
     from coupling.time.bearing_kernels import bearing_force
@@ -94,6 +105,15 @@ def test_the_compiled_law_is_that_of_the_room_of_rotors(bearing: RollingBearing)
     assert 0.5 * (ahead - behind) == pytest.approx(known @ work, rel=1e-5)
     ahead, behind = (bearing_force(arrays, 0, sign * 1e-6, q, spare, other)[0] for sign in (1.0, -1.0))
     assert (ahead - behind) / 2e-6 == pytest.approx(slope, rel=1e-5)
+
+
+def test_elements_without_a_law_in_time_are_refused() -> None:
+    flanged = RollingBearing([replace(ROLLERS.rows[0], flanges="one", flange_stiffness=1e7)])
+    with pytest.raises(CouplingError, match="cylindrical rollers between flanges; expected other elements"):
+        RollingLaw(rolling_state(flanged, np.zeros(5)))
+    four = RollingBearing([FourPointRow(9, 12e-3, 60e-3, 0.6)])
+    with pytest.raises(CouplingError, match=r"balls in four-point contact.*law = \"linear\""):
+        RollingLaw(rolling_state(four, np.zeros(5)))
 
 
 @ALL

@@ -233,7 +233,7 @@ def test_motions_repeat_under_another_integrator(damping: float, viscous: float,
 @pytest.mark.parametrize(("viscous", "fade"), [(0.0, 0.0), (0.08, 0.0), (0.08, 0.4)])
 def test_monodromy_over_losses_of_contact(viscous: float, fade: float) -> None:
     """Against differences of the whole march, forces that step at impact included; det M = e^{-∫ damping dt}."""
-    from coupling.periodic.orbit import one_pass
+    from coupling.periodic.orbit import integrate_period
     from coupling.periodic.shooting import problem
 
     system = one_mass(0.78, waving(0.3, viscous, fade), 0.03)
@@ -242,11 +242,11 @@ def test_monodromy_over_losses_of_contact(viscous: float, fade: float) -> None:
     ready = problem(system)
     elements = ready.elements(response.level)
     start = ready.part.state(response.displacement, response.velocity)
-    exact = one_pass(ready.part, ready.contacts, elements, start)
+    exact = integrate_period(ready.part, ready.contacts, elements, start)
     reach = 1e-5
     for column, unit in enumerate(np.eye(2)):
         ends = [
-            one_pass(ready.part, ready.contacts, elements, start + sign * reach * unit, varied=False).end
+            integrate_period(ready.part, ready.contacts, elements, start + sign * reach * unit, varied=False).end
             for sign in (1.0, -1.0)
         ]
         np.testing.assert_allclose(exact.monodromy[:, column], (ends[0] - ends[1]) / (2.0 * reach), atol=2e-7)

@@ -119,7 +119,7 @@ def test_energies_balance_across_the_jumps(model: StiffnessModel) -> None:
 
 def test_slow_gears_follow_the_static_transmission_error_over_the_hunting_period() -> None:
     contact = contact_of(PotentialEnergyStiffness(), relief=25e-6)
-    contact = contact.with_damping(2.0 * 0.5 * math.sqrt(contact.mean_mesh_stiffness * MASS))
+    contact = contact.with_damping(2.0 * 0.5 * math.sqrt(contact.unloaded_mean_mesh_stiffness * MASS))
     frequency = 4.0
     settings = TransientSettings(PERIOD / frequency, 0.0, 0.0371 / frequency, 2e-4, tolerance=1e-2)
     result = run(system_of(contact, frequency), settings)
@@ -136,7 +136,7 @@ def test_slow_gears_follow_the_static_transmission_error_over_the_hunting_period
 
 def test_steady_motion_repeats_with_the_hunting_period_and_no_sooner() -> None:
     contact = contact_of(PotentialEnergyStiffness(), relief=10e-6)
-    contact = contact.with_damping(2.0 * 0.1 * math.sqrt(contact.mean_mesh_stiffness * MASS))
+    contact = contact.with_damping(2.0 * 0.1 * math.sqrt(contact.unloaded_mean_mesh_stiffness * MASS))
     frequency, samples = 800.0, 16
     # Samples stand beside the jumps, never on them.
     begin, end = (2.0 * PERIOD + 0.5 / samples) / frequency, (4.0 * PERIOD + 1.0) / frequency

@@ -11,7 +11,7 @@ from coupling.machine.components import Component
 from coupling.machine.connectors import ContactConnector
 from coupling.periodic import periodic_response, response_curve
 from coupling.periodic.branch import Branch, interpolation
-from coupling.periodic.orbit import bordered_correction, correction, one_pass, product
+from coupling.periodic.orbit import bordered_correction, correction, integrate_period, product
 from coupling.periodic.shooting import problem
 
 FloatArray = npt.NDArray[np.float64]
@@ -87,14 +87,14 @@ def test_segments_make_the_same_pass_as_one() -> None:
     assert ready.segments == CYCLES
     elements = ready.elements(2)
     begin = ready.part.state(np.array([1.3]), np.array([0.2]))
-    through = one_pass(ready.part, ready.contacts, elements, begin)
+    through = integrate_period(ready.part, ready.contacts, elements, begin)
     assert np.abs(through.misses[:-1]).max() == 0.0
-    again = one_pass(ready.part, ready.contacts, elements, through.starts)
+    again = integrate_period(ready.part, ready.contacts, elements, through.starts)
     np.testing.assert_allclose(again.end, through.end, rtol=1e-12)
     reach = 1e-6
     for column, unit in enumerate(np.eye(2)):
         ends = [
-            one_pass(ready.part, ready.contacts, elements, begin + sign * reach * unit, varied=False).end
+            integrate_period(ready.part, ready.contacts, elements, begin + sign * reach * unit, varied=False).end
             for sign in (1.0, -1.0)
         ]
         np.testing.assert_allclose(through.monodromy[:, column], (ends[0] - ends[1]) / (2.0 * reach), atol=1e-7)

@@ -49,7 +49,6 @@ def test_fixed_and_varying_part() -> None:
     assert parts.mean == pytest.approx([-4.0, 2.0])
     assert parts.rms == pytest.approx([3.0 / np.sqrt(2.0), 0.0], abs=1e-12)
     assert parts.peak == pytest.approx([3.0, 0.0], abs=1e-12)
-    assert parts.fixed_to_varying[0] == pytest.approx(4.0 * np.sqrt(2.0) / 3.0)
 
 
 @pytest.mark.parametrize("window", ["uniform", "hann"])
@@ -59,6 +58,16 @@ def test_lines_at_frequencies_of_the_record_are_those_of_its_spectrum(window: st
     places = np.array([1, 7, 130])
     found = lines_at(signal, INTERVAL, spectrum.frequencies[places], window)
     np.testing.assert_allclose(found, spectrum.lines[:, places], rtol=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 2, 17, 900, 1000])
+def test_lines_are_the_sum_that_they_stand_for(count: int) -> None:
+    signal = np.random.default_rng(count).normal(size=(2, 3, count))
+    frequencies = np.array([31.7, 444.4])
+    turning = np.exp(-2j * np.pi * INTERVAL * np.outer(np.arange(count), frequencies))
+    expected = (signal - signal.mean(axis=-1, keepdims=True)) @ turning * (2.0 / count)
+    np.testing.assert_allclose(lines_at(signal, INTERVAL, frequencies), expected, rtol=0.0, atol=1e-12)
+    assert lines_at(signal, INTERVAL, np.empty(0)).shape == (2, 3, 0)
 
 
 def test_a_line_between_two_of_the_record() -> None:

@@ -11,6 +11,8 @@ from PIL import Image
 
 from gearwhine.cli import run_command
 
+pytestmark = pytest.mark.rendered
+
 
 def without_seconds(document: object) -> object:
     """A document without what depends on the clock."""

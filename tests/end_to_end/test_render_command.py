@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+pytestmark = pytest.mark.rendered
+
 CASE = ("small-gearbox", "--set", "housing.box.mesh_size=40 mm", "--set", "housing.frequency_limit=2.2 kHz", "-q")
 
 

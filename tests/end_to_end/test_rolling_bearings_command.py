@@ -2,6 +2,7 @@
 
 import copy
 import json
+import math
 import tomllib
 from collections.abc import Callable
 from importlib.resources import files
@@ -13,14 +14,25 @@ import pytest
 import xarray as xr
 
 from coupling import coupled_modes
-from gearwhine.case import CaseError, parse_case
+from gearwhine.case import CaseError, RollingStiffness, parse_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.machine import build_machine
 from gearwhine.from_case.rotors import build_bearings, rolling_state
 from gearwhine.results.rotors import rotors_document
 from gearwhine.solve.rotors import solve_rotors
+from rotors.rolling_bearings import (
+    FourPointRow,
+    RingFit,
+    RollerRow,
+    RollingBearing,
+    SphericalRollerRow,
+    TaperedRollerRow,
+    operating_clearance,
+    static_rating,
+)
 
 FRISWELL = tomllib.loads(files("gearwhine.cases").joinpath("friswell-rotor.toml").read_text(encoding="utf-8"))
+RINGS = {"bore": "50 mm", "outer_diameter": "90 mm", "width": "20 mm"}
 ISO = {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}
 
 
@@ -61,6 +73,19 @@ def test_the_iso_bearing_under_a_case() -> None:
             "element_length": "11 mm",
             "pitch_diameter": "70 mm",
         },
+        {
+            "element": "tapered-roller",
+            "count": 17,
+            "element_diameter": "9 mm",
+            "element_length": "14 mm",
+            "pitch_diameter": "61 mm",
+            "contact_angle": "14 deg",
+            "arrangement": "face to face",
+            "spacing": "25 mm",
+            "preload": "800 N",
+        },
+        {"catalogue": {**RINGS, "type": "four-point"}, "clearance": "-2 um"},
+        {"catalogue": {**RINGS, "type": "double-row-angular-contact", "width": "30.2 mm"}, "clearance": "-4 um"},
     ],
 )
 def test_rolling_geometry_is_the_matrix_that_it_makes(rolling: dict[str, Any]) -> None:
@@ -85,6 +110,65 @@ def test_rolling_geometry_is_the_matrix_that_it_makes(rolling: dict[str, Any]) -
     # The system keeps more modes and damps the shaft by half a percent; its lowest whirl is the rotor's own.
     lowest = sorted(frequency for frequency in coupled if frequency > 1.0)[:4]
     np.testing.assert_allclose(lowest, document["whirl"][0]["frequency_hz"][:4], rtol=2e-3)
+
+
+def test_every_element_of_a_case_is_the_row_of_its_numbers() -> None:
+    """Rows, directions and angles of the built bearing, against the library's own rows."""
+    size = {"count": 17, "element_diameter": "9 mm", "pitch_diameter": "61 mm", "contact_angle": "0.2 rad"}
+    length, angle = {"element_length": "10 mm"}, 0.2
+
+    def built(**rolling: Any) -> RollingBearing:
+        case = parse_case(friswell(stiffness={"rolling": rolling}, load={"x": "1 kN", "z": "100 N"}))
+        stiffness = case.bearing[0].stiffness
+        assert isinstance(stiffness, RollingStiffness)
+        return stiffness.rolling.build("left")
+
+    tapered = built(**size, **length, element="tapered-roller", carries="-z", axial_offset="5 um")
+    assert tapered.rows == (TaperedRollerRow(17, 9e-3, 10e-3, 61e-3, angle=angle, axial_offset=5e-6, direction=-1),)
+    spherical = built(**size, **length, element="spherical-roller", osculation=0.97)
+    assert [row.direction for row in spherical.rows] == [1, -1]
+    assert spherical.rows[0] == SphericalRollerRow(17, 9e-3, 10e-3, 61e-3, angle=angle, osculation=0.97)
+    four = built(**size, element="four-point-ball", inner_groove=0.515)
+    assert four.rows == (FourPointRow(17, 9e-3, 61e-3, angle, 0.515, 0.53),)
+    aligning = built(**size, element="self-aligning-ball")
+    assert [row.position for row in aligning.rows] == pytest.approx(
+        [-30.5e-3 * math.tan(angle), 30.5e-3 * math.tan(angle)]
+    )
+    size.pop("contact_angle")
+    flanged = built(**size, **length, element="roller", flanges="one", flange_stiffness="2e7 N/m", preload="100 N")
+    assert flanged.rows == (RollerRow(17, 9e-3, 10e-3, 61e-3, flanges="one", flange_stiffness=2e7),)
+    assert flanged.axial_preload == 100.0
+    factor = built(catalogue={**RINGS, "type": "tapered-roller", "axial_factor": 1.6}, static_rating="80 kN")
+    assert math.tan(factor.rows[0].contact_angle) == pytest.approx(0.25)
+    assert static_rating(factor.rows[0]) == pytest.approx(80e3)
+    assert factor.estimated
+    assert not flanged.estimated
+
+
+def test_fits_and_heat_change_the_clearance() -> None:
+    """As the library's thick rings have it, with raceways at the pitch circle less and plus the ball."""
+    fits = {"inner_interference": "12 um", "smoothing": "2 um", "shaft_bore": "20 mm", "inner_rise": "50 K"}
+    housing = {"outer_interference": "5 um", "housing_modulus": "70 GPa", "housing_expansion": "23e-6 1/K"}
+    more = {"outer_rise": "40 K", "housing_rise": "30 K", "housing_diameter": "120 mm", "housing_poisson_ratio": 0.33}
+    rings = {"bore": "40 mm", "outer_diameter": "80 mm"}
+    sizes = {"count": 9, "element_diameter": "12 mm", "pitch_diameter": "60 mm", "clearance": "15 um"}
+    rolling = {**sizes, "mounting": {**fits, **housing, **more, **rings}}
+    case = parse_case(friswell(stiffness={"rolling": rolling}, load={"x": "1 kN"}))
+    state = rolling_state(case, 0)
+    assert state is not None
+    expected = operating_clearance(
+        15e-6,
+        40e-3,
+        48e-3,
+        72e-3,
+        80e-3,
+        shaft=RingFit(12e-6, 20e-3, 2e-6, temperature_rise=50.0),
+        housing=RingFit(5e-6, 0.12, 2e-6, 70e9, 0.33, 23e-6, 30.0),
+        inner_rise=50.0,
+        outer_rise=40.0,
+    )
+    assert expected.clearance < 10e-6
+    assert state.bearing.rows[0].clearance == pytest.approx(expected.clearance, rel=1e-12)
 
 
 def test_a_rolling_bearing_stands_on_a_pedestal_with_damping_over_speed() -> None:

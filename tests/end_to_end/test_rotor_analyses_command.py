@@ -9,6 +9,8 @@ import pytest
 import xarray as xr
 from PIL import Image
 
+pytestmark = pytest.mark.rendered
+
 # A slender shaft, almost without inertia, between two discs; either end stands in a soft bearing.
 SHAFT = """
 title = "Two discs on a shaft"

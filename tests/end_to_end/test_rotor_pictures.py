@@ -7,6 +7,8 @@ from PIL import Image
 
 from gearwhine.output import file_stems
 
+pytestmark = pytest.mark.rendered
+
 KINDS = {"shaft", "modes", "torsion", "whirl", "campbell", "unbalance", "static"}
 
 

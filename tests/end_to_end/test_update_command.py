@@ -1,6 +1,7 @@
 """`gearwhine update` on a small housing whose secret is known, from the command line to the file it writes."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from gearwhine.case import load_case
 from gearwhine.from_case.parametric_housing import ParametricHousing, fitted_case
+from gearwhine.solve import updating
 from housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, map_survey, write_survey
 
 SECRET = {"top": 10.5e-3, "front": 15e-3}
@@ -69,7 +71,13 @@ spread = "3 mm"
 """
 
 
-def test_an_update_finds_a_secret_and_writes_it(gearwhine, tmp_path: Path) -> None:
+@pytest.fixture
+def one_worker(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
+    """Work in this process from here on: which process does it changes nothing, and to start others takes seconds."""
+    return lambda: monkeypatch.setattr(updating, "default_workers", lambda: 1)
+
+
+def test_an_update_finds_a_secret_and_writes_it(gearwhine, one_worker: Callable[[], None], tmp_path: Path) -> None:
     (tmp_path / "box.toml").write_text(CASE, encoding="utf-8")
     walls = [f"housing.box.wall.{face}=13 mm" for face in ("left", "right", "bottom", "back")]
     walls += [f"housing.box.wall.{face}={value} m" for face, value in SECRET.items()]
@@ -108,6 +116,7 @@ def test_an_update_finds_a_secret_and_writes_it(gearwhine, tmp_path: Path) -> No
     compared = gearwhine("compare", "out/updated.toml", "--json", "-q").document
     assert compared["max_error_percent"] == pytest.approx(document["max_error_percent"], abs=0.02)
 
+    one_worker()
     short = ("--set", "update.mesh_size=", "--set", "update.solves=2")
     worth = gearwhine("update", "out/updated.toml", "-o", "again", "--null", "1", "--held-back", "--json", *short)
     assert worth.code == 0
@@ -147,7 +156,8 @@ def secret_survey(text: str) -> SurveyData:
     return SurveyData(geometry=geometry, modes=modes)
 
 
-def test_an_update_by_measured_shapes_finds_a_secret(gearwhine, tmp_path: Path) -> None:
+def test_an_update_by_measured_shapes_finds_a_secret(gearwhine, one_worker: Callable[[], None], tmp_path: Path) -> None:
+    one_worker()
     walls = "{ left = '13 mm', right = '13 mm', bottom = '13 mm', top = '13 mm', back = '13 mm', front = '13 mm' }"
     text = CASE.replace('wall = "13 mm"', f"wall = {walls}")
     # 5 % are the survey's; shapes of two meshes as coarse as these differ by more.

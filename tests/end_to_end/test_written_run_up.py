@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from lopsided_case import GEARS, SPEEDS, lopsided
+from lopsided_case import FEW_WHIRLS, GEARS, SPEEDS, lopsided
 
 from gearwhine.cli import run_command
 
 
 def run(folder: Path, case: str, *changes: str) -> tuple[xr.Dataset, dict[str, Any]]:
-    settings = [part for change in changes for part in ("--set", change)]
+    settings = [part for change in (FEW_WHIRLS, *changes) for part in ("--set", change)]
     assert run_command(["run", case, "-q", "--no-pictures", "-o", str(folder / "out"), *settings]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
     with xr.open_dataset(folder / "out" / "results.nc") as data:

@@ -60,6 +60,9 @@ TORQUES = {("a", "b"): TORQUE, ("c", "d"): TORQUE * 47 / 23}
 UNBALANCES = {"input": (0.05, 4e-5, 40.0), "output": (0.15, 9e-5, -70.0)}
 """Place [m], moment [kg m] and phase [deg]."""
 
+FEW_WHIRLS = "rotor_analysis={ modes = 2, speed = ['3000 rpm'] }"
+"""A setting for tests that look at no rotor alone, whose modes at many speeds take seconds."""
+
 
 def force(pair: tuple[str, str]) -> float:
     """Mean force along the line of action of a pair [N]."""

@@ -5,16 +5,13 @@ from __future__ import annotations
 import pytest
 from broken_cases import check_one_wrong
 
+BALLS = {"count": 7, "element_diameter": "8 mm", "pitch_diameter": "43.5 mm"}
+ROLLERS = {**BALLS, "element_length": "8 mm"}
+RINGS = {"type": "deep-groove", "bore": "25 mm", "outer_diameter": "52 mm", "width": "15 mm"}
 ONE_WRONG = {
     # ranges
     "bearing stiffness": ("bearing.0.stiffness.xx", "0 N/m", "bearing[0].stiffness.xx", "above 0 N/m"),
     # keys, forms and choices
-    "rolling without load": (
-        "bearing.2.stiffness",
-        {"rolling": {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}},
-        "bearing[2].load",
-        "{ x, y, z }, the force of the shaft on it",
-    ),
     "load of a spring": ("bearing.0.load", {"x": "5 N"}, "bearing[0].load", "only the stiffness of a rolling bearing"),
     "rollers without length": (
         "bearing.2.stiffness",
@@ -49,7 +46,122 @@ ONE_WRONG = {
         "bearing.2.stiffness",
         {"rolling": {"catalogue": {"type": "tapered", "bore": 0.03, "outer_diameter": 0.05, "width": 0.015}}},
         "bearing[2].stiffness.rolling.catalogue.type",
-        "'deep-groove', 'angular-contact' or 'cylindrical-roller'",
+        "'tapered-roller' or 'spherical-roller'",
+    ),
+    "tapered rollers without angle": (
+        "bearing.2.stiffness",
+        {"rolling": {**ROLLERS, "element": "tapered-roller"}},
+        "bearing[2].stiffness.rolling.contact_angle",
+        "more than 0, the contact angle of a tapered-roller",
+    ),
+    "angle of cylindrical rollers": (
+        "bearing.2.stiffness",
+        {"rolling": {**ROLLERS, "element": "roller", "contact_angle": "15 deg"}},
+        "bearing[2].stiffness.rolling.contact_angle",
+        'rollers are cylindrical; element = "tapered-roller" has one',
+    ),
+    "grooves of rollers": (
+        "bearing.2.stiffness",
+        {"rolling": {**ROLLERS, "element": "roller", "inner_groove": 0.52}},
+        "bearing[2].stiffness.rolling.inner_groove",
+        "only balls run in grooves",
+    ),
+    "groove of a sphere": (
+        "bearing.2.stiffness",
+        {"rolling": {**BALLS, "element": "self-aligning-ball", "contact_angle": "10 deg", "outer_groove": 0.53}},
+        "bearing[2].stiffness.rolling.outer_groove",
+        "the outer raceway is a sphere",
+    ),
+    "profile of balls": (
+        "bearing.2.stiffness",
+        {"rolling": {**BALLS, "profile": "straight"}},
+        "bearing[2].stiffness.rolling.profile",
+        "only cylindrical and tapered rollers",
+    ),
+    "osculation of tapered rollers": (
+        "bearing.2.stiffness",
+        {"rolling": {**ROLLERS, "element": "tapered-roller", "contact_angle": "15 deg", "osculation": 0.98}},
+        "bearing[2].stiffness.rolling.osculation",
+        "only spherical rollers have a contour",
+    ),
+    "two spherical bearings": (
+        "bearing.2.stiffness",
+        {
+            "rolling": {
+                **ROLLERS,
+                "element": "spherical-roller",
+                "arrangement": "tandem",
+                "spacing": "20 mm",
+            }
+        },
+        "bearing[2].stiffness.rolling.arrangement",
+        "'single': a spherical-roller bearing carries axial load both ways by itself",
+    ),
+    "offset of a pair": (
+        "bearing.2.stiffness",
+        {
+            "rolling": {
+                **BALLS,
+                "contact_angle": "25 deg",
+                "arrangement": "back to back",
+                "spacing": "20 mm",
+                "axial_offset": "5 um",
+            }
+        },
+        "bearing[2].stiffness.rolling.axial_offset",
+        "two rows have the preload between them",
+    ),
+    "flanges of balls": (
+        "bearing.2.stiffness",
+        {"rolling": {**BALLS, "flanges": "one", "flange_stiffness": "1e8 N/m"}},
+        "bearing[2].stiffness.rolling.flanges",
+        "only cylindrical rollers run between flanges",
+    ),
+    "flanges without stiffness": (
+        "bearing.2.stiffness",
+        {"rolling": {**ROLLERS, "element": "roller", "flanges": "both"}},
+        "bearing[2].stiffness.rolling.flange_stiffness",
+        "of each roller between its flanges",
+    ),
+    "four-point law": (
+        "bearing.2.stiffness",
+        {"rolling": {**BALLS, "element": "four-point-ball", "contact_angle": "35 deg", "law": "nonlinear"}},
+        "bearing[2].stiffness.rolling.law",
+        "'linear': four-point balls have no law in the transient",
+    ),
+    "mounting without rings": (
+        "bearing.2.stiffness",
+        {"rolling": {**BALLS, "mounting": {"inner_interference": "10 um", "bore": "30 mm"}}},
+        "bearing[2].stiffness.rolling.mounting.outer_diameter",
+        "the outer diameter of the bearing",
+    ),
+    "mounting with rings twice": (
+        "bearing.2.stiffness",
+        {"rolling": {"catalogue": RINGS, "mounting": {"bore": "25 mm"}}},
+        "bearing[2].stiffness.rolling.mounting.bore",
+        "the catalogue has it",
+    ),
+    "angle of a deep groove": (
+        "bearing.2.stiffness",
+        {"rolling": {"catalogue": {**RINGS, "contact_angle": "15 deg"}}},
+        "bearing[2].stiffness.rolling.catalogue.contact_angle",
+        "a deep-groove bearing has none",
+    ),
+    "axial factor of balls": (
+        "bearing.2.stiffness",
+        {"rolling": {"catalogue": {**RINGS, "axial_factor": 1.6}}},
+        "bearing[2].stiffness.rolling.catalogue.axial_factor",
+        "only tapered and spherical rollers",
+    ),
+    "angle given twice": (
+        "bearing.2.stiffness",
+        {
+            "rolling": {
+                "catalogue": {**RINGS, "type": "tapered-roller", "axial_factor": 1.6, "contact_angle": "14 deg"},
+            }
+        },
+        "bearing[2].stiffness.rolling.catalogue.axial_factor",
+        "nothing beside contact_angle",
     ),
     "pair without spacing": (
         "bearing.2.stiffness",

@@ -15,7 +15,6 @@ from gearwhine.case import (
     Case,
     CaseError,
     applied_torques,
-    gears_on,
     load_case,
     mesh_frequencies,
     pair_torques,
@@ -113,7 +112,6 @@ def test_stations_of_torques_are_the_ends_unless_given() -> None:
     assert ends == [("input", 0.0), ("output", pytest.approx(0.2))]
     given_places = load_case("spur-pair", ["operation.at=30 mm"]).case
     assert applied_torques(given_places)[0].at == 0.03
-    assert [gear.name for gear in gears_on(given_places, "output")] == ["wheel"]
 
 
 def test_what_a_command_needs_and_a_case_lacks_is_said() -> None:

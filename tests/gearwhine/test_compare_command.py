@@ -12,7 +12,7 @@ from housing.measured import MeasuredGeometry, MeasuredModes
 from housing.measured.survey_data import SurveyData
 from housing.measured.survey_files import write_survey
 
-COARSE = ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")
+COARSE = ("housing.box.mesh_size=45 mm", "housing.frequency_limit=4 kHz")
 
 
 def test_a_survey_in_a_file_is_paired_by_shape(tmp_path: Path) -> None:

@@ -7,8 +7,15 @@ import numpy as np
 import pytest
 from matplotlib.patches import Rectangle
 
-from gearwhine.figures import draw_comparison, draw_coordinate_criteria, draw_mac_matrix, save, save_all
-from gearwhine.results.comparison_files import dof_names, draw_comparison_figures, write_comparison
+from gearwhine.figures import (
+    draw_comparison,
+    draw_comparison_figures,
+    draw_coordinate_criteria,
+    draw_mac_matrix,
+    save,
+    save_all,
+)
+from gearwhine.results.comparison import dof_names, write_comparison
 from housing import compare_by_shapes
 from housing.correlation.comparison import Comparison, ModePair
 from housing.measured import MeasuredGeometry, MeasuredModes

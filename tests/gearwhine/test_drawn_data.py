@@ -13,14 +13,10 @@ from matplotlib.figure import Figure
 from coupling.gears.loaded.contact_pressure import mesh_pressure
 from coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.figures import (
-    draw_campbell,
-    draw_contact_path,
-    draw_harris_map,
-    draw_transient,
-    draw_transmissibility,
-    draw_transmission_error,
-)
+from gearwhine.figures import draw_campbell, draw_transient
+from gearwhine.figures.gears.contact import draw_contact_path
+from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
+from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.style import BLUE, GREY
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import build_machine

@@ -15,9 +15,14 @@ from coupling.gears.contact.tooth_force_kernels import tooth_force
 from coupling.machine.loads import TorqueHistory, TorqueRipple
 from coupling.time.speed_profile import free_speed
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
-from gearwhine.from_case.driving import driving, train_inertia
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine, solve_machine
+from gearwhine.from_case.machine import (
+    build_machine,
+    describe_machine,
+    driving,
+    solve_machine,
+    train_inertia,
+)
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
@@ -244,6 +249,15 @@ def test_a_braked_train_rests_on_its_back_flanks() -> None:
 def test_a_braked_train_without_backlash_is_refused() -> None:
     with pytest.raises(CaseError, match="back flanks, which never meet"):
         load_case("spur-pair", ["operation.torque=-100 N*m", "gear_pair.0.backlash="])
+
+
+def test_a_braked_train_on_spread_axes_meets_its_back_flanks() -> None:
+    """Axes 0.2 mm further apart than nominal leave a gap behind standard teeth: 2 sin(α) times the spread, at first."""
+    spread = ["rotor.1.axis=['44.65 mm', '0 mm']", "operation.torque=-100 N*m", "gear_pair.0.backlash="]
+    case = load_case("spur-pair", spread).case
+    (pair,) = describe_machine(case).loaded_pairs()
+    assert pair.backlash == pytest.approx(0.4e-3 * math.sin(math.radians(20.0)), rel=0.01)
+    assert solve_gears(case)[0].backlash == pair.backlash
 
 
 def test_a_braked_train_coasts_on_its_back_flanks() -> None:

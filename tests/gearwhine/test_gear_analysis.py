@@ -23,9 +23,8 @@ from gearwhine.from_case.machine import build_machine
 from gearwhine.output.dataset import labelled
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
-from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, solve_over_torques, with_coarser_slices
+from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques, with_coarser_slices
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.relief_aims import relief_aims
 
 
 @cache

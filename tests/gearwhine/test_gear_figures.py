@@ -27,20 +27,10 @@ from coupling.gears import (
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.case import load_case
-from gearwhine.figures import (
-    draw_contact_path,
-    draw_contact_pattern,
-    draw_flank_charts,
-    draw_gear_pairs,
-    draw_harris_map,
-    draw_mesh_stiffness,
-    draw_tooth_pair,
-    draw_transmission_error,
-    save,
-    save_all,
-)
-from gearwhine.figures.gears.contact import over_flank
-from gearwhine.figures.gears.teeth import has_charts
+from gearwhine.figures import draw_gear_pairs, save, save_all
+from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern, over_flank
+from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts
+from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs
 

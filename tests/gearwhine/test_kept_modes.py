@@ -9,7 +9,9 @@ import pytest
 
 from gearwhine.case import Case, Housing, case_document, load_case, parse_case
 from gearwhine.from_case.mesh import build_mesh
-from gearwhine.solve.housing_modes import mode_cache_inputs
+from gearwhine.solve.housing_modes import mode_cache_inputs, solve_housing
+from housing.modes import eigensolver
+from housing.modes.eigensolver import arpack_modes
 from housing.storage.netcdf import content_key
 from meshes import write_mesh
 
@@ -24,6 +26,22 @@ def key(case: Case) -> str:
 @pytest.fixture(scope="module")
 def rig() -> str:
     return key(load_case(CASE).case)
+
+
+def test_both_eigensolvers_of_a_case_give_the_same_modes(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+
+    def counted(*arguments: Any, **options: Any) -> Any:
+        calls.append(options)
+        return arpack_modes(*arguments, **options)
+
+    monkeypatch.setattr(eigensolver, "arpack_modes", counted)
+    coarse = ['housing.box.mesh_size="40 mm"', "housing.frequency_limit=", "housing.modes=6"]
+    block = solve_housing(load_case("steel-box", coarse).case)
+    assert not calls
+    arpack = solve_housing(load_case("steel-box", [*coarse, 'housing.solver="eigsh"']).case)
+    assert calls
+    assert arpack.modes.frequencies == pytest.approx(block.modes.frequencies, rel=1e-9)
 
 
 WITHOUT_EFFECT = [

@@ -11,9 +11,8 @@ from gearwhine.case import CaseError
 from gearwhine.output.files import file_contents
 from gearwhine.output.html import report_page
 from gearwhine.output.sections import Column, columns_of, table_of
-from gearwhine.results import comparison, gears, housing, motion, rotors, run, system, update
+from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update
 from gearwhine.results import steady_state as steady
-from gearwhine.results.chapters import chapters_of
 
 VOID = {"meta", "img"}
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")

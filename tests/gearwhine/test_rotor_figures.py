@@ -13,20 +13,15 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import rotors
-from gearwhine.figures import (
-    DrawnGear,
-    DrawnProbe,
-    DrawnUnbalance,
-    RotorAssembly,
-    draw_lateral_modes,
-    draw_shaft,
+from gearwhine.figures import RotorAssembly, draw_lateral_modes, draw_shaft, save
+from gearwhine.figures.rotors.assembly import DrawnGear, DrawnProbe, DrawnUnbalance
+from gearwhine.figures.rotors.mode_shapes import (
     draw_static_deflection,
     draw_torsional_modes,
     draw_whirl_modes,
-    save,
+    local_direction,
 )
-from gearwhine.figures.labels import spread
-from gearwhine.figures.rotors.whirl_shapes import local_direction
+from gearwhine.figures.style import spread
 
 STEEL = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
 ALUMINIUM = rotors.ShaftMaterial(70e9, 26e9, 2700.0)

@@ -7,7 +7,8 @@ import pytest
 
 from coupling import SpeedProfile
 from coupling.signals import LineName, order_map, resample_by_angle, spectrogram
-from gearwhine.figures import draw_order_slices, draw_run_up_waterfall, save
+from gearwhine.figures import save
+from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_waterfall
 from gearwhine.figures.machine.transient import draw_contributions, draw_modal_coordinates, draw_orbits
 from gearwhine.solve.signature import Contribution, TracedLine
 

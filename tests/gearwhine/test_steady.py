@@ -38,7 +38,7 @@ def test_the_transient_settles_to_it() -> None:
 
 @pytest.mark.slow
 def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    changes = [*FEW, BALANCED, "sweep.speed=['3000 rpm', '6000 rpm']"]
+    changes = [*FEW, BALANCED, "sweep.speed=['5000 rpm', '6000 rpm']"]
     arguments = ["steady", "spur-pair", "--curve", "--points", "8", "-q", "--json", "-o", str(tmp_path)]
     for change in changes:
         arguments += ["--set", change]
@@ -46,11 +46,11 @@ def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytes
     document = json.loads(capsys.readouterr().out)
     curve, (motion,) = document["curve"], document["motions"]
     speeds = curve["speed_rpm"]
-    assert speeds[0] == pytest.approx(3000.0)
+    assert speeds[0] == pytest.approx(5000.0)
     assert speeds[-1] == pytest.approx(6000.0)
     assert len(speeds) >= 8
     assert curve["ending"] == "end"
-    assert curve["account"] == f"followed from 3000 to 6000 rpm: {len(speeds)} points, 0 folds"
+    assert curve["account"] == f"followed from 5000 to 6000 rpm: {len(speeds)} points, 0 folds"
     assert motion["stable"]
     assert 1e3 * motion["period_s"] == pytest.approx(60e3 / 5500.0 / 28, rel=1e-12)
     # The mean force is the torque over the base radius, whatever the speed.

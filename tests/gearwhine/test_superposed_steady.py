@@ -20,7 +20,7 @@ from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import build_machine
-from gearwhine.results.chapters import chapters_of
+from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
 from gearwhine.solve.steady_state import solve_steady
 
@@ -167,7 +167,7 @@ def test_many_changes_of_contact_are_no_fault(machine: CoupledMachine) -> None:
     count = len(elements.starts)
     within = orbit._pass_within
     assert within(ready.part, ready.contacts, elements, start, -count // 2, varied=False) is None
-    found = orbit.one_pass(ready.part, ready.contacts, elements, start, varied=False)
+    found = orbit.integrate_period(ready.part, ready.contacts, elements, start, varied=False)
     assert len(found.trace.start) >= count
 
 

@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from coupling.linear.campbell import SystemCampbell, SystemCrossing
 from coupling.linear.frequency_response import FrequencyResponse
 from coupling.signals.excitation import ExcitationLine
-from gearwhine.figures import draw_system_campbell, draw_transmissibility
-from gearwhine.figures.machine.system import KIND_COLORS
+from gearwhine.figures.machine.system import KIND_COLORS, draw_system_campbell, draw_transmissibility
 
 RPM = 60.0 / (2.0 * math.pi)
 SPEEDS = np.linspace(0.0, 100.0, 11)

@@ -8,8 +8,8 @@ import pytest
 from PIL import Image, ImageSequence
 
 from housing.errors import EncoderUnavailableError, RendererUnavailableError
-from housing.pictures.animations import animate_shapes, find_encoder
 from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
+from housing.pictures.images import animate_shapes, find_encoder
 from housing.pictures.scene import find_renderer
 from meshes import Mesh
 

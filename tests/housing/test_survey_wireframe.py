@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from housing.measured import MeasuredGeometry
-from housing.pictures.survey_wireframe import laid_over, point_motions, wireframe
+from housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
 
 
 def _grid(columns: int, rows: int, lines: tuple[tuple[int, ...], ...] = ()) -> MeasuredGeometry:

@@ -225,8 +225,3 @@ def test_every_node_is_used_and_edges_have_the_size_asked_for(curved: Mesh) -> N
     _, median, largest = mesh_quality(curved).edge_length
     assert 0.5 * 0.02 < median < 1.5 * 0.02
     assert largest < 3 * 0.02
-
-
-def test_inside_height_is_between_base_and_cover() -> None:
-    geometry = BoxGeometry((0.2, 0.16, 0.24), WallThickness.uniform(0.012))
-    assert geometry.inside_height == pytest.approx((0.012, 0.148))

@@ -123,12 +123,12 @@ def test_compliance_knows_no_size(gear: Gear, scale: float) -> None:
 @settings(deadline=None, max_examples=40)
 @given(pairs(), st.floats(0.2, 5.0))
 def test_stiffness_is_proportional_to_width_and_modulus(pair: GearPairGeometry, factor: float) -> None:
-    reference = tooth_contact(pair, PotentialEnergyStiffness()).mean_mesh_stiffness
+    reference = tooth_contact(pair, PotentialEnergyStiffness()).unloaded_mean_mesh_stiffness
     for quantity in ("face_width", "youngs_modulus"):
         scaled = GearPairGeometry(
             *(replace(gear, **{quantity: factor * getattr(gear, quantity)}) for gear in (pair.driver, pair.driven))
         )
-        stiffness = tooth_contact(scaled, PotentialEnergyStiffness()).mean_mesh_stiffness
+        stiffness = tooth_contact(scaled, PotentialEnergyStiffness()).unloaded_mean_mesh_stiffness
         assert stiffness == pytest.approx(factor * reference, rel=1e-7)
 
 
@@ -139,7 +139,7 @@ def test_mesh_stiffness_is_of_the_norms_order(pair: GearPairGeometry) -> None:
         return  # the norm's gears are solid
     driver = replace(pair.driver, face_width=0.02)
     same_width = GearPairGeometry(driver, replace(pair.driven, face_width=0.02))
-    mean = tooth_contact(same_width, PotentialEnergyStiffness()).mean_mesh_stiffness / 0.02
+    mean = tooth_contact(same_width, PotentialEnergyStiffness()).unloaded_mean_mesh_stiffness / 0.02
     # The norm's mean counts the body again for every pair in contact; counted once, two pairs are softer.
     assert 0.6 < mean / iso6336_stiffness(same_width).mesh_mean < 1.4
 
@@ -170,7 +170,7 @@ def test_force_is_the_energys_slope(contact: ToothContact, phase: float, delta: 
     if np.any(np.abs(delta - gaps) < 2.0 * step):
         return  # a pair is just about to touch: the tangent steps there
     before, here, after = (evaluate(contact, phase, delta + change) for change in (-step, 0.0, step))
-    scale = contact.mean_mesh_stiffness
+    scale = contact.unloaded_mean_mesh_stiffness
     assert (after[3] - before[3]) / (2.0 * step) == pytest.approx(here[0], rel=1e-7, abs=1e-9 * scale * delta)
     assert (after[0] - before[0]) / (2.0 * step) == pytest.approx(here[1], rel=1e-7, abs=1e-9 * scale)
 
@@ -184,7 +184,7 @@ def test_parametric_power_is_the_energys_slope_in_phase(contact: ToothContact, p
     before, here, after = (evaluate(contact, phase + change, delta) for change in (-step, 0.0, step))
     if before[5] != after[5]:
         return  # a relieved pair begins to touch inside the difference
-    scale = 0.5 * contact.mean_mesh_stiffness * delta**2
+    scale = 0.5 * contact.unloaded_mean_mesh_stiffness * delta**2
     assert (after[3] - before[3]) / (2.0 * step) == pytest.approx(here[4], rel=1e-4, abs=1e-5 * scale)
 
 

@@ -1,7 +1,7 @@
 """What holds of every rolling bearing: it finds its equilibrium or says why not, and its stiffness is a tangent."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +13,11 @@ from rotors import EquilibriumError
 from rotors.rolling_bearings import (
     COORDINATES,
     BallRow,
+    FourPointRow,
     RollerRow,
     RollingBearing,
+    SphericalRollerRow,
+    TaperedRollerRow,
     rolling_equilibrium,
     rolling_state,
 )
@@ -46,8 +49,18 @@ def ball_rows(draw: st.DrawFn, most: int = 14) -> BallRow:
 
 @st.composite
 def bearings(draw: st.DrawFn) -> RollingBearing:
-    kind = draw(st.sampled_from(["one", "two", "rollers"]))
+    kind = draw(st.sampled_from(["one", "two", "rollers", "tapered", "spherical", "four-point"]))
     row = draw(ball_rows())
+    if kind in ("tapered", "spherical"):
+        length, angle = row.ball_diameter * draw(st.floats(0.8, 2.5)), draw(st.floats(0.1, 0.6))
+        size = (row.count, row.ball_diameter, length, row.pitch_diameter, row.clearance)
+        rollers = TaperedRollerRow(*size, angle=angle) if kind == "tapered" else SphericalRollerRow(*size, angle=angle)
+        spacing = 0.0 if kind == "spherical" else row.ball_diameter * draw(st.floats(2.0, 3.0))
+        sides = ((-1.0, 1), (1.0, -1))
+        return RollingBearing([replace(rollers, position=s * spacing, direction=d) for s, d in sides])
+    if kind == "four-point":
+        given = {one.name: getattr(row, one.name) for one in fields(BallRow)}
+        return RollingBearing([FourPointRow(**given | {"contact_angle": draw(st.floats(0.2, 0.9))})])
     if kind == "rollers":
         length = row.ball_diameter * draw(st.floats(0.8, 4.0))
         profile = draw(st.sampled_from(["straight", "logarithmic"]))
@@ -72,6 +85,7 @@ def loads(draw: st.DrawFn, bearing: RollingBearing) -> FloatArray:
     force = np.array([draw(SIGN) * draw(logarithmic(-3.0, 1.0)) * 1e7 * diameter**2 for _ in range(5)])
     force[3:] *= bearing.reach
     force[2] *= bearing.has_axial_stiffness
+    force[3:] *= not isinstance(bearing.rows[0], SphericalRollerRow)
     return force
 
 
@@ -94,12 +108,15 @@ def test_equilibrium_is_found_or_it_is_said_why_not(data: st.DataObject) -> None
         return
     total, size = np.zeros(3), 0.0
     for row, elements in zip(bearing.rows, state.rows, strict=True):
-        sense = row.direction if isinstance(row, BallRow) else 1
         radial = elements.inner_load * np.cos(elements.inner_angle)
+        axial = elements.inner_load * np.sin(elements.inner_angle)
+        if isinstance(row, TaperedRollerRow) and elements.rib_load is not None:
+            radial = radial - elements.rib_load * math.sin(row.contact_angle - row.roller_angle)
+            axial = axial + elements.rib_load * math.cos(row.contact_angle - row.roller_angle)
         total += [
             float((radial * np.cos(elements.azimuths)).sum()),
             float((radial * np.sin(elements.azimuths)).sum()),
-            float(sense * (elements.inner_load * np.sin(elements.inner_angle)).sum()),
+            float(row.direction * axial.sum()),
         ]
         size += float(elements.inner_load.sum())
     expected = load[:3] + np.array([0.0, 0.0, bearing.axial_preload])

@@ -12,12 +12,12 @@ from coupling.gears.contact.lookup_tables import law_table
 from coupling.gears.contact.tooth_force_kernels import friction_history, penetration
 from coupling.periodic.switch_kernels import by_pairs
 from coupling.time.contact_kernels import evaluate_contact
-from rotors.numerics import kernel_cache
+from rotors.numerics import compiled
 from rotors.numerics.banded_kernels import factor
 from rotors.numerics.compiled import counted
 
-COMPILED = Path(kernel_cache.__file__).parent
-HOME = kernel_cache.__name__.rpartition(".")[0]
+COMPILED = Path(compiled.__file__).parent
+HOME = compiled.__name__.rpartition(".")[0]
 ROOT = COMPILED.parents[HOME.count(".")]
 
 
@@ -30,8 +30,7 @@ def packages(root: Path) -> Path:
     home = root / COMPILED.relative_to(ROOT)
     home.mkdir(parents=True, exist_ok=True)
     (home / "__init__.py").touch()
-    for name in ("compiled.py", "kernel_cache.py"):
-        (home / name).write_bytes((COMPILED / name).read_bytes())
+    (home / "compiled.py").write_bytes((COMPILED / "compiled.py").read_bytes())
     decorator = f"from {HOME}.compiled import counted\n"
     (package / "constants.py").write_text("OFFSET = 1.0\n")
     (package / "called.py").write_text(
@@ -75,7 +74,7 @@ def test_the_digest_covers_every_kernel_and_what_it_imports() -> None:
     files = {Path(kernel.py_func.__code__.co_filename) for kernel in kernels}  # type: ignore[attr-defined]
     files |= {Path(function.__code__.co_filename) for function in (counted, law_table)}
     assert len(files) >= 6
-    assert files <= set(kernel_cache.kernel_sources(ROOT))
+    assert files <= set(compiled.kernel_sources(ROOT))
 
 
 def test_folders_not_used_for_a_month_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,11 +86,11 @@ def test_folders_not_used_for_a_month_go(tmp_path: Path, monkeypatch: pytest.Mon
     import numba
 
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-    kernel_cache.cache_folder.cache_clear()
+    compiled.cache_folder.cache_clear()
     try:
-        folder = Path(kernel_cache.cache_folder())
+        folder = Path(compiled.cache_folder())
     finally:
-        kernel_cache.cache_folder.cache_clear()
+        compiled.cache_folder.cache_clear()
     assert folder.parent == tmp_path
     assert folder.is_dir()
     assert recent.is_dir()

@@ -7,11 +7,22 @@ import sys
 import numpy as np
 import pytest
 
+import gearwhine as gw
 import rotors
-from rotors import Bearing, Disc, RadialSupport, Rotor, RotorError, Segment, ShaftMaterial
+from coupling.gears import Gear
+from rotors import (
+    Bearing,
+    Disc,
+    RadialSupport,
+    Rotor,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
 from rotors.model.material import shear_coefficient
 from rotors.modes.torsional_and_axial import solve_torsional_chain
-from rotors.whirl.modal_projection import whirl_basis
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 BAR = Segment(0.4, 0.03, 0.01, STEEL)
@@ -96,10 +107,6 @@ def test_wrong_input_is_named(build, message: str) -> None:
         (lambda r: rotors.solve_lateral_modes(r, count=2).evaluate([0.5]), "positions are [0.5]"),
         (lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 1.0, 1.0)], 0.0), "bearing 'b' position"),
         (lambda r: rotors.solve_whirl(r, [], math.inf), "speed is inf"),
-        (
-            lambda r: rotors.solve_whirl(r, [Bearing.isotropic("b", 0.0, 1.0)], 0.0, basis=whirl_basis(r, [])),
-            "supports of the basis",
-        ),
         (lambda _: solve_torsional_chain([1.0, 2.0], [1.0, 1.0]), "one spring between each two"),
         (lambda _: solve_torsional_chain([1.0, 2.0], [0.0]), "stiffnesses"),
         (lambda _: solve_torsional_chain([1.0, 2.0], [1.0], ground=[1.0]), "one stiffness for each inertia"),
@@ -143,3 +150,21 @@ def test_import_pulls_in_no_meshing_and_no_pictures() -> None:
     script = "import sys, rotors; print([m for m in ('gmsh', 'vtk', 'matplotlib', 'numba') if m in sys.modules])"
     answer = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == "[]"
+
+
+def test_a_segment_takes_the_material_of_a_housing() -> None:
+    own, shared = Segment(0.4, 0.03, 0.01, STEEL), Segment(0.4, 0.03, 0.01, gw.STEEL)
+    supports = [RadialSupport(0.05, 1e8), RadialSupport(0.35, 1e8)]
+    frequencies = [
+        solve_lateral_modes(Rotor("shaft", [segment]), supports, count=3).frequencies for segment in (own, shared)
+    ]
+    np.testing.assert_allclose(frequencies[1], frequencies[0], rtol=1e-12)
+    twice = solve_torsional_modes(Rotor("shaft", [own, shared]), count=2).frequencies
+    whole = solve_torsional_modes(Rotor("shaft", [own, own]), count=2).frequencies
+    np.testing.assert_allclose(twice, whole, rtol=1e-12)
+
+
+def test_gears_are_of_the_same_steel() -> None:
+    gear = Gear("pinion", 28, 3.175e-3, math.radians(20.0), 6.35e-3)
+    assert (gear.youngs_modulus, gear.poisson_ratio, gear.density) == (207e9, 0.3, 7850.0)
+    assert gw.Material(gear.youngs_modulus, gear.poisson_ratio, gear.density) == gw.STEEL

@@ -389,18 +389,37 @@ def test_axial_forces_leave_only_the_tilt_stiff() -> None:
 
 
 def test_a_tight_wire_is_refused_between_far_stations_and_taken_between_near_ones() -> None:
-    wire = Rotor("wire", [Segment(1.0, 1e-3, 0.0, STEEL, axial_force=500.0)])
+    wire = Rotor("wire", [Segment(1.0, 1e-3, 0.0, STEEL, 1e6, axial_force=500.0)])
     rope = Rotor("wire", [Segment(9.0, 1e-3, 0.0, STEEL, axial_force=500.0)])
     for rotor in (wire, rope):
         with pytest.raises(RotorError, match=r"rotor 'wire': its axial forces leave .* more stations"):
             static_shaft(rotor, [0.0, rotor.length])
     shaft = static_shaft(wire, np.linspace(0.0, 1.0, 101).tolist())
-    loads = np.zeros(606)
-    loads[6 * 50] = 2.0
-    sag = solve(shaft.stiffness, loads, [0, 1, 2, 5, 600, 601])[6 * 50]
-    # A string under a force at its middle, F L / 4 P, less the stiffness of its bend, (F / 2 P) (EI / P)^½.
-    bend = math.sqrt(wire.segments[0].section(0.0).bending_stiffness / 500.0)  # type: ignore[union-attr]
-    assert sag == pytest.approx(2.0 / (4 * 500.0) - 2.0 / (2 * 500.0) * bend, rel=1e-4)
+    assert central_sag(shaft) == pytest.approx(central_sag_of_a_tie(wire), rel=1e-6)
+
+
+def test_a_tie_between_far_stations_keeps_its_digits() -> None:
+    # Its field grows by e⁹ from one station to the next.
+    tie = Rotor("tie", [Segment(1.0, 0.01, 0.0, STEEL, 1e6, axial_force=324 * 2.1e11 * math.pi / 64 * 1e-8)])
+    shaft = static_shaft(tie, [0.0, 0.5, 1.0])
+    assert central_sag(shaft) == pytest.approx(central_sag_of_a_tie(tie), rel=1e-8)
+
+
+def central_sag(shaft: StaticShaft) -> float:
+    """Deflection of the middle node under a newton, the end nodes being simply supported."""
+    size = shaft.stiffness.shape[0]
+    unit = np.zeros(size)
+    middle = 6 * shaft.node(0.5)
+    unit[middle] = 1.0
+    return float(solve(shaft.stiffness, unit, [0, 1, 2, 5, size - 6, size - 5])[middle])
+
+
+def central_sag_of_a_tie(rotor: Rotor) -> float:
+    """L / 4P − tanh(k L / 2) / 2Pk, k² = P / EI, of a tie-rod without shear (Timoshenko, Strength of Materials II)."""
+    (part,) = rotor.segments
+    assert isinstance(part, Segment)
+    P, k = part.axial_force, math.sqrt(part.axial_force / part.section(0.0).bending_stiffness)
+    return rotor.length / (4 * P) - math.tanh(k * rotor.length / 2) / (2 * P * k)
 
 
 @pytest.mark.parametrize(

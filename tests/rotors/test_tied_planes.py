@@ -7,7 +7,8 @@ from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve
 from rotors.whirl.completeness import NO_OSCILLATION
 from rotors.whirl.eigenvalues import refine_each
 from rotors.whirl.equations import whirl_equations_in_runs
-from rotors.whirl.modal_projection import Pencil, basis_for, pencils
+from rotors.whirl.modal_projection import Pencil, pencils
+from rotors.whirl.planar_basis import planar_basis
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISCS = [Disc.from_dimensions(at, 0.07, diameter, 0.05, STEEL.density) for at, diameter in ((0.5, 0.28), (1.0, 0.35))]
@@ -25,7 +26,7 @@ def bearings(damping: float, cross: float = 0.0, on_pedestal: bool = False) -> l
 
 
 def pencil(held: list[Bearing]) -> Pencil:
-    (one,) = pencils(ROTOR, held, basis_for(ROTOR, held, None, LOWEST, None))
+    (one,) = pencils(ROTOR, held, planar_basis(ROTOR, held, None, LOWEST))
     return one
 
 

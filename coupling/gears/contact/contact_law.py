@@ -1,5 +1,7 @@
 r"""Tooth contact law of a gear pair: contact force, mesh stiffness and stored energy by the compression of the mesh.
 
+:class:`ToothContact` holds the law; :func:`coupling.gears.contact.tooth_force_kernels.tooth_force` evaluates its force.
+
 At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j all whole numbers with positions
 in the range of contact.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, its gap in
 nominal motion.  With the compression ``delta`` of the mesh along the line of action and its rate ``v``:
@@ -25,7 +27,8 @@ Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the
 (:mod:`coupling.gears.geometry.pitch_deviations`).  It is constant while the pair is in contact, so ``dU/dp``, at a
 fixed delta ``sum_j 1/2 dk'/dp (x - d_j)^2 - k' (x - d_j) dd/dp``, keeps its form, and repeats with the hunting period.
 
-The idle flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
+Backlash is two one-sided contacts, of the drive flanks and of the back flanks, each with this law; between them lies a
+clearance. The back flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
 motion projected on the mirrored line of action, less the backlash), and ``dU/dp`` of opposite sign; their own
 pitch gaps come with `ToothContact.back_flanks`.
 
@@ -74,15 +77,15 @@ class PairPositions:
         Position along the path of contact, base pitches.
     present : ndarray of bool, shape (n, m)
         Whether the pair is in the range of contact.
-    kind : ndarray of int, shape (n, m)
-        Number of the kind of pair.
+    variant : ndarray of int, shape (n, m)
+        Number of the variant of pair.
     entered : ndarray of int, shape (n, m)
         Phase at which the pair entered.
     """
 
     position: FloatArray
     present: npt.NDArray[np.bool_]
-    kind: IntArray
+    variant: IntArray
     entered: IntArray
 
 
@@ -124,10 +127,10 @@ class ToothContact:
     damping : float
         Damping coefficient while the mesh is compressed [N s/m].
     back_flank_offset : float
-        Phase of the idle flanks, see `GearPairGeometry.back_flank_offset`.
+        Phase of the back flanks, see `GearPairGeometry.back_flank_offset`.
     pitch_gaps, back_pitch_gaps : ndarray, shape (h,)
-        Gap by pitch deviations of the pair that enters at phase n, at n mod h [m], on the working and on the idle
-        flanks; empty for none.
+        Gap by pitch deviations of the pair that enters at phase n, at n mod h [m], on the working and on the
+        back flanks; empty for none.
     damping_depth : float
         Compression up to which the damping fades in [m]; 0 for full damping at first touch.
     variants : tuple of ToothPairCurves
@@ -167,7 +170,7 @@ class ToothContact:
             raise GearError(f"tooth contact: damping_depth must be at least 0 m, got {self.damping_depth!r}")
         if not (math.isfinite(self.shared_compliance) and self.shared_compliance >= 0.0):
             raise GearError(f"tooth contact: shared_compliance must be at least 0 m/N, got {self.shared_compliance!r}")
-        for curves in self._alone:
+        for curves in self._single_pair_curves:
             self._check_curves(curves)
         for name, gaps in (("pitch_gaps", self.pitch_gaps), ("back_pitch_gaps", self.back_pitch_gaps)):
             if gaps.ndim != 1 or not np.all(np.isfinite(gaps)):
@@ -211,12 +214,16 @@ class ToothContact:
 
     @cached_property
     def _law(self) -> FloatArray:
-        curves = self.kinds if self.faces is None else face_force_table(self.faces, self.kinds, self.module)
+        curves = (
+            self.variant_curves
+            if self.faces is None
+            else face_force_table(self.faces, self.variant_curves, self.module)
+        )
         return law_table(curves, self.entering, self.damping, self.damping_depth, self.shared_compliance)
 
     @property
     def entering(self) -> FloatArray:
-        """Gap [m] and kind of every pair of the hunting period, shape (h, 2)."""
+        """Gap [m] and variant of every pair of the hunting period, shape (h, 2)."""
         entering = np.zeros((self.hunting_numbers, 2))
         if self.pitch_gaps.size:
             entering[:, 0] = self.pitch_gaps
@@ -225,13 +232,13 @@ class ToothContact:
         return entering
 
     @cached_property
-    def kinds(self) -> tuple[ToothPairCurves, ...]:
-        """Curves of every kind of pair without the shared compliance, that of sound teeth first."""
-        return tuple(without_shared_compliance(curves, self.shared_compliance) for curves in self._alone)
+    def variant_curves(self) -> tuple[ToothPairCurves, ...]:
+        """Curves of every variant of tooth pair without the shared compliance, that of sound teeth first."""
+        return tuple(without_shared_compliance(curves, self.shared_compliance) for curves in self._single_pair_curves)
 
     @property
-    def _alone(self) -> tuple[ToothPairCurves, ...]:
-        """Curves of every kind of pair that carries alone."""
+    def _single_pair_curves(self) -> tuple[ToothPairCurves, ...]:
+        """Curves of every variant of tooth pair, as of one pair in contact: the shared compliance included."""
         return (ToothPairCurves(self.stiffness, self.deviation), *self.variants)
 
     @property
@@ -261,8 +268,8 @@ class ToothContact:
         return max(1, self.hunting_numbers)
 
     @cached_property
-    def mean_mesh_stiffness(self) -> float:
-        """Mean mesh stiffness over a mesh period, with all pairs on the path in contact [N/m]."""
+    def unloaded_mean_mesh_stiffness(self) -> float:
+        """Mean mesh stiffness over a mesh period, with all pairs on the path in contact, whatever the load [N/m]."""
         inner = self.stiffness.knots[(self.stiffness.knots > 0.0) & (self.stiffness.knots < self.contact_ratio)]
         if self.shared_compliance == 0.0:
             on_path = self.stiffness.on_knots(np.concatenate([[0.0], inner, [self.contact_ratio]]))
@@ -299,10 +306,10 @@ class ToothContact:
             part = ((at >= 0.0) & (at < end)).astype(np.float64)
         part *= places.present[..., None]
         total = np.zeros(at.shape[0])
-        for number, curves in enumerate(self.kinds[:1] if sound else self.kinds):
+        for number, curves in enumerate(self.variant_curves[:1] if sound else self.variant_curves):
             these = part > 0.0
             if not sound:
-                these &= (places.kind == number)[..., None]
+                these &= (places.variant == number)[..., None]
             total += np.bincount(np.nonzero(these)[0], part[these] * curves.stiffness(at[these]), total.size)
         total /= shift.size
         return np.asarray(total / (1.0 + self.shared_compliance * total), dtype=np.float64)
@@ -329,7 +336,7 @@ class ToothContact:
 
     @property
     def back_flank_event_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) at which a pair of idle flanks would enter or leave, ascending."""
+        """Phases in [0, 1) at which a pair of back flanks would enter or leave, ascending."""
         return tuple(sorted((self.back_flank_offset - phase) % 1.0 for phase in self.event_phases))
 
     @property
@@ -338,14 +345,14 @@ class ToothContact:
         if self.faces is not None:
             return ()
         found: set[float] = set()
-        for curves in self.kinds:
+        for curves in self.variant_curves:
             for curve in (curves.deviation, curves.stiffness):
                 found.update((slope_jumps(curve) % 1.0).tolist())
         return tuple(sorted(found))
 
     @property
     def back_flanks(self) -> ToothContact:
-        """Contact law of the idle flanks by their own phase: the same law with the gaps and kinds of their own pairs.
+        """Contact law of the back flanks by their own phase: the same law, with gaps and variants of their own pairs.
 
         A helical face passes through the mesh from its other end.
         """
@@ -376,25 +383,25 @@ class ToothContact:
         position = fraction[:, None] + behind
         present = (position >= start) & (position < end)
         entered = number.astype(np.int64)[:, None] - behind
-        kind = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
-        return PairPositions(position, present, kind, entered)
+        variant = self.pair_variants[entered % self.pair_variants.size] if self.pair_variants.size else entered * 0
+        return PairPositions(position, present, variant, entered)
 
     def pairs(self, phases: npt.ArrayLike) -> PairStates:
         """Positions, stiffness and deviation of the pairs at `phases` (n,)."""
         places = self.pair_positions(phases)
-        position, present, kind, entered = places.position, places.present, places.kind, places.entered
+        position, present, variant, entered = places.position, places.present, places.variant, places.entered
         stiffness, deviation = np.zeros(position.shape), np.full(position.shape, np.inf)
         state = None
         if self.faces is None:
-            for variant, curves in enumerate(self.kinds):
-                these = present & (kind == variant)
+            for number, curves in enumerate(self.variant_curves):
+                these = present & (variant == number)
                 stiffness[these] = curves.stiffness(position[these])
                 deviation[these] = curves.deviation(position[these])
         else:
-            state = face_slice_states(self.faces, self.kinds, position[present], kind[present])
+            state = face_slice_states(self.faces, self.variant_curves, position[present], variant[present])
             deviation[present] = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         gap = self.pitch_gaps[entered % self.pitch_gaps.size] if self.pitch_gaps.size else np.zeros(position.shape)
-        return PairStates(position, present, kind, entered, stiffness, deviation + gap, gap, state)
+        return PairStates(position, present, variant, entered, stiffness, deviation + gap, gap, state)
 
     def pair_forces(self, phases: npt.ArrayLike, compression: npt.ArrayLike) -> FloatArray:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
@@ -445,20 +452,20 @@ def tooth_contact(
     """
     variants = pair_variants(geometry)
     stiffness = model.pair_stiffness(geometry)
-    kinds = tooth_pair_curves(geometry, stiffness, variants.faults, corner_contact)
+    curves = tooth_pair_curves(geometry, stiffness, variants.faults, corner_contact)
     none = np.zeros(0)
     deviating = any(geometry.driver.pitch_deviations) or any(geometry.driven.pitch_deviations)
     return ToothContact(
         float(stiffness.knots[-1]),
-        kinds[0].stiffness,
-        kinds[0].deviation,
+        curves[0].stiffness,
+        curves[0].deviation,
         damping,
         geometry.back_flank_offset,
         pitch_gaps(geometry) if deviating else none,
         back_flank_pitch_gaps(geometry) if deviating else none,
-        variants=kinds[1:],
-        pair_variants=variants.of_pair if len(kinds) > 1 else none.astype(np.int64),
-        back_pair_variants=variants.of_back_pair if len(kinds) > 1 else none.astype(np.int64),
+        variants=curves[1:],
+        pair_variants=variants.of_pair if len(curves) > 1 else none.astype(np.int64),
+        back_pair_variants=variants.of_back_pair if len(curves) > 1 else none.astype(np.int64),
         faces=faces,
         module=geometry.driver.module,
         shared_compliance=shared_compliance(model, geometry),

@@ -31,6 +31,7 @@ of W'. The stiffness of the plate against curvature across the face, of higher o
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +51,19 @@ FloatArray = npt.NDArray[np.float64]
 
 _OUTLINE = 200
 _LAYERS = 300
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+
+DEFAULT_SLICES = 61
+FINE_SLICES = 241
+"""Number of slices where steep edges cross the face. A slice is inside or outside a pit: as the edge moves, the load
+steps by the share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
+FACE_STATIONS = 5
+"""Stations over the face of a gear at which it follows its shaft."""
+_NO_SPAN = 1e-6
+"""In base pitches: a line of contact with a shorter span along the path counts as one point of it."""
+_MOST_ROUNDS = 200
+_ALONE_ROUNDS = 8
 
 
 def tooth_coupling(gear: Gear, radius: float) -> float:
@@ -84,19 +98,6 @@ def tooth_coupling(gear: Gear, radius: float) -> float:
 def _summed(values: FloatArray) -> FloatArray:
     """Sum `values` (n,) cumulatively from zero, (n + 1,)."""
     return np.concatenate([[0.0], np.cumsum(values)])
-
-
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
-
-DEFAULT_SLICES = 61
-FINE_SLICES = 241
-"""Number of slices where steep edges cross the face. A slice is inside or outside a pit: as the edge moves, the load
-steps by the share of one slice, a few per cent of the mesh's with `DEFAULT_SLICES`."""
-_NO_SPAN = 1e-6
-"""In base pitches: a line of contact with a shorter span along the path counts as one point of it."""
-_MOST_ROUNDS = 200
-_ALONE_ROUNDS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,11 +157,27 @@ class FaceLoads:
     tangent: FloatArray
 
 
+def face_stations(width: float) -> FloatArray:
+    """Stations from the middle of a face of some width [m], at Chebyshev's points, both ends among them, (j,)."""
+    steps = np.arange(FACE_STATIONS)[::-1] / (FACE_STATIONS - 1)
+    return np.asarray(0.5 * width * np.cos(np.pi * steps))
+
+
+def lagrange(stations: FloatArray, z: FloatArray) -> FloatArray:
+    """Lagrange's polynomials over j stations at places z (s,), shape (s, j)."""
+    found = np.ones((z.size, stations.size))
+    for j, own in enumerate(stations):
+        for other in np.delete(stations, j):
+            found[:, j] *= (z - other) / (own - other)
+    return found
+
+
 def face_slices(
     geometry: GearPairGeometry,
     *,
     sense: int = 1,
     misalignment: float = 0.0,
+    face_gap: Sequence[float] = (),
     count: int | None = None,
 ) -> FaceSlices:
     """Slices of a gear pair's face.
@@ -173,6 +190,9 @@ def face_slices(
         the end of larger z, or lags there.
     misalignment : float
         Angle between the flanks in the plane of action [rad], open towards +z where it is positive.
+    face_gap : sequence of float
+        Gap of the flanks at `face_stations` [m] that comes with it, such as that of bent and twisted shafts; empty for
+        none.
     count : int or None
         Number of slices; None for `DEFAULT_SLICES`, or `FINE_SLICES` of helical teeth with a spall across their face.
     """
@@ -182,6 +202,8 @@ def face_slices(
     z = b * ((np.arange(count) + 0.5) / count - 0.5)
     hand = math.copysign(1.0, geometry.driver.helix_angle) * sense
     gap = misalignment * z
+    if face_gap:
+        gap = gap + lagrange(face_stations(b), z) @ np.array(face_gap)
     for gear in (geometry.driver, geometry.driven):
         if gear.helix_deviation is not None:
             gap = gap - gear.helix_deviation.at(z, b)

@@ -21,13 +21,13 @@ The row begins with `HEADER` numbers, at the places named below; then come
 
 * the parts, with the number of an interval each;
 * the intervals, `INTERVAL` numbers each: where it begins and one over its width. One more begins at 1, where steps end;
-* the pairs, `PAIR` numbers each, by kind of pair, interval and pair. First the cubic of its gap [m] in a variable from
-  0 to 1 over the interval; then that of its stiffness [N/m] or, for an uneven load across the face, the number of its
-  column of cells, and the begin and length of the interval in it. A pair outside the range of contact has an infinite
-  gap;
+* the pairs, `PAIR` numbers each, by variant of pair, interval and pair. First the cubic of its gap [m] in a variable
+  from 0 to 1 over the interval; then that of its stiffness [N/m] or, for an uneven load across the face, the number of
+  its column of cells, and the begin and length of the interval in it. A pair outside the range of contact has an
+  infinite gap;
 * the pairs of the hunting period, `ENTERING` numbers each: the gap by pitch deviations of the pair that enters
-  at phase n, at n mod h [m], and its kind; none where all pairs are alike;
-* the cells of the bicubic tables, `CELL` numbers each, by depth, kind and position;
+  at phase n, at n mod h [m], and its variant; none where all pairs are alike;
+* the cells of the bicubic tables, `CELL` numbers each, by depth, variant and position;
 * with cells, the guesses: the pairs' part of the mesh's compression in the mean over the mesh period, both counted from
   `FIRST_TOUCH`, at ``DEPTH_UNIT r^2`` of the mesh's for r = 0, 1, ... to one beyond the cells.
 """
@@ -65,7 +65,7 @@ _APART = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class FaceForceTable:
-    """Tables for every kind of pair.
+    """Tables for every variant of pair.
 
     Attributes
     ----------
@@ -109,49 +109,49 @@ class FaceSliceStates:
 
 
 def face_slice_states(
-    slices: FaceSlices, kinds: tuple[ToothPairCurves, ...], position: FloatArray, kind: IntArray
+    slices: FaceSlices, variants: tuple[ToothPairCurves, ...], position: FloatArray, variant: IntArray
 ) -> FaceSliceStates:
-    """Slices of pairs of some kinds, `kind` (p,), whose faces' middles are at `position` (p,) in base pitches."""
+    """Slices of pairs of some variants, `variant` (p,), whose faces' middles are at `position` (p,) in base pitches."""
     at = position[:, None] + slices.shift
-    start, end = kinds[0].stiffness.knots[[0, -1]]
+    start, end = variants[0].stiffness.knots[[0, -1]]
     whole, gap = np.zeros(at.shape), np.zeros(at.shape)
-    for number, curves in enumerate(kinds):
-        these = kind == number if len(kinds) > 1 else slice(None)
+    for number, curves in enumerate(variants):
+        these = variant == number if len(variants) > 1 else slice(None)
         whole[these], gap[these] = curves.stiffness(at[these]), curves.deviation(at[these])
     return FaceSliceStates(whole, slice_stiffness(slices, whole), gap + slices.gap, (at >= start) & (at <= end))
 
 
 def face_force_table(
     slices: FaceSlices,
-    kinds: tuple[ToothPairCurves, ...],
+    variants: tuple[ToothPairCurves, ...],
     module: float,
     weights: Sequence[Weight] = (np.ones_like,),
     breaks: Sequence[float] = (),
 ) -> FaceForceTable:
-    """Table of every kind of pair, or of sums over its slices with other weights than one.
+    """Table of every variant of pair, or of sums over its slices with other weights than one.
 
     Parameters
     ----------
     slices : FaceSlices
-    kinds : tuple of ToothPairCurves
+    variants : tuple of ToothPairCurves
     module : float
         Of the gears [m]; it sets the depth of the table.
     weights : sequence of callable
         Weight of each slice's force, by its position on the path of contact [base pitches]. With w of them the table
-        holds w kinds for each of `kinds`, one after another.
+        holds w variants for each of `variants`, one after another.
     breaks : sequence of float
         Places on the path where a weight has a corner.
     """
     reach = float(np.abs(slices.shift).max()) if slices.z.size > 1 else 0.0
-    pieces = _pieces(_breaks(kinds, reach, breaks))
+    pieces = _pieces(_breaks(variants, reach, breaks))
     knots = np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
     deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
     unit = deepest / _DEPTHS**2
     compressions = unit * np.arange(_DEPTHS + 1.0) ** 2
     factors = [slices.width * weight(knots[:, None] + slices.shift) for weight in weights]
     touches, cells = [], []
-    for number in range(len(kinds)):
-        state = face_slice_states(slices, kinds, knots, np.full(knots.size, number))
+    for number in range(len(variants)):
+        state = face_slice_states(slices, variants, knots, np.full(knots.size, number))
         gap = np.where(state.meeting, state.gap, np.inf).min(axis=1)
         # At the very ends rounding may leave no slice in contact: the next position is taken.
         gap = np.where(np.isfinite(gap), gap, np.nanmax(np.where(np.isfinite(gap), gap, np.nan)))
@@ -169,10 +169,10 @@ def face_force_table(
     return FaceForceTable(knots, np.array(touches), np.stack(cells, axis=1), unit)
 
 
-def _breaks(kinds: tuple[ToothPairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
+def _breaks(variants: tuple[ToothPairCurves, ...], reach: float, others: Sequence[float]) -> FloatArray:
     """Find the positions where corners enter or leave the face, `reach` from its middle, with the ends of the range."""
-    start, end = kinds[0].stiffness.knots[[0, -1]]
-    curves = [curve for kind in kinds for curve in (kind.stiffness, kind.deviation)]
+    start, end = variants[0].stiffness.knots[[0, -1]]
+    curves = [curve for variant in variants for curve in (variant.stiffness, variant.deviation)]
     corners = np.concatenate([*(slope_jumps(curve) for curve in curves), others])
     breaks = np.unique(np.concatenate([corners - reach, corners + reach]))
     first, last = start - reach, end + reach
@@ -228,9 +228,9 @@ def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
     return np.ascontiguousarray(cells.swapaxes(0, 1))
 
 
-FIRST_TOUCH, PARTS, INTERVALS, PAIRS, FIRST_PAIR, KIND_STEP = 0, 1, 2, 3, 4, 5
+FIRST_TOUCH, PARTS, INTERVALS, PAIRS, FIRST_PAIR, VARIANT_STEP = 0, 1, 2, 3, 4, 5
 """Compression below which no pair touches [m]; numbers of parts, intervals, and pairs at once; j of the first pair; the
-distance from one kind's pairs to the next one's."""
+distance from one variant's pairs to the next one's."""
 DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10, 11
 """Damping [N s/m] and the depth over which it fades in [m]; pairs of the hunting period; unit of the cells' depth [m],
 0 where there are none, their number in depth, and the distance from one depth to the next."""
@@ -261,9 +261,9 @@ def law_table(
     Parameters
     ----------
     curves : sequence of ToothPairCurves, or FaceForceTable
-        Of every kind of pair, behind the shared compliance.
+        Of every variant of pair, behind the shared compliance.
     entering : ndarray, shape (h, 2)
-        Gap [m] and kind of each pair of the hunting period.
+        Gap [m] and variant of each pair of the hunting period.
     damping, damping_depth : float
         [N s/m], [m]
     shared_compliance : float
@@ -274,7 +274,7 @@ def law_table(
         knots = _period_knots([curves.knots])
         second, cells = _cell_places(curves, knots), curves.cells
     else:
-        gaps, stiffnesses = [kind.deviation for kind in curves], [kind.stiffness for kind in curves]
+        gaps, stiffnesses = [variant.deviation for variant in curves], [variant.stiffness for variant in curves]
         knots = _period_knots([curve.knots for curve in (*gaps, *stiffnesses)])
         second, cells = np.array([_by_pair(curve, knots, 0.0) for curve in stiffnesses]), np.zeros((0, 0, 0, CELL))
     first = np.array([_by_pair(gap, knots, np.inf) for gap in gaps])
@@ -293,7 +293,7 @@ def law_table(
     header = np.zeros(HEADER)
     header[FIRST_TOUCH] = first_touch
     header[[PARTS, INTERVALS, PAIRS]] = parts, knots.size - 1, pairs.shape[2]
-    header[[FIRST_PAIR, KIND_STEP]] = math.floor(gaps[0].knots[0]), pairs[0].size
+    header[[FIRST_PAIR, VARIANT_STEP]] = math.floor(gaps[0].knots[0]), pairs[0].size
     header[[DAMPING, DAMPING_DEPTH, HUNTING]] = damping, damping_depth, len(entering)
     header[SHARED] = shared_compliance
     header[[INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT, GUESS_AT]] = at[1:6]
@@ -346,11 +346,11 @@ def _by_pair(curve: PiecewiseCubic, knots: FloatArray, absent: float) -> FloatAr
 
 
 def _cell_places(table: FaceForceTable, knots: FloatArray) -> FloatArray:
-    """Row of cells, begin and length in them, (v, m, j, 4), of all kinds of pairs."""
+    """Row of cells, begin and length in them, (v, m, j, 4), of all variants of pairs."""
     low, high = _places(knots, table.knots)
     row = np.clip(np.searchsorted(table.knots, 0.5 * (low + high), side="right") - 1, 0, table.knots.size - 2)
     width = np.diff(table.knots)[row]
     one = np.stack([row, (low - table.knots[row]) / width, (high - low) / width, 0.0 * row], axis=-1)
-    kinds = np.repeat(one[None], table.cells.shape[1], axis=0)
-    kinds[..., 0] += (np.arange(len(kinds)) * table.cells.shape[2])[:, None, None]
-    return kinds
+    variants = np.repeat(one[None], table.cells.shape[1], axis=0)
+    variants[..., 0] += (np.arange(len(variants)) * table.cells.shape[2])[:, None, None]
+    return variants

@@ -52,7 +52,7 @@ class SlidingFriction:
         End of the path of contact, where corners slide [base pitches].
     shares : ndarray
         Numbers of `coupling.gears.contact.lookup_tables` for the three integrals over a line of contact that reverses
-        slice by slice, in three kinds of pairs for each kind; empty where lines of contact reverse as a whole.
+        slice by slice, in three variants of pairs for each variant; empty where lines of contact reverse as a whole.
     """
 
     coefficient: float
@@ -136,6 +136,6 @@ def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
         ]
 
     weights = (np.ones_like, share(0), share(1))
-    table = face_force_table(faces, contact.kinds, contact.module, weights, breaks=(friction.pitch_point,))
+    table = face_force_table(faces, contact.variant_curves, contact.module, weights, breaks=(friction.pitch_point,))
     entering = contact.entering * [1.0, len(weights)]
     return law_table(table, entering, 0.0, 0.0, contact.shared_compliance)

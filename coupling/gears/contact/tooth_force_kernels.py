@@ -49,12 +49,12 @@ from coupling.gears.contact.lookup_tables import (
     HUNTING,
     INTERVAL,
     INTERVALS_AT,
-    KIND_STEP,
     PAIR,
     PAIRS,
     PAIRS_AT,
     PARTS,
     SHARED,
+    VARIANT_STEP,
 )
 from rotors.numerics.compiled import counted, inner, uncounted
 
@@ -98,12 +98,12 @@ def penetration(
 ) -> tuple[float, int]:
     """Penetration of a pair's flanks [m], negative where they are apart, and the index of its numbers.
 
-    ``here``: index of the same pair's numbers if it is of the first kind; ``entered``: phase at which it entered.
+    ``here``: index of the same pair's numbers if it is of the first variant; ``entered``: phase at which it entered.
     """
     if hunting > 0:
         entry = at + int(law_value(law, at + ENTERING_AT)) + ENTERING * (entered % hunting)
         compression -= law_value(law, entry)
-        here += int(law_value(law, entry + 1)) * int(law_value(law, at + KIND_STEP))
+        here += int(law_value(law, entry + 1)) * int(law_value(law, at + VARIANT_STEP))
     g0, g1 = law_value(law, here), law_value(law, here + 1)
     return compression - g0 - u * (g1 + u * (law_value(law, here + 2) + u * law_value(law, here + 3))), here
 
@@ -157,7 +157,11 @@ def face_force(
 def face_force_and_tangent(
     law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float]:
-    """Force and tangent, as of `face_force`, and the tangent's slope by the compression."""
+    """Force and tangent, as of `face_force`, and the tangent's slope by the compression.
+
+    Newton's iteration in `pairs_compression` needs no energy: the polynomials of `face_force` are repeated here
+    without those of the energy, which cost as much again.
+    """
     v0 = law_value(law, cell) + p * (
         law_value(law, cell + 4) + p * (law_value(law, cell + 8) + p * law_value(law, cell + 12))
     )
@@ -182,7 +186,8 @@ def pair_force_and_tangent(
 ) -> tuple[float, float, float]:
     """Force, tangent and the tangent's derivative of a pair with a penetration ``approach`` > 0.
 
-    ``here``: index of its numbers.
+    ``here``: index of its numbers. `tooth_force` has the same law in line, with the energy: it looks up what its
+    pairs share only once.
     """
     unit = law_value(law, at + DEPTH_UNIT)
     if unit > 0.0:
@@ -447,8 +452,8 @@ def friction_shares(
     pairs = int(law_value(law, at + PAIRS))
     hunting, first = int(law_value(law, at + HUNTING)), int(law_value(law, at + FIRST_PAIR))
     pairs_at = at + int(law_value(law, at + PAIRS_AT))
-    # Shares hold three kinds for each: the force, the signed force, and the signed force times its position.
-    next_kind = int(law_value(law, at + KIND_STEP))
+    # Shares hold three variants for each: the force, the signed force, and the signed force times its position.
+    next_variant = int(law_value(law, at + VARIANT_STEP))
     elastic, stiff, across, across_slope, moments, moments_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for pair in range(pairs):
         start = pairs_at + PAIR * (pairs * interval + pair)
@@ -457,8 +462,8 @@ def friction_shares(
             continue
         force, k, _ = pair_force_and_tangent(law, at, here, u, approach)
         if by_slices:
-            signed, signed_slope, _ = pair_force_and_tangent(law, at, here + next_kind, u, approach)
-            moment, moment_slope, _ = pair_force_and_tangent(law, at, here + 2 * next_kind, u, approach)
+            signed, signed_slope, _ = pair_force_and_tangent(law, at, here + next_variant, u, approach)
+            moment, moment_slope, _ = pair_force_and_tangent(law, at, here + 2 * next_variant, u, approach)
         else:
             # Beyond the path the corner slides, at the end of the path.
             position = min(max(phase - number + (first + pair), 0.0), path_end)

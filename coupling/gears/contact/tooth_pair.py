@@ -2,7 +2,7 @@
 
 The profile deviation is the gap that modifications and deviations of both flanks leave between the teeth in nominal
 motion, against perfect involutes. Both curves reach along the path of contact and, with corner contact, beyond it; each
-kind of pair with faulty teeth has curves of its own.
+variant of pair with faulty teeth has curves of its own.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ class ToothPairCurves:
 def tooth_pair_curves(
     geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Sequence[PairFaults], corner_contact: bool
 ) -> tuple[ToothPairCurves, ...]:
-    """Curves of every kind of pair.
+    """Curves of every variant of pair.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def tooth_pair_curves(
     stiffness : PiecewiseCubic
         Of a pair of sound teeth, from 0 to the contact ratio; or of the whole mesh, from 0 to 1.
     faults : sequence
-        Of every kind, the driver's tooth's and the driven's.
+        Of every variant, the driver's tooth's and the driven's.
     corner_contact : bool
         Whether the curves reach beyond the path of contact, to where corners may touch.
 
@@ -159,7 +159,7 @@ def tooth_pair_curves(
             f"{geometry.label}: corner contact needs the teeth's own contact ratio, {geometry.contact_ratio:.6g}; "
             f"the stiffness model has {length:.6g}"
         )
-    broken = any(isinstance(fault, MissingTooth) for kind in faults for own in kind for fault in own)
+    broken = any(isinstance(fault, MissingTooth) for variant in faults for own in variant for fault in own)
     if broken and not (corner_contact and length + 2.0 * LONGEST_REACH > 2.0):
         raise GearError(
             f"{geometry.label}: where a tooth is missing only corners of its neighbours could touch; that needs "

@@ -37,6 +37,11 @@ from coupling.gears.errors import GearError, PointedToothError, ThinTipError, Un
 from coupling.gears.geometry.involute import involute
 from coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
 from coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
+from housing.model.material import STEEL
+
+FloatArray = npt.NDArray[np.float64]
+
+_STEEPEST_HELIX = math.radians(60.0)
 
 
 class Inertia(NamedTuple):
@@ -52,15 +57,6 @@ def hollow_disc(density: float, width: float, outer_radius: float, inner_radius:
     mass = density * width * math.pi * (outer_radius**2 - inner_radius**2)
     polar = 0.5 * mass * (outer_radius**2 + inner_radius**2)
     return Inertia(mass, polar, 0.5 * polar + mass * width**2 / 12.0)
-
-
-STEEL_YOUNGS_MODULUS = 207e9
-STEEL_POISSON_RATIO = 0.3
-STEEL_DENSITY = 7850.0
-
-FloatArray = npt.NDArray[np.float64]
-
-_STEEPEST_HELIX = math.radians(60.0)
 
 
 class Fault(Protocol):
@@ -115,7 +111,7 @@ class Gear:
     bore : float
         Diameter of the bore [m]; 0 for a gear in one piece with its shaft.
     youngs_modulus, poisson_ratio, density : float
-        Material [Pa], [-], [kg/m^3].
+        Material [Pa], [-], [kg/m^3]; steel where not given.
     tip_relief : TipRelief or None
     root_relief : RootRelief or None
         Profile modifications.
@@ -127,7 +123,7 @@ class Gear:
         working pitch circle [m].  One for each tooth in the order in which they come into mesh, tooth 0 at
         phase 0; none for a perfect pitch.  Positive where the working flank stands ahead, so that it touches
         early: a driver's tooth displaced in the sense of its rotation, a driven gear's against it.  The whole
-        tooth is displaced, so its idle flank is behind by as much.  Each mesh of a gear counts from its own
+        tooth is displaced, so its back flank is behind by as much.  Each mesh of a gear counts from its own
         tooth 0, and reads the signs for its own working flanks.
     profile_deviation : ProfileDeviation or None
         Deviation of the profile of all flanks from its design.
@@ -165,9 +161,9 @@ class Gear:
     dedendum: float = 1.25
     root_radius: float | None = None
     bore: float = 0.0
-    youngs_modulus: float = STEEL_YOUNGS_MODULUS
-    poisson_ratio: float = STEEL_POISSON_RATIO
-    density: float = STEEL_DENSITY
+    youngs_modulus: float = STEEL.youngs_modulus
+    poisson_ratio: float = STEEL.poisson_ratio
+    density: float = STEEL.density
     tip_relief: TipRelief | None = None
     root_relief: RootRelief | None = None
     eccentricity: float = 0.0

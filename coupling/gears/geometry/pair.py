@@ -10,22 +10,27 @@ dimensionless phase ``p = z_k theta_k / (2 pi)`` counts mesh periods; at phase `
 With base radii ``rb_k, rb_i``, centre distance ``a`` and working pressure angle ``w``, the distance of the
 contact from the driver's tangent point is ``xi_k = xi_0 + s p_b`` with
 ``xi_0 = a sin(w) - sqrt(r_a,i^2 - rb_i^2)``, and ``xi_i = a sin(w) - xi_k`` from the driven's.
+
+Two gears mesh without backlash at the transverse pressure angle ``w`` of (ISO 21771)
+
+    inv(w) = inv(alpha_t) + 2 tan(alpha_n) (x_k + x_i) / (z_k + z_i),
+
+at the centre distance ``a = (rb_k + rb_i) / cos(w)``; from it follow profile shifts for a centre distance.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError
-from coupling.gears.geometry.centre_distance import backlash_free_pressure_angle
+from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError, require_finite
 from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.involute import involute
+from coupling.gears.geometry.involute import inverse_involute, involute
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -35,6 +40,11 @@ PRINTED_ROUNDING = 1e-3
 angle and helix angle of a pair agree within it, and a backlash of less, in modules, is none."""
 # One per cent of a module: as much as cutting thins a tooth for backlash.
 _ALLOWED_JAM = 0.01
+
+
+def mesh_frequency(speed: float, teeth: int) -> float:
+    """Tooth-mesh frequency [Hz] of a gear with this number of teeth at a speed [rad/s] of either sign."""
+    return abs(speed) * teeth / (2.0 * math.pi)
 
 
 @dataclass(frozen=True)
@@ -126,7 +136,7 @@ class GearPairGeometry:
 
     @property
     def backlash(self) -> float:
-        """Backlash: gap of the idle flanks along their line of action, in the transverse plane [m].
+        """Backlash: gap of the back flanks along their line of action, in the transverse plane [m].
 
         From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
         teeth would jam.
@@ -147,7 +157,7 @@ class GearPairGeometry:
 
     @property
     def normal_backlash(self) -> float:
-        """Normal backlash, the shortest distance of the idle flanks [m]: ``backlash cos(beta_b)``."""
+        """Normal backlash, the shortest distance of the back flanks [m]: ``backlash cos(beta_b)``."""
         return self.backlash * math.cos(self.driver.base_helix_angle)
 
     @property
@@ -190,10 +200,10 @@ class GearPairGeometry:
 
     @property
     def back_flank_offset(self) -> float:
-        """Phase ``b`` such that the idle flanks' pairs are at ``s = frac(b - p) + j``, in 0 ... 1.
+        """Phase ``b`` such that the back flanks' pairs are at ``s = frac(b - p) + j``, in 0 ... 1.
 
-        The idle flanks are the mirror image of the working ones in the line of centres, running backwards:
-        they touch the driver's tip first.  A tooth whose working flank is at ``xi`` has its idle flank at
+        The back flanks are the mirror image of the working ones in the line of centres, running backwards:
+        they touch the driver's tip first.  A tooth whose working flank is at ``xi`` has its back flank at
         ``2 rb_k (w + psi_k) - xi``, ``psi_k`` half its angle on the base circle.
         """
         return self._back_flank_shift % 1.0
@@ -204,9 +214,9 @@ class GearPairGeometry:
         return n % self.driver.teeth, n % self.driven.teeth
 
     def mating_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
-        """Mating teeth of the idle flanks in the pairs that enter at whole phases `number` of the idle flanks.
+        """Mating teeth of the back flanks in the pairs that enter at whole phases `number` of the back flanks.
 
-        With B the offset before its whole periods are dropped, the idle flank of driver tooth n is at
+        With B the offset before its whole periods are dropped, the back flank of driver tooth n is at
         ``s = B - p + n`` and so belongs to the pair that enters at ``-n - floor(B)`` of ``frac(B) - p``.  Its mate is
         the driven tooth that follows, n + 1: n itself is on the other side.
         """
@@ -262,7 +272,7 @@ class GearPairGeometry:
 
     @property
     def _back_flank_shift(self) -> float:
-        """Sum of the positions of a driver tooth's working and idle flanks when it enters at phase 0 [base pitches]."""
+        """Sum of the positions of a driver tooth's working and back flanks when it enters at phase 0 [base pitches]."""
         sum_of_distances = 2.0 * self.driver.base_radius * (self.working_pressure_angle + self.driver.base_half_angle)
         return (sum_of_distances - 2.0 * self.start_distance) / self.base_pitch
 
@@ -374,3 +384,91 @@ def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowes
         f"a radius of {rooted.form_radius * 1e3:.6g} mm; reduce the addendum of {tip.name!r} or "
         f"the root_radius of {rooted.name!r}"
     )
+
+
+def backlash_free_pressure_angle(driver: Gear, driven: Gear, *, thinned: bool = False) -> float:
+    """Transverse pressure angle at which two gears mesh without backlash [rad].
+
+    Parameters
+    ----------
+    driver, driven : Gear
+    thinned : bool
+        Whether to take the tooth thinning into account.
+
+    Raises
+    ------
+    InterferenceError
+        For teeth too thin to mesh without backlash at any distance.
+    """
+    gears = (driver, driven)
+    shift = sum(gear.generating_shift if thinned else gear.profile_shift for gear in gears)
+    normal, transverse = driver.pressure_angle, driver.transverse_pressure_angle
+    value = involute(transverse) + 2.0 * math.tan(normal) * shift / (driver.teeth + driven.teeth)
+    if value < 0.0:
+        raise InterferenceError(
+            f"gear pair {driver.name!r} -> {driven.name!r}: with profile shifts that sum to {shift:.4g} the teeth do "
+            "not close at any distance"
+        )
+    return inverse_involute(value)
+
+
+def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> float:
+    """Sum of the profile shifts with which two gears mesh without backlash at a distance.
+
+    Parameters
+    ----------
+    driver, driven : Gear
+        Their own profile shifts do not matter.
+    centre_distance : float
+        [m]
+
+    Returns
+    -------
+    float
+        ``(z_k + z_i) (inv(w) - inv(alpha_t)) / (2 tan(alpha_n))``, in normal modules.
+
+    Raises
+    ------
+    InterferenceError
+        For a distance below the sum of the base radii.
+    """
+    base = driver.base_radius + driven.base_radius
+    require_finite("centre_distance", centre_distance)
+    if centre_distance <= base:
+        raise InterferenceError(
+            f"gear pair {driver.name!r} -> {driven.name!r}: the centre distance must exceed the sum of the base radii, "
+            f"{base * 1e3:.6g} mm, got {centre_distance * 1e3:.6g} mm"
+        )
+    opening = involute(math.acos(base / centre_distance)) - involute(driver.transverse_pressure_angle)
+    return (driver.teeth + driven.teeth) * opening / (2.0 * math.tan(driver.pressure_angle))
+
+
+def shifted_for_centre_distance(driver: Gear, driven: Gear, centre_distance: float) -> Gear:
+    """Driven gear with the profile shift of a pair without backlash at `centre_distance` [m], the driver unchanged.
+
+    Raises
+    ------
+    GearError
+        Where no pair, or no such gear, can be made.
+    """
+    shift = profile_shift_sum(driver, driven, centre_distance) - driver.profile_shift
+    return replace(driven, profile_shift=shift)
+
+
+def tip_shortening(driver: Gear, driven: Gear, centre_distance: float) -> float:
+    """Tip shortening: reduction of both addenda that restores the tip clearance of the basic rack.
+
+    Parameters
+    ----------
+    driver, driven : Gear
+    centre_distance : float
+        [m]
+
+    Returns
+    -------
+    float
+        ``x_k + x_i - (a - a_d) / m_n`` in normal modules, a_d the sum of the reference radii; to be taken off both
+        `addendum`.  Negative, a lengthening, hardly ever.
+    """
+    reference = driver.pitch_radius + driven.pitch_radius
+    return driver.profile_shift + driven.profile_shift - (centre_distance - reference) / driver.module

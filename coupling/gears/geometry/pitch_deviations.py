@@ -8,7 +8,7 @@ tooth m and the driven gear's tooth n the pair's gap is
 
     d(s) + f_pair,    f_pair = -(f_k[m] + f_i[n]) cos(w),
 
-constant while the pair is in contact.  The idle flanks of the same teeth are behind where the working ones are
+constant while the pair is in contact.  The back flanks of the same teeth are behind where the working ones are
 ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.mating_back_teeth`).
 
 Runout is the transmission error of gears that are eccentric on their shafts (`runout_error`).
@@ -46,7 +46,7 @@ def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
 
 
 def back_flank_pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
-    """Return the gap of each pair of idle flanks [m], by its phase of entering, ``back_flank_offset - p``."""
+    """Return the gap of each pair of back flanks [m], by its phase of entering, ``back_flank_offset - p``."""
     return _lead(geometry, *geometry.mating_back_teeth(hunting_numbers(geometry)))
 
 
@@ -83,9 +83,9 @@ class PairVariants:
     Attributes
     ----------
     faults : tuple
-        Of every kind, the driver's tooth's and the driven's; the first kind is that of sound teeth.
+        Of every variant, the driver's tooth's and the driven's; the first variant is that of sound teeth.
     of_pair, of_back_pair : ndarray of int, shape (h,)
-        Kind of the pair that enters at phase n, at n mod h, on the working and on the idle flanks; empty where all
+        Kind of the pair that enters at phase n, at n mod h, on the working and on the back flanks; empty where all
         teeth are alike.
     """
 
@@ -97,7 +97,7 @@ class PairVariants:
 def pair_variants(geometry: GearPairGeometry) -> PairVariants:
     """Faults of every pair of teeth over the hunting period."""
     everywhere: PairFaults = (_faults_of(geometry.driver, None), _faults_of(geometry.driven, None))
-    kinds: dict[tuple[int, int], int] = {(-1, -1): 0}
+    variants: dict[tuple[int, int], int] = {(-1, -1): 0}
     faults = [everywhere]
     damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
 
@@ -106,10 +106,10 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
         for n, teeth in enumerate(zip(driver_teeth.tolist(), driven_teeth.tolist(), strict=True)):
             key = tuple(tooth if tooth in bad else -1 for tooth, bad in zip(teeth, damaged, strict=True))
             pair = (key[0], key[1])
-            if pair not in kinds:
-                kinds[pair] = len(faults)
+            if pair not in variants:
+                variants[pair] = len(faults)
                 faults.append((_faults_of(geometry.driver, pair[0]), _faults_of(geometry.driven, pair[1])))
-            found[n] = kinds[pair]
+            found[n] = variants[pair]
         return found
 
     numbers = hunting_numbers(geometry)

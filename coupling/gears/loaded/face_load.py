@@ -32,7 +32,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.contact.contact_law import ToothContact
-from coupling.gears.contact.face_slices import face_equilibrium, face_yield
+from coupling.gears.contact.face_slices import face_equilibrium, face_yield, lagrange
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.loaded.transmission_error import LoadedMesh
@@ -141,8 +141,9 @@ class FaceContact:
         self._contact = contact
         self._faces = contact.faces
         self._axial = axial
-        self._to_pitch_point = geometry.pitch_point_position
-        self._base_pitch = geometry.base_pitch
+        # The spring of a whole mesh has a range of one base pitch, and its load lies on the teeth's whole path.
+        self._path = geometry.base_pitch * geometry.contact_ratio / contact.contact_ratio
+        self._pitch_point = geometry.base_pitch * geometry.pitch_point_position
         self.z = contact.faces.z
         """Slices of the face, from its middle [m], shape (s,)."""
         self.stations = stations
@@ -301,7 +302,7 @@ class FaceContact:
         if self._last is not None:
             force, deep = self._last
             return force * beyond / deep
-        return self._contact.mean_mesh_stiffness * beyond
+        return self._contact.unloaded_mean_mesh_stiffness * beyond
 
     def _uniform_stiffness(self, load: FaceLoad) -> FloatArray:
         return np.asarray(load.tangents @ self.uniform @ self.uniform)
@@ -333,7 +334,7 @@ class _Prepared:
         self.base, self.meeting = states.faces.base, states.faces.meeting
         self.gap = states.faces.gap
         position = states.position[self.owner, self.column][:, None] + faces.shift
-        along = (position - mesh._to_pitch_point) * mesh._base_pitch
+        along = position * mesh._path - mesh._pitch_point
         basis = np.empty((*position.shape, mesh.size))
         basis[:, :, :-1] = mesh.over_face
         basis[:, :, -1] = -mesh._axial * along
@@ -343,12 +344,3 @@ class _Prepared:
         """Mean over the phases of the approach at which the first slice touches [m]."""
         gap = np.where(self.meeting, self.gap - np.einsum("pnm,m->pn", self.basis, shape), np.inf).min(axis=1)
         return float(np.minimum.reduceat(gap, self.first).mean())
-
-
-def lagrange(stations: FloatArray, z: FloatArray) -> FloatArray:
-    """Lagrange's polynomials over j stations at places z (s,), shape (s, j)."""
-    found = np.ones((z.size, stations.size))
-    for j, own in enumerate(stations):
-        for other in np.delete(stations, j):
-            found[:, j] *= (z - other) / (own - other)
-    return found

@@ -16,7 +16,7 @@ from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
 from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry
+from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency
 from coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, loaded_transmission_error
 from coupling.gears.stiffness.crack import ToothCrack
 from coupling.gears.stiffness.models import (
@@ -94,8 +94,12 @@ class GearPair:
         these leave none the back flanks never touch.
     friction : float
         Coefficient of friction between the teeth.
-    misalignment : float
-        Angle between the flanks in the plane of action, open towards +z [rad].
+    misalignment : float, optional
+        Angle between the flanks in the plane of action, open towards +z [rad]; None: that of the machine's operating
+        point, see :meth:`coupling.Machine.at_operating_point`.
+    face_gap : tuple of float
+        Gap of the flanks over the face that comes with it [m], at the stations of
+        :func:`coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
     corner_contact : bool, optional
         Whether teeth touch beyond their path of contact; None: with a stiffness model of pairs of teeth.
     """
@@ -107,8 +111,9 @@ class GearPair:
     damping: float | None = None
     backlash: float | None = None
     friction: float = 0.0
-    misalignment: float = 0.0
+    misalignment: float | None = 0.0
     corner_contact: bool | None = None
+    face_gap: tuple[float, ...] = ()
 
     @property
     def has_corner_contact(self) -> bool:
@@ -146,12 +151,23 @@ class GearPair:
         geometry : GearPairGeometry
         sense : int
             Of rotation of the driver about z: 1 or -1.
+
+        Raises
+        ------
+        GearError
+            Where the misalignment has still to be found at the operating point of a machine.
         """
+        if self.misalignment is None:
+            raise GearError(
+                f"{geometry.label}: its misalignment is left to the machine's operating point; expected an angle, or "
+                "`Machine.at_operating_point`"
+            )
         bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
         straight = all(deviation is None or deviation.is_straight for deviation in bent)
-        if geometry.driver.helix_angle == 0.0 and self.misalignment == 0.0 and straight:
+        even = self.misalignment == 0.0 and not any(self.face_gap)
+        if geometry.driver.helix_angle == 0.0 and even and straight:
             return None
-        return face_slices(geometry, sense=sense, misalignment=self.misalignment)
+        return face_slices(geometry, sense=sense, misalignment=self.misalignment, face_gap=self.face_gap)
 
     def require_sound_faults(self, geometry: GearPairGeometry) -> None:
         """Refuse faults for which the mesh has no solution, before it is solved.
@@ -255,11 +271,11 @@ def load_gear_pair(
     )
     static = loaded_transmission_error(contact, force)
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
-    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.mean_mesh_stiffness
+    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.unloaded_mean_mesh_stiffness
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
-    contact = contact.with_damping(damping, _FADING * force / contact.mean_mesh_stiffness)
+    contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
     hunting = hunting_period_mesh(contact, force) if contact.hunting_period > 1 else None
-    frequency = None if speed is None else abs(speed) * geometry.driver.teeth / (2.0 * math.pi)
+    frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
     return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
 
 

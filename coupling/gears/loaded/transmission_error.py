@@ -275,7 +275,7 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
 
 
 def _different_periods(contact: ToothContact) -> tuple[IntArray, IntArray]:
-    """First mesh period of every kind, and the kind of each mesh period of the hunting period."""
+    """First mesh period of every variant, and the variant of each mesh period of the hunting period."""
     start, end = contact.contact_range
     entered = np.arange(contact.hunting_period)[:, None] - np.arange(math.floor(start), math.ceil(end))
     own = [

@@ -59,7 +59,7 @@ def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: LoadedMesh, *, 
     loaded = mesh.force > 0.0
     below = _SHARES + _BETWEEN if shared and loaded else 0.0
     note = f"mesh force {mesh.force:.5g} N; " if loaded else "without load; "
-    note += f"mean stiffness of all pairs on the path of contact {MEGA * contact.mean_mesh_stiffness:.2f} N/µm"
+    note += f"mean stiffness of all pairs on the path of contact {MEGA * contact.unloaded_mean_mesh_stiffness:.2f} N/µm"
     if loaded:
         note += f", of those that touch {MEGA * mesh.mean_mesh_stiffness:.2f} N/µm"
     figure = sheet(HEAD + _STIFFNESS + below + FOOT, title, note)

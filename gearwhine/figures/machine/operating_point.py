@@ -14,8 +14,8 @@ from matplotlib.patches import Patch, Polygon
 from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.case import Case
 from gearwhine.figures.gears.contact import draw_contact_pattern
+from gearwhine.figures.rotors import rotor_assembly
 from gearwhine.figures.rotors.assembly import RotorAssembly
-from gearwhine.figures.rotors.figure_set import rotor_assembly
 from gearwhine.figures.rotors.shaft import MM, ShaftView
 from gearwhine.figures.style import (
     BLUE,

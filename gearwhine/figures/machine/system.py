@@ -16,7 +16,6 @@ from coupling.linear.campbell import SystemCampbell
 from coupling.linear.frequency_response import FrequencyResponse
 from coupling.signals.excitation import ExcitationLine
 from gearwhine.case import Case, mesh_frequencies
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -29,10 +28,15 @@ from gearwhine.figures.style import (
     RED,
     RPM,
     SERIES,
+    Label,
+    arrange,
+    draw_row,
     legend,
+    mark_operation,
     panel,
     sheet,
     shortened,
+    stretches,
 )
 from gearwhine.output import file_stems
 from gearwhine.solve.coupled_system import SolvedSystem
@@ -51,6 +55,10 @@ KIND_COLORS = {
 _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # of the panel [mm]
 _LARGEST = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
+_MICROMETRE = 1e-6
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 4.0  # of a panel and the room between two [mm]
+_DECADES = 4.0  # of amplitude that a panel shows at most
+_NAMED = 8  # curves that a panel tells apart by colour
 
 
 def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_speed: float | None = None) -> Figure:
@@ -89,9 +97,7 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     _mark_crossings(axes, campbell)
     handles = [Line2D([], [], color=KIND_COLORS.get(kind, INK), lw=1.4, label=kind) for kind in met]
     if operating_speed is not None:
-        handles.append(
-            axes.axvline(RPM * abs(operating_speed), color=INK, lw=0.8, ls="-.", zorder=1, label="operation")
-        )
+        handles.append(mark_operation(axes, operating_speed, "-."))
     legend(figure, handles)
     return figure
 
@@ -100,16 +106,12 @@ def _draw_branches(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> 
     """Each branch in the colours of what moves in it; returns the kinds met, in the order of the colours."""
     met = set()
     for frequency, kinds in zip(campbell.frequencies_hz.T, campbell.kinds.T, strict=True):
-        start = 0
-        for end in range(1, len(kinds) + 1):
-            if end < len(kinds) and kinds[end] == kinds[start]:
-                continue
-            if kinds[start]:
-                run = slice(start, end + 1)
-                met.add(str(kinds[start]))
-                color = KIND_COLORS.get(str(kinds[start]), INK)
-                axes.plot(speeds[run], frequency[run], color=color, lw=1.1, zorder=3, label="branch")
-            start = end
+        for run, kind in stretches(kinds.tolist()):
+            if kind:
+                met.add(kind)
+                axes.plot(
+                    speeds[run], frequency[run], color=KIND_COLORS.get(kind, INK), lw=1.1, zorder=3, label="branch"
+                )
     return [kind for kind in KIND_COLORS if kind in met]
 
 
@@ -149,12 +151,6 @@ def _mark_crossings(axes: Axes, campbell: SystemCampbell) -> None:
             axes.scatter(
                 *place, s=14.0, facecolors="white", edgecolors=color, linewidths=0.9, zorder=4, label="crossing"
             )
-
-
-_MICROMETRE = 1e-6
-_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 4.0  # of a panel and the room between two [mm]
-_DECADES = 4.0  # of amplitude that a panel shows at most
-_NAMED = 8  # curves that a panel tells apart by colour
 
 
 def draw_transmissibility(

@@ -21,7 +21,6 @@ from coupling.signals import decibels
 from coupling.signals.histories import Histories
 from coupling.signals.spectrum import Window, signal_parts
 from gearwhine.case import Case, mesh_frequencies
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,
@@ -35,6 +34,9 @@ from gearwhine.figures.style import (
     RED,
     SERIES,
     SHEET_WIDTH,
+    Label,
+    arrange,
+    draw_row,
     legend,
     panel,
     panel_size,
@@ -83,8 +85,8 @@ def draw_sensor_spectra(
     width, limit = SHEET_WIDTH - LEFT - _RIGHT, solved.trusted_limit
     rows = {}
     for name, spectrum in solved.sensor_spectra.items():
-        told = [line for line in lines[name] if abs(line.value) >= _LEAST * abs(lines[name][0].value)][:_NAMED]
-        labels = [Label(shortened(_text(line)), line.frequency, abs(line.value), _color(line)) for line in told]
+        named = [line for line in lines[name] if abs(line.value) >= _LEAST * abs(lines[name][0].value)][:_NAMED]
+        labels = [Label(shortened(_text(line)), line.frequency, abs(line.value), _color(line)) for line in named]
         rows[name] = (spectrum, arrange(labels, [label.x / limit * width for label in labels], width))
     height = HEAD + FOOT + sum(_HEIGHT + _BETWEEN + row.height for _, row in rows.values())
     note = f"{title}; peak amplitudes, levels of their rms values re 1 µm/s²"
@@ -146,7 +148,7 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
     Bars to the left work against the line. Beyond the largest parts of each kind there is a bar of all others.
     """
     width = (SHEET_WIDTH - 2.0 * _MARGIN) / 2.0 - _NAMES - 3.0
-    shown = [(name, line) for name, told in lines.items() for line in told[:_LINES]]
+    shown = [(name, line) for name, named in lines.items() for line in named[:_LINES]]
     groups = [(name, line, _gathered(line.modes), _gathered((*line.bearings, line.free))) for name, line in shown]
     heights = [_BAR * max(len(modes), len(bearings)) for _, _, modes, bearings in groups]
     height = HEAD + FOOT + sum(heights) + _BARS_GAP * len(groups)
@@ -174,9 +176,9 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
 def _gathered(parts: Sequence[Contribution]) -> list[tuple[str, float]]:
     """Names and shares of the largest parts, and of all others together."""
     ranked = sorted(parts, key=lambda part: -abs(part.value))
-    told = [(part.name, part.share) for part in ranked[:_PARTS]]
+    named = [(part.name, part.share) for part in ranked[:_PARTS]]
     rest = ranked[_PARTS:]
-    return [*told, (f"{len(rest)} others", sum(part.share for part in rest))] if rest else told
+    return [*named, (f"{len(rest)} others", sum(part.share for part in rest))] if rest else named
 
 
 def _draw(axes: Axes, parts: list[tuple[str, float]], color: str) -> None:

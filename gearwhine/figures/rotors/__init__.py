@@ -1,1 +1,190 @@
-"""Figures of rotors: Campbell diagram, mode shapes, critical speeds, responses."""
+"""Figures of rotors: Campbell diagram, mode shapes, critical speeds, responses; and all of a case as a set."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+
+from gearwhine.case import Case, RollingStiffness, Segment
+from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
+from gearwhine.figures.rotors.campbell import draw_campbell
+from gearwhine.figures.rotors.critical_speed_map import draw_critical_map
+from gearwhine.figures.rotors.mode_shapes import (
+    draw_lateral_modes,
+    draw_static_deflection,
+    draw_torsional_modes,
+    draw_whirl_modes,
+)
+from gearwhine.figures.rotors.responses import (
+    ProbeResponse,
+    TorsionalReading,
+    draw_torsional_response,
+    draw_unbalance_response,
+)
+from gearwhine.figures.rotors.shaft import draw_shaft
+from gearwhine.figures.style import shortened
+from gearwhine.from_case.rotors import build_gear, gear_inertia
+from gearwhine.output import file_stems
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.rotors import SolvedRotor
+from rotors import Bearing, Disc, Rotor
+from rotors import Segment as RotorSegment
+
+FloatArray = npt.NDArray[np.float64]
+
+_CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
+_MODES = 6  # drawn of each kind
+
+
+def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
+    """Draw each rotor: the shaft, its modes, its whirl at speed, and what its analyses gave.
+
+    These are the Campbell diagram, the critical-speed map, the response to unbalance and bow, and the static
+    deflection, each where the case has what it takes.
+
+    Parameters
+    ----------
+    case : Case
+    solved : sequence of SolvedRotor
+        Of the case.
+    progress : callable
+        Receives the name of the rotor being drawn.
+
+    Yields
+    ------
+    str
+        Name of the figure: ``rotor-NAME-shaft`` and so on.
+    matplotlib.figure.Figure
+    """
+    stems = file_stems([one.rotor.name for one in solved], "rotor-")
+    for stem, one in zip(stems, solved, strict=True):
+        progress(f"drawing rotor {one.rotor.name}")
+        for kind, figure in _figures(case, one):
+            yield f"{stem}-{kind}", figure
+
+
+def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> RotorAssembly:
+    """Return the assembly of a rotor of a case as it is drawn: its gears by their size rather than as discs."""
+    name = rotor.name
+    given = case.rotor_named(name)
+    gears = []
+    for gear in case.gear:
+        if gear.rotor != name or gear.at is None:
+            continue
+        built = build_gear(case, gear)
+        gears.append(
+            DrawnGear(
+                name=gear.name,
+                at=gear.at,
+                face_width=built.face_width,
+                tip_diameter=2.0 * built.tip_radius,
+                pitch_diameter=2.0 * built.pitch_radius,
+                root_diameter=2.0 * built.root_circle_radius,
+                teeth=gear.teeth,
+                disc=Disc(gear.at, *gear_inertia(case, gear)),
+            )
+        )
+    on_it = [bearing for bearing in case.bearing if bearing.rotor == name]
+    # The materials of a rotor's own file have no names in the case.
+    rows = zip(rotor.segments, given.segments, strict=True) if given.saved is None else ()
+    return RotorAssembly(
+        rotor=rotor,
+        bearings=bearings,
+        gears=gears,
+        unbalances=[DrawnUnbalance(one.at, one.moment, one.phase) for one in given.unbalance],
+        rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
+        seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},
+        materials={
+            part.material: segment.material or given.material or ""
+            for part, segment in rows
+            if isinstance(part, RotorSegment) and isinstance(segment, Segment)
+        },
+    )
+
+
+def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
+    assembly = rotor_assembly(case, one.rotor, one.bearings)
+    figures = [
+        ("shaft", draw_shaft(assembly)),
+        ("modes", draw_lateral_modes(assembly, one.lateral, most=_MODES)),
+        ("torsion", draw_torsional_modes(assembly, one.torsional, most=_MODES)),
+    ]
+    operation = one.operation
+    if operation is not None and one.whirl[0].frequencies.size:
+        figures.append(("whirl", draw_whirl_modes(assembly, one.whirl[0], most=_MODES)))
+    critical, directions = _critical_speeds(one)
+    name = f"Rotor {shortened(one.rotor.name, 20)}"
+    if one.campbell is not None and one.campbell.eigenvalues.size:
+        crossed, senses, orders = _with_other_orders(one, critical, directions)
+        campbell = draw_campbell(
+            f"{name}: Campbell diagram",
+            one.campbell,
+            critical_speeds=crossed,
+            critical_directions=senses,
+            critical_orders=orders,
+            orders=sorted({1.0, *one.orders}),
+            operating_speed=operation,
+        )
+        figures.append(("campbell", campbell))
+    if one.stiffness_map is not None:
+        sheet = draw_critical_map(
+            f"{name}: undamped critical-speed map",
+            one.stiffness_map.stiffnesses,
+            one.stiffness_map.speeds,
+            bearings=one.bearings,
+            operating_speed=operation,
+            whirl="forward" if one.stiffness_map.direction > 0 else "backward",
+        )
+        figures.append(("critical-map", sheet))
+    if one.torsion is not None and one.torsion.response.frequencies.size > 1:
+        read = [
+            TorsionalReading(each.probe.name, np.abs(each.angle), np.abs(each.torque)) for each in one.torsion.readings
+        ]
+        swing = draw_torsional_response(
+            f"{name}: torsional response",
+            one.torsion.response.frequencies,
+            read,
+            natural_frequencies=one.torsional.frequencies[one.torsional.frequencies > 0.0],
+        )
+        figures.append(("torsional-response", swing))
+    if one.response is not None and one.response.response.speeds.size > 1:
+        readings = [ProbeResponse(read.probe.name, read.amplitude, read.major_axis) for read in one.response.readings]
+        running = None if operation is None else (abs(operation), abs(operation))
+        response = draw_unbalance_response(
+            f"{name}: response to unbalance" + (" and bow" if case.rotor_named(one.rotor.name).bow else ""),
+            np.abs(one.response.response.speeds),
+            readings,
+            critical_speeds=critical[directions > _CIRCULAR_BACKWARD],
+            operating_range=running,
+        )
+        figures.append(("unbalance", response))
+    if not isinstance(one.weight, str):
+        # What the bearings carry presses on them; the arrows show what holds the rotor.
+        holding = -one.weight.deflection.bearing_loads[:, :2]
+        sheet = draw_static_deflection(assembly, one.weight.places, one.weight.displacement.T, holding)
+        figures.append(("static", sheet))
+    return figures
+
+
+def _with_other_orders(
+    one: SolvedRotor, critical: FloatArray, directions: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Critical speeds of once a revolution, their senses and orders, followed by those of the other orders."""
+    assert one.campbell is not None
+    sense = -1.0 if one.campbell.speeds.min() < 0.0 else 1.0
+    more = [each for found in one.orders.values() if not isinstance(found, str) for each in found]
+    return (
+        np.array([*critical, *(abs(each.speed) for each in more)]),
+        np.array([*directions, *(sense * each.direction for each in more)]),
+        np.array([1.0] * critical.size + [each.order for each in more]),
+    )
+
+
+def _critical_speeds(one: SolvedRotor) -> tuple[FloatArray, FloatArray]:
+    """Critical speeds and their directions: damped, where the Campbell diagram meets 1×, or else undamped."""
+    if one.campbell is None or isinstance(one.crossings, str):
+        return one.critical.speeds, one.critical.direction
+    sense = -1.0 if one.campbell.speeds.min() < 0.0 else 1.0
+    speeds = np.array([abs(crossing.speed) for crossing in one.crossings])
+    return speeds, sense * np.array([crossing.direction for crossing in one.crossings])

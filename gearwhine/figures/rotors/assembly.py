@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial
+from rotors import Bearing, Coupling, Disc, ElasticMaterial, Rotor, Segment
 
 # A disc without a plausible ring (a mass alone, or inertias that no uniform ring has) is drawn as a point.
 _THINNEST = 1e-6
@@ -72,7 +72,7 @@ class RotorAssembly:
     probes: Sequence[DrawnProbe] = ()
     rolling: Collection[str] = ()
     seats: Mapping[str, str] = field(default_factory=dict)
-    materials: Mapping[ShaftMaterial, str] = field(default_factory=dict)
+    materials: Mapping[ElasticMaterial, str] = field(default_factory=dict)
 
     @property
     def parts(self) -> Sequence[Segment | Coupling]:

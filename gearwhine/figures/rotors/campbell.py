@@ -3,7 +3,7 @@
 Forward and backward whirl have their colours, lines and words here, for all figures of rotors.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -26,17 +25,27 @@ from gearwhine.figures.style import (
     RED,
     RPM,
     SERIES,
+    Label,
+    arrange,
+    draw_row,
     legend,
+    mark_operation,
     panel,
     sheet,
+    stretches,
 )
 from rotors import Campbell
-from rotors.whirl.whirl_modes import MOSTLY_AXIAL
+from rotors.analyses.campbell import stability_onset
+from rotors.whirl.whirl_modes import MOSTLY_AXIAL, NEUTRAL
 
 FloatArray = npt.NDArray[np.float64]
 
 # Below this part of a circular whirl the sense is no longer that of the mode as a whole.
 PLANAR = 0.05
+_HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
+_BRANCHES = 6  # lowest branches that are shown at least
+_ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
+_ALMOST_ALL = 0.9  # of the decrements are on their axis
 
 
 @dataclass(frozen=True)
@@ -49,8 +58,14 @@ class Sense:
 
 
 FORWARD = Sense("forward", BLUE, "-")
+
+
 BACKWARD = Sense("backward", RED, (0, (5, 2)))
+
+
 MIXED = Sense("planar or mixed", "#6b747c", (0, (6, 2, 1.2, 2)))
+
+
 AXIAL = Sense("along the axis", SERIES[3], (0, (1.2, 1.8)))
 
 
@@ -80,13 +95,6 @@ def legend_lines(senses: Sequence[Sense], *, solid: bool = False) -> list[Line2D
         for sense in (FORWARD, BACKWARD, MIXED, AXIAL)
         if sense in senses
     ]
-
-
-_HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
-_BRANCHES = 6  # lowest branches that are shown at least
-_ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
-_ALMOST_ALL = 0.9  # of the decrements are on their axis
-_UNDAMPED = 1e-9  # a damping ratio this small is rounding
 
 
 def draw_campbell(
@@ -152,7 +160,7 @@ def draw_campbell(
         height = float(np.interp(speed, turning, values[:, branch])) / HERTZ
         labels.append(Label(f"unstable above {RPM * speed:.4g}", RPM * speed, min(height, top / HERTZ)))
     row = arrange(labels, [(label.x / RPM - low) / (high - low) * PANEL_WIDTH for label in labels], PANEL_WIDTH)
-    is_damped = bool((np.abs(np.nan_to_num(ratios)) > _UNDAMPED).any())
+    is_damped = bool((np.abs(np.nan_to_num(ratios)) > NEUTRAL).any())
     lower = _DAMPING_HEIGHT + _BETWEEN if is_damped else 0.0
 
     note = "speeds in rpm above the diagram: critical speeds, ● forward, ○ backward" if criticals else ""
@@ -178,32 +186,11 @@ def draw_campbell(
     handles = legend_lines(met)
     for each in {axes, lowest}:
         if operating_speed is not None:
-            line = each.axvline(RPM * abs(operating_speed), color=INK, lw=0.8, ls=":", zorder=1, label="operation")
-            handles = [*legend_lines(met), line]
+            handles = [*legend_lines(met), mark_operation(each, operating_speed, ":")]
         if onset is not None:
             each.axvspan(RPM * onset[0], RPM * high, color=GREY, alpha=0.14, lw=0.0, zorder=0.2, label="unstable")
     legend(figure, handles)
     return figure
-
-
-def stability_onset(speeds: FloatArray, damping_ratios: FloatArray) -> tuple[float, int] | None:
-    """Return the lowest speed from which a branch is unstable, and that branch; None where all are stable.
-
-    Between two speeds, (s,) ascending, the damping ratio, (s, w), is taken as linear.
-    """
-    found: list[tuple[float, int]] = []
-    for branch, ratios in enumerate(damping_ratios.T):
-        unstable = np.flatnonzero(np.nan_to_num(ratios) < -_UNDAMPED)
-        if not unstable.size:
-            continue
-        first = int(unstable[0])
-        if first == 0 or np.isnan(ratios[first - 1]):
-            found.append((float(speeds[first]), branch))
-            continue
-        before, after = max(float(ratios[first - 1]), 0.0), float(ratios[first])
-        step = float(speeds[first] - speeds[first - 1])
-        found.append((float(speeds[first - 1]) + step * before / (before - after), branch))
-    return min(found, default=None)
 
 
 def _top(speeds: FloatArray, frequencies: FloatArray, orders: Sequence[float]) -> float:
@@ -230,15 +217,6 @@ def _criticals(
     ]
 
 
-def _runs(senses: list[Sense]) -> Iterator[tuple[slice, Sense]]:
-    """Yield the samples of a branch that share one sense: slices that overlap in one sample, and the sense."""
-    start = 0
-    for index in range(1, len(senses) + 1):
-        if index == len(senses) or senses[index] != senses[start]:
-            yield slice(start, index + 1), senses[start]
-            start = index
-
-
 def _draw_branches(
     axes: Axes, speeds: FloatArray, values: FloatArray, directions: FloatArray, axial: FloatArray
 ) -> list[Sense]:
@@ -246,7 +224,7 @@ def _draw_branches(
     met = []
     middles = [0.5 * (each[1:] + each[:-1]).T for each in (directions, axial)]
     for values_of, *ways in zip(values.T, *middles, strict=True):
-        for run, sense in _runs([sense_of(*way) for way in zip(*(way.tolist() for way in ways), strict=True)]):
+        for run, sense in stretches([sense_of(*way) for way in zip(*(way.tolist() for way in ways), strict=True)]):
             axes.plot(
                 RPM * speeds[run], values_of[run], color=sense.color, ls=sense.line, lw=1.2, zorder=3, label="branch"
             )

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -21,6 +20,9 @@ from gearwhine.figures.style import (
     PANEL_WIDTH,
     RPM,
     SERIES,
+    Label,
+    arrange,
+    draw_row,
     legend,
     panel,
     sheet,

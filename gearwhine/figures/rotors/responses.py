@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from gearwhine.figures.labels import Label, arrange, draw_row
 from gearwhine.figures.style import (
     FOOT,
     GREY,
@@ -24,6 +23,9 @@ from gearwhine.figures.style import (
     PANEL_WIDTH,
     RPM,
     SERIES,
+    Label,
+    arrange,
+    draw_row,
     legend_beside_title,
     name_in_legend,
     panel,

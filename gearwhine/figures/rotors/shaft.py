@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Polygon, Rectangle
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from gearwhine.figures.labels import Label, LabelRow, arrange, draw_row
 from gearwhine.figures.rotors.assembly import DrawnGear, RotorAssembly
 from gearwhine.figures.style import (
     FOOT,
@@ -24,6 +23,10 @@ from gearwhine.figures.style import (
     INK,
     PANEL_WIDTH,
     RED,
+    Label,
+    LabelRow,
+    arrange,
+    draw_row,
     legend,
     name_in_legend,
     panel,
@@ -31,7 +34,7 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
-from rotors import Bearing, Coupling, Disc, Segment, ShaftMaterial
+from rotors import Bearing, Coupling, Disc, ElasticMaterial, Segment
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -129,7 +132,7 @@ _BEYOND = 2.5  # centre and pitch lines reach so far beyond what they belong to 
 _CHAIN = (0, (8, 2, 1.5, 2))
 
 
-def materials(assembly: RotorAssembly) -> list[ShaftMaterial]:
+def materials(assembly: RotorAssembly) -> list[ElasticMaterial]:
     """Return the segments' materials, in the order in which they come."""
     return list(dict.fromkeys(part.material for part in assembly.parts if isinstance(part, Segment)))
 

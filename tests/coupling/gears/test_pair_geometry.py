@@ -86,7 +86,7 @@ def test_wider_distance_opens_backlash_and_shortens_contact() -> None:
 
 def test_idle_flanks_of_standard_gears_stand_half_a_pitch_off() -> None:
     # A standard tooth is as thick as its space: when one pair meets at the pitch point on the working flanks,
-    # the idle flanks' pairs stand half a base pitch before and after it.
+    # the back flanks' pairs stand half a base pitch before and after it.
     pair = GearPairGeometry(*(replace(gear, profile_shift=0.0) for gear in (PINION, WHEEL)))
     at_pitch_point = pair.pitch_point_position
     idle = (pair.back_flank_offset - at_pitch_point) % 1.0

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from coupling.gears import Gear, GearError, GearPairGeometry, path_of_contact
 from coupling.gears.errors import InterferenceError
-from coupling.gears.geometry.centre_distance import profile_shift_sum, shifted_for_centre_distance, tip_shortening
+from coupling.gears.geometry.pair import profile_shift_sum, shifted_for_centre_distance, tip_shortening
 from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, specific_sliding
 from coupling.gears.geometry.thickness import tooth_thickness
 

@@ -83,7 +83,7 @@ def test_turning_a_tooth_moves_its_flank_as_the_base_circle_unwinds() -> None:
 @pytest.mark.parametrize("tooth", [0, 7, 19])
 def test_idle_flanks_of_a_displaced_tooth_are_behind(tooth: int, shift: float) -> None:
     # Along the pitch line the working flanks of driver tooth n are (p - n - s_pitch) pitches past the pitch point,
-    # its idle flanks a tooth's thickness behind. By symmetry these touch while within -(eps - s_pitch) ... s_pitch.
+    # its back flanks a tooth's thickness behind. By symmetry these touch while within -(eps - s_pitch) ... s_pitch.
     driver, driven = replace(PLAIN_DRIVER, profile_shift=shift), replace(PLAIN_DRIVEN, profile_shift=-shift)
     pair = GearPairGeometry(one_tooth(driver, tooth), driven)
     plain = tooth_contact(GearPairGeometry(driver, driven), SquareStiffness(1e8)).back_flanks
@@ -161,7 +161,7 @@ def test_force_and_parametric_power_are_slopes_of_the_energy(whole: int, part: f
         [tooth_force(phase + side * dp, delta + side * dd, 0.0, *CONTACT.kernel_arguments)[3] for side in (-1.0, 1.0)]
         for dp, dd in ((0.0, steps[0]), (steps[1], 0.0))
     )
-    scale = CONTACT.mean_mesh_stiffness * delta
+    scale = CONTACT.unloaded_mean_mesh_stiffness * delta
     assert (by_delta[1] - by_delta[0]) / (2.0 * steps[0]) == pytest.approx(here[0], rel=1e-6, abs=1e-6 * scale)
     slope = (by_phase[1] - by_phase[0]) / (2.0 * steps[1])
     assert slope == pytest.approx(here[4], rel=1e-4, abs=1e-4 * scale * delta)

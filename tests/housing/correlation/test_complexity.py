@@ -10,7 +10,7 @@ from housing.correlation import (
     phase_deviation,
     real_shapes,
 )
-from housing.correlation.complexity import mean_phase
+from housing.correlation.modal_assurance_criterion import mean_phase
 
 X, Y = np.array([1.0, 2.0, -2.0, 0.0]), np.array([2.0, -1.0, 0.0, 2.0])  # orthogonal, of one norm
 
