@@ -363,8 +363,9 @@ def write(path: Path, sizes: Reducer = Reducer()) -> None:
         if len(solids) != len(SOLIDS) or set(gmsh.model.getEntities(3)) != set(solids):
             raise RuntimeError(f"the drawing has the solids {gmsh.model.getEntities(3)}; expected {len(SOLIDS)}")
         gmsh.write(str(path))
+        names = [SOLIDS[solids.index(solid)] for solid in sorted(solids)]  # the kernel writes them by their tags
     text = path.read_text(encoding="ascii")
-    path.write_text(compact(with_names(text, ("two-stage reducer", *SOLIDS))), encoding="ascii")
+    path.write_text(compact(with_names(text, ("two-stage reducer", *names))), encoding="ascii")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
-"""Excitation orders of a machine: shaft orders, mesh harmonics and sidebands; names of spectral lines by them.
+"""Excitation orders of a machine: shafts, mesh harmonics, sidebands, rolling elements; names of spectral lines by them.
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
-low order of a shaft, a sideband, any other whole order. A line at none of these is free vibration, named after its
+low order of a shaft, the passing of the elements of a rolling bearing whose law follows them, a sideband, any other
+whole order. A line at none of these is free vibration, named after its
 mode. Either may be near a mode, which is given apart from the cause.
 
 Sidebands of a mesh harmonic come from the modulation of the mesh by a shaft, as by runout or misalignment of a gear. A
@@ -25,7 +26,9 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.linear.complex_modes import CoupledModes
 from coupling.machine.assembly import CoupledMachine
+from coupling.machine.connectors import RollingLaw
 from coupling.signals.spectrum import Window, lines_at
+from rotors.rolling_bearings import characteristic_frequencies
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,13 +42,13 @@ class ExcitationLine:
     name : str
         Such as ``2× input``, ``3× pinion -> wheel`` or ``1× pinion -> wheel + 1× input`` for a sideband.
     kind : str
-        ``shaft``, ``mesh`` or ``sideband``.
+        ``shaft``, ``mesh``, ``sideband`` or ``bearing``.
     order : float
         Frequency over the speed of the leading rotor, positive.
     """
 
     name: str
-    kind: Literal["shaft", "mesh", "sideband"]
+    kind: Literal["shaft", "mesh", "sideband", "bearing"]
     order: float
 
 
@@ -55,8 +58,9 @@ def excitation_lines(
     shaft_orders: Sequence[float] = (1.0, 2.0),
     mesh_harmonics: Sequence[int] = (1, 2, 3),
     sidebands: int = 0,
+    element_passes: Sequence[int] = (),
 ) -> tuple[ExcitationLine, ...]:
-    """Orders of all shafts and meshes; shafts of equal speed share a line.
+    """Orders of all shafts, meshes and rolling elements in motion; shafts of equal speed share a line.
 
     Parameters
     ----------
@@ -67,6 +71,8 @@ def excitation_lines(
         Multiples of each mesh frequency.
     sidebands : int
         Number on either side of each harmonic of a mesh, at the distance of either gear's shaft speed.
+    element_passes : sequence of int
+        Multiples of the passing of rolling elements over the outer raceway, of bearings whose law follows them.
 
     Raises
     ------
@@ -98,13 +104,27 @@ def excitation_lines(
                         order = harmonic * teeth + sign * number * ratios[rotor]
                         text = f"{harmonic}× {name} {word} {number}× {rotor}"
                         lines.append(ExcitationLine(text, "sideband", order))
+    for connector in machine.system.nonlinear:
+        if isinstance(connector.law, RollingLaw) and connector.speed != 0.0:
+            # Rows of one bearing are mostly alike.
+            for order in sorted(
+                {
+                    round(characteristic_frequencies(row, connector.speed).outer_pass / leading, 12)
+                    for row in connector.law.state.bearing.rows
+                }
+            ):
+                lines += [
+                    ExcitationLine(f"{multiple}× elements of {connector.name}", "bearing", multiple * order)
+                    for multiple in element_passes
+                ]
     return tuple(lines)
 
 
-LineKind = Literal["mean", "mesh", "shaft", "sideband", "mode", "other"]
+LineKind = Literal["mean", "mesh", "shaft", "bearing", "sideband", "mode", "other"]
 
 _SHAFT_ORDERS = 4  # that take precedence over a sideband of the same frequency
 _SIDEBANDS = 4
+_ELEMENT_PASSES = 4
 _HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
 
 
@@ -115,7 +135,7 @@ class LineName:
     Attributes
     ----------
     kind : str
-        ``mean``, ``mesh``, ``shaft``, ``sideband``, ``mode`` for free vibration, or ``other``.
+        ``mean``, ``mesh``, ``shaft``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
     name : str
         Such as ``1× pinion -> wheel``, several joined by commas where they coincide.
     order : float
@@ -161,6 +181,7 @@ def line_names(
         shaft_orders=range(1, _SHAFT_ORDERS + 1),
         mesh_harmonics=range(1, 2 + int(highest / min(meshes))) if meshes else (),
         sidebands=_SIDEBANDS,
+        element_passes=range(1, _ELEMENT_PASSES + 1),
     )
     found = []
     for frequency in frequencies:
@@ -175,7 +196,7 @@ def line_names(
                 for line in excited
                 if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= tolerance
             ]
-            for kind in ("mesh", "shaft", "sideband")
+            for kind in ("mesh", "shaft", "bearing", "sideband")
         }
         kind = next((kind for kind in names if names[kind]), None)
         if kind is not None:

@@ -130,6 +130,24 @@ def _life(row: tuple["SolvedRotor", str]) -> float | None:
     return one.lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in one.lives else None
 
 
+def _reference_life(row: tuple["SolvedRotor", str]) -> float | None:
+    """Hours at the speed of operation by the loads of the elements."""
+    one, name = row
+    lives = one.reference_lives
+    return lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in lives else None
+
+
+def _frequencies(row: tuple["SolvedRotor", str]) -> dict[str, float] | None:
+    """Characteristic frequencies of the first row at the speed of operation [Hz]."""
+    from rotors.rolling_bearings import characteristic_frequencies
+
+    operation = row[0].operation
+    if not operation:
+        return None
+    found = characteristic_frequencies(_loaded(row).bearing.rows[0], operation)
+    return {name: frequency / HERTZ for name, frequency in found.named().items()}
+
+
 ROLLING = (
     Quantity("", lambda row: f"{row[0].rotor.name}: {row[1]}", "rolling_bearing"),
     Quantity("name", lambda row: row[1], heading="bearing"),
@@ -163,6 +181,18 @@ ROLLING = (
         heading="rated life L10 [h]",
         shown=".3g",
     ),
+    Quantity(
+        "reference_life_h",
+        _reference_life,
+        "rolling_bearing_reference_life",
+        (),
+        "h",
+        "basic reference rating life L10r by ISO/TS 16281 of the elements' loads, at the speed of operation",
+        heading="L10r [h]",
+        shown=".3g",
+    ),
+    Quantity("estimated", lambda row: _loaded(row).bearing.estimated),
+    Quantity("characteristic_frequencies_hz", _frequencies),
     Quantity("displacement_m", lambda row: _loaded(row).displacement[:3]),
     Quantity("residual", lambda row: _loaded(row).residual),
 )

@@ -4,7 +4,7 @@ The response to unbalance and bow follows the speeds and probes of `[rotor_analy
 alternating torques those of `[rotor_analysis.torsional_response]`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,7 +60,7 @@ from rotors.analyses.unbalance import SynchronousResponse
 from rotors.modes.lateral import LateralModes
 from rotors.modes.torsional_and_axial import TorsionalModes
 from rotors.rolling_bearings import RollingState
-from rotors.rolling_bearings.life import rated_revolutions
+from rotors.rolling_bearings.life import rated_revolutions, reference_revolutions
 from rotors.whirl.whirl_modes import MOSTLY_AXIAL
 
 FloatArray = npt.NDArray[np.float64]
@@ -374,6 +374,8 @@ class SolvedRotor:
         What its rolling bearings carry, by their names.
     lives : mapping of str to float
         Basic rating life of those whose dynamic rating the case gives, as far as it is defined [revolutions].
+    reference_lives : mapping of str to float
+        Basic reference rating life of the same, by the loads of their elements [revolutions].
     """
 
     rotor: Rotor
@@ -396,6 +398,7 @@ class SolvedRotor:
     stiffness_map: CriticalSpeedMap | None
     rolling: Mapping[str, RollingState]
     lives: Mapping[str, float]
+    reference_lives: Mapping[str, float]
 
     @property
     def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
@@ -484,25 +487,24 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 torsion=solve_torsion(analysis, given, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling,
-                lives=_rated_lives(case, rolling),
+                lives=_lives(case, rolling, rated_revolutions),
+                reference_lives=_lives(case, rolling, reference_revolutions),
             )
         )
     return tuple(solved)
 
 
-def _rated_lives(case: Case, states: Mapping[str, RollingState]) -> dict[str, float]:
-    """Return basic rating lives in revolutions."""
+def _lives(
+    case: Case, states: Mapping[str, RollingState], life: Callable[[RollingState, float], float | None]
+) -> dict[str, float]:
+    """Return lives of the bearings whose dynamic rating is given, in revolutions."""
     ratings = {
         bearing.name: bearing.stiffness.rolling.dynamic_rating
         for bearing in case.bearing
         if isinstance(bearing.stiffness, RollingStiffness)
     }
-    lives = {
-        name: rated_revolutions(state, rating)
-        for name, state in states.items()
-        if (rating := ratings.get(name)) is not None
-    }
-    return {name: life for name, life in lives.items() if life is not None}
+    lives = {name: life(state, rating) for name, state in states.items() if (rating := ratings.get(name)) is not None}
+    return {name: lasting for name, lasting in lives.items() if lasting is not None}
 
 
 def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -> FloatArray:

@@ -25,6 +25,7 @@ from coupling import (
 )
 from coupling.machine.components import Component, rotor_component
 from coupling.machine.connectors import LinearConnector, NonlinearConnector
+from coupling.signals import line_names
 from coupling.signals.histories import histories, transient_outputs
 from coupling.time.kernel_arrays import bearing_arrays
 from coupling.time.transient import TransientResult
@@ -272,6 +273,11 @@ def test_balls_pass_by_themselves() -> None:
     lines = np.arange(len(amplitude))
     assert spectrum.frequencies[periods] == pytest.approx(passing, rel=1e-9)
     assert amplitude[periods] > 1.0
+    named = line_names(parts, [passing, 2.0 * passing, 25.0], 1e-3)
+    assert [line.name for line in named[:2]] == [
+        f"{multiple}× elements of bearing 0.05, {multiple}× elements of bearing 0.35" for multiple in (1, 2)
+    ]
+    assert [line.kind for line in named] == ["bearing", "bearing", "shaft"]
     # Between the multiples there is nothing.
     between = amplitude[(lines % periods != 0) & (lines > 0)]
     assert between.max() < 0.01 * amplitude[periods]

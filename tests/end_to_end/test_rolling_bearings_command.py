@@ -232,12 +232,20 @@ def test_a_rated_life_stands_in_document_file_terminal_and_report(
     left, right = summary["rotors"][0]["rolling_bearings"]
     assert left["life_h"] == pytest.approx(1e9 / (3000.0 * 60.0))
     assert right["life_h"] is None
+    # Without clearance and with nine balls the elements' loads have nearly the life of ISO 281.
+    assert left["reference_life_h"] == pytest.approx(left["life_h"], rel=0.05)
+    assert right["reference_life_h"] is None
+    assert left["estimated"]
+    passing = left["characteristic_frequencies_hz"]
+    assert passing["inner raceway"] + passing["outer raceway"] == pytest.approx(left["elements"] * 50.0)
     with xr.open_dataset(tmp_path / "results.nc") as data:
         life = data["rolling_bearing_life"]
         assert life.attrs["units"] == "h"
         assert "ISO 281" in life.attrs["long_name"]
         assert float(life.sel(rolling_bearing="shaft: left")) == pytest.approx(1e9 / (3000.0 * 60.0))
         assert np.isnan(float(life.sel(rolling_bearing="shaft: right")))
+        reference = float(data["rolling_bearing_reference_life"].sel(rolling_bearing="shaft: left"))
+        assert reference == pytest.approx(left["reference_life_h"])
     assert run_command(["report", "friswell-rotor", "-q", "-o", str(tmp_path), *options]) == 0
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "rated life L10 [h]" in page

@@ -7,13 +7,19 @@
 - ISO 281:2007, f_c of balls (table 2, single-row grooves) and of rollers (table 7) over γ.
 - Half a loaded circle of a row with a contact angle: F_a = 1.260 F_r tan α and Q_max = 4.08 F_r/(Z cos α) of line
   contact, 1.216 and 4.37 of point contact (NSK, Technical Report CAT. No. E728g, section 5.1).
+- Stiffness of ball and roller bearings by the closed sums of Lim and Singh (Journal of Sound and Vibration 139, 1990,
+  pages 179-199), with their load-deflection constants replaced by Hertz's and Palmgren's here.
+- An opposed row of a preloaded pair is free at 2^n times the preload, n the exponent of the contacts: 2.83 for balls
+  (Harris and Kotzalas 2006, Essential Concepts, chapter 8; Palmgren 1959).
 - Hertz's elliptic contact: a*, b*, δ* against F(ρ) in the table of Harris and Kotzalas (2006, chapter 6), whose last
   digits are its own.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from rotors.rolling_bearings import (
@@ -24,11 +30,14 @@ from rotors.rolling_bearings import (
     catalogue_row,
     dynamic_rating,
     kramer_ball_stiffness,
+    paired,
     point_contact,
     rolling_equilibrium,
     rolling_state,
     static_rating,
 )
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @pytest.mark.parametrize(("direction", "micrometres"), [(0, 15.110), (2, 133.54)])
@@ -140,3 +149,69 @@ def test_hertz_against_harris_table(difference: float, a_star: float, b_star: fl
     assert contact.semi_major == pytest.approx(a_star, rel=1e-3)
     assert contact.semi_minor == pytest.approx(b_star, rel=1e-3)
     assert contact.stiffness ** (-2.0 / 3.0) == pytest.approx(delta_star, rel=1e-3)
+
+
+def test_ball_stiffness_by_the_sums_of_lim_and_singh() -> None:
+    """k_xx, k_xz, k_zz, k_zθ and k_θθ with A_j the loaded distance of the groove centres, (δ_r*, δ_z*) its parts.
+
+    The radial motion of the groove centres by a tilt, which they leave out, vanishes with the centres at z = 0.
+    """
+    angle = math.radians(40.0)
+    row = BallRow(12, 10e-3, 60e-3, angle)
+    radius, height = row.inner_groove_centre
+    row = replace(row, position=-height)
+    x, z, tilt = 12e-6, 30e-6, 2e-4
+    state = rolling_state(RollingBearing([row]), [x, 0.0, z, 0.0, tilt])
+    azimuths = 2.0 * np.pi * np.arange(12) / 12
+    cosine, unloaded = np.cos(azimuths), row.groove_distance
+    radial = unloaded * math.cos(angle) + x * cosine
+    axial = unloaded * math.sin(angle) + z - radius * tilt * cosine
+    distance = np.hypot(radial, axial)
+    deep = distance - unloaded
+    assert (deep > 0.0).all()
+    common = row.stiffness * deep**1.5 / distance**3
+
+    def along(part: FloatArray) -> FloatArray:
+        return common * (1.5 * distance * part**2 / deep + distance**2 - part**2)
+
+    mixed = common * radial * axial * (1.5 * distance / deep - 1.0)
+    expected = {
+        (0, 0): (along(radial) * cosine**2).sum(),
+        (0, 2): (mixed * cosine).sum(),
+        (2, 2): along(axial).sum(),
+        (0, 4): -radius * (mixed * cosine**2).sum(),
+        (2, 4): -radius * (along(axial) * cosine).sum(),
+        (4, 4): radius**2 * (along(axial) * cosine**2).sum(),
+    }
+    for place, stiffness in expected.items():
+        assert state.stiffness[place] == pytest.approx(stiffness, rel=1e-9)
+
+
+def test_roller_stiffness_by_the_sums_of_lim_and_singh() -> None:
+    """k_xx = n K cos² α Σ δ^{n−1} cos² ψ, k_xz = n K sin α cos α Σ δ^{n−1} cos ψ, k_zz = n K sin² α Σ δ^{n−1}."""
+    angle, power = math.radians(16.0), 10.0 / 9.0
+    row = TaperedRollerRow(15, 8e-3, 12e-3, 55e-3, angle=angle, profile="straight")
+    x, z = 10e-6, 25e-6
+    state = rolling_state(RollingBearing([row]), [x, 0.0, z, 0.0, 0.0])
+    cosine = np.cos(2.0 * np.pi * np.arange(15) / 15)
+    deep = np.maximum(x * math.cos(angle) * cosine + z * math.sin(angle), 0.0)
+    slope = power * row.stiffness * np.where(deep > 0.0, deep, 1.0) ** (power - 1.0) * (deep > 0.0)
+    assert state.stiffness[0, 0] == pytest.approx(math.cos(angle) ** 2 * (slope * cosine**2).sum(), rel=1e-9)
+    assert state.stiffness[0, 2] == pytest.approx(0.5 * math.sin(2.0 * angle) * (slope * cosine).sum(), rel=1e-9)
+    assert state.stiffness[2, 2] == pytest.approx(math.sin(angle) ** 2 * slope.sum(), rel=1e-9)
+
+
+@pytest.mark.parametrize("balls", [True, False])
+def test_preloaded_pairs_lose_an_opposed_row_at_palmgrens_load(balls: bool) -> None:
+    preload, held = 400.0, {"x": 0.0, "y": 0.0, "rx": 0.0, "ry": 0.0}
+    if balls:
+        # Open grooves, with which the contact angle stays.
+        row: BallRow | TaperedRollerRow = BallRow(15, 10e-3, 60e-3, math.radians(25.0), 1.0, 1.0)
+        free = 2.0**1.5 * preload
+    else:
+        row = TaperedRollerRow(15, 8e-3, 12e-3, 55e-3, angle=0.25, profile="straight")
+        free = 2.0 ** (10.0 / 9.0) * preload
+    pair = paired(row, "back to back", 20e-3, preload=preload)
+    for factor, loaded in ((0.98, True), (1.02, False)):
+        state = rolling_equilibrium(pair, [0.0, 0.0, factor * free, 0.0, 0.0], held=held)
+        assert (state.rows[1].loaded > 0) == loaded

@@ -1,0 +1,136 @@
+"""The bundled two-stage reducer: its drawing, the parts that must fit into each other, its loads and its modes."""
+
+import importlib.util
+import math
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearwhine.case import Case, bundled_files, load_case, mesh_frequencies
+from gearwhine.case.bearings import RollingCatalogue, RollingStiffness
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.transient import mean_bearing_forces, solve_transient
+from meshes.gmsh_meshing import gmsh_session
+
+ROOT = Path(__file__).parents[2]
+NAME = "two-stage-reducer"
+MM = 1e3
+
+
+@pytest.fixture(scope="module")
+def script() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("drawing", ROOT / "scripts" / "make_two_stage_reducer.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return load_case(NAME).case
+
+
+def _solids(gmsh: Any, path: Path) -> list[tuple[int, int]]:
+    solids = gmsh.model.occ.importShapes(str(path))
+    gmsh.model.occ.synchronize()
+    return sorted(solids)
+
+
+def _measures(path: Path) -> dict[str, list[Any]]:
+    """Volume [mm³], number of faces, and bounds [mm] of each solid, by the end of its name."""
+    with gmsh_session("file") as gmsh:
+        found = {}
+        for dimension, tag in _solids(gmsh, path):
+            faces = gmsh.model.getBoundary([(dimension, tag)], oriented=False)
+            bounds = gmsh.model.getBoundingBox(dimension, tag)
+            name = gmsh.model.getEntityName(dimension, tag).rpartition("/")[2]
+            found[name] = [gmsh.model.occ.getMass(dimension, tag), len(faces), *bounds]
+        return found
+
+
+def test_the_script_draws_the_bundled_file(script: ModuleType, tmp_path: Path) -> None:
+    """The same solids by volume, faces and bounds: another version of the kernel may write other bytes."""
+    script.write(tmp_path / "drawn.step")
+    bundled, drawn = _measures(script.TARGET), _measures(tmp_path / "drawn.step")
+    assert set(bundled) == set(drawn) == set(script.SOLIDS)
+    for name, measures in bundled.items():
+        np.testing.assert_allclose(measures, drawn[name], rtol=1e-6, atol=1e-4)
+    # The cover is a plate with rounded corners; the halves meet in the plane of the shafts.
+    size = script.Reducer()
+    _, x, z, width = size.opening
+    a, b = (2.0 * (half + 0.7 * width) for half in (x, z))
+    assert bundled["inspection cover"][0] == pytest.approx((a * b - (4.0 - math.pi) * 10.0**2) * size.plate, rel=1e-6)
+    assert bundled["lower housing"][6] == pytest.approx(size.shaft_height, abs=1e-5)
+    assert bundled["upper housing"][3] == pytest.approx(size.shaft_height, abs=1e-5)
+    assert bundled["lower housing"][3] == pytest.approx(0.0, abs=1e-5)
+    assert bundled["lower housing"][2:8:3] == pytest.approx(
+        [-size.x - size.flange[0], size.x + size.flange[0]], abs=1e-5
+    )
+
+
+def test_the_gears_have_room_in_the_housing_and_the_bearings_fill_their_seats(script: ModuleType, case: Case) -> None:
+    """Blanks of the gears with 8 mm of air around share nothing with the housing."""
+    rotors = {rotor.name: rotor for rotor in case.rotor}
+    air = 8.0
+    with gmsh_session("file") as gmsh:
+        solids = _solids(gmsh, script.TARGET)
+        blanks = []
+        for gear in case.gear:
+            rotor = rotors[gear.rotor or ""]
+            x, y = (MM * place for place in rotor.axis)
+            width = MM * (gear.face_width or 0.0) + 2.0 * air
+            start = MM * (rotor.start + (gear.at or 0.0)) - 0.5 * width
+            blanks.append((3, gmsh.model.occ.addCylinder(x, y, start, 0, 0, width, MM * gear.build().tip_radius + air)))
+        shared, _ = gmsh.model.occ.intersect(solids, blanks)
+        assert shared == []
+    assert case.housing is not None
+    seats = {seat.name: seat for seat in case.housing.seat}
+    inner, outer = script.Reducer().z - script.Reducer().wall, script.Reducer().boss_face
+    for bearing in case.bearing:
+        if bearing.grounded:
+            continue
+        assert isinstance(bearing.stiffness, RollingStiffness)
+        rolling = bearing.stiffness.rolling
+        assert isinstance(rolling, RollingCatalogue)
+        assert rolling.catalogue.outer_diameter == seats[bearing.seat].diameter
+        width = rolling.catalogue.width + (rolling.spacing or 0.0)
+        at = abs(rotors[bearing.rotor].start + bearing.at)
+        assert inner <= MM * (at - 0.5 * width)
+        assert MM * (at + 0.5 * width) <= outer
+
+
+def test_the_loads_by_hand_are_those_of_the_machine(case: Case) -> None:
+    """To 6 %: by hand the soft couplings carry nothing. A housing would change the loads little."""
+    changes = ["bearing.*.seat=ground", "housing=", "transient.revolutions=2", "transient.discard=1"]
+    changes += [f"rotor.{rotor.name}.modes=6" for rotor in case.rotor]
+    grounded = load_case(NAME, changes).case
+    solved = solve_transient(grounded, build_machine(grounded, None, solve_gears(grounded)), mesh_frequencies(grounded))
+    forces = mean_bearing_forces(solved)
+    for bearing in grounded.bearing:
+        if bearing.load is not None:
+            given = (bearing.load.x, bearing.load.y, bearing.load.z)
+            np.testing.assert_allclose(forces[bearing.name][:3], given, rtol=0.0, atol=0.06 * np.linalg.norm(given))
+
+
+def test_a_copied_example_brings_its_drawing(gearwhine: Any, script: ModuleType, tmp_path: Path) -> None:
+    assert [file.name for file in bundled_files(NAME)] == [f"{NAME}.toml", f"{NAME}.step"]
+    assert gearwhine("examples", "copy", NAME).code == 0
+    assert {path.name for path in tmp_path.iterdir()} == {f"{NAME}.toml", f"{NAME}.step"}
+    outcome = gearwhine("mesh", f"{NAME}.toml", "--json", "-q", "--set", "housing.cad.mesh_size=17 mm")
+    assert outcome.code == 0, outcome.err
+    document = outcome.document
+    drawn = sum(volume for volume, *_ in _measures(script.TARGET).values())
+    assert document["volume_m3"] == pytest.approx(1e-9 * drawn, rel=5e-3)  # fillets are meshed flat
+    assert set(document["volumes"]) == set(script.SOLIDS)
+    assert document["warnings"] == []  # no element is out of shape
+    bores = [bore for bore in document["bores"] if bore["axis"] == "z" and bore["diameter_m"] > 0.05]
+    places = {round(MM * bore["diameter_m"], 3): MM * np.array(bore["center_m"]) for bore in bores}
+    assert set(places) == {72.0, 80.0, 110.0}
+    assert np.hypot(*(places[80.0] - places[72.0])[:2]) == pytest.approx(100.0, abs=1e-4)
+    assert np.hypot(*(places[110.0] - places[80.0])[:2]) == pytest.approx(160.0, abs=1e-4)
