@@ -220,7 +220,7 @@ class PairLoad:
     @property
     def thrust(self) -> float:
         """Axial force on the driven gear along z [N]."""
-        return self.force * self.pair.axial
+        return self.force * self.pair.axial + 0.0  # never -0
 
     @cached_property
     def mesh(self) -> LoadedMesh:

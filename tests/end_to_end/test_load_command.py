@@ -21,6 +21,8 @@ def test_load_of_a_gearbox_on_its_housing(tmp_path: Path, capsys: pytest.Capture
     for bearing in document["bearings"]:
         assert np.hypot(*bearing["force_n"][:2]) == pytest.approx(0.5 * force, rel=1e-4)
         assert np.hypot(*bearing["displacement_m"][:2]) == pytest.approx(0.5 * force / 1.2e8, rel=1e-4)
+        # No shaft moves along its axis, so the seats do.
+        assert bearing["seat_displacement_m"][2] == pytest.approx(-bearing["displacement_m"][2], abs=1e-12)
     # The force on the input's seats goes down, the other up: so do the seats.
     moved = {bearing["name"]: bearing["seat_displacement_m"] for bearing in document["bearings"]}
     assert moved["input-front"][1] < 0.0 < moved["output-front"][1]

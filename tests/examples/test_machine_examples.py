@@ -37,6 +37,18 @@ def test_steady_state_is_loudest_at_the_resonance(example: Any) -> None:
     assert found["peak_rpm"] == pytest.approx(mesh_resonance_rpm(found["study"]), rel=0.01)
 
 
+def test_operating_point_follows_from_levers_and_springs(example: Any) -> None:
+    found = example("operating_point", "face.png")
+    force = 60.0 / BASE_RADIUS
+    # Bearings at 10 and 150 mm, the gears at 45 mm; the uneven load acts within a thousandth of that.
+    carried = {name: np.hypot(*values[:2]) for name, values in found["forces"].to_pandas().iterrows()}
+    assert carried["input-back"] == pytest.approx(force * 105 / 140, rel=2e-3)
+    assert carried["input-front"] == pytest.approx(force * 35 / 140, rel=5e-3)
+    # Springs of 3e8 N/m give way by different lengths, so both shafts tilt away from each other at the back.
+    tilt = force * (105 - 35) / 140 / 3e8 / 0.14
+    assert found["pair"]["misalignment_by_cause_rad"]["bearings"] == pytest.approx(-2.0 * tilt, rel=5e-3)
+
+
 def test_read_results_finds_the_mean_force_and_mesh_harmonics(example: Any) -> None:
     found = example("read_results")
     loudest = found["loudest"]

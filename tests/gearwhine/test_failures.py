@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from coupling.errors import CouplingError, ModesError, PeriodicError, TransientError
+from coupling.errors import CouplingError, EquilibriumNotFoundError, ModesError, PeriodicError, TransientError
 from coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.case import CaseError, Problem
 from gearwhine.failures import PartlyFailedError, WorkersError, explain
@@ -42,6 +42,7 @@ PROOFS = [
     RendererUnavailableError,
     MesherUnavailableError,
     EquilibriumError,
+    EquilibriumNotFoundError,
     RotorIncompleteModesError,
     PartlyFailedError,
     WorkersError,

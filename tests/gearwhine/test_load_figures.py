@@ -39,6 +39,10 @@ def test_shafts_show_their_forces_and_deflection(loaded: Result[SolvedLoad], fig
         told = {text.get_text() for text in axes.texts if isinstance(text, Annotation) and text.get_text()}
         forces = [abs(one.force[plane]) for one in loaded.solved.point.bearings if one.mounted.rotor == "input"]
         assert {f"{force:.4g} N" for force in (*forces, sum(forces))} == told
+        # The wheel pushes the pinion down and towards it, along -y and -x; the bearings hold it.
+        arrows = {one.xy[0]: one.xy[1] - one.xyann[1] for one in axes.texts if not one.get_text()}  # type: ignore[attr-defined]
+        assert {at: np.sign(length) for at, length in arrows.items()} == {20.0: 1.0, 220.0: 1.0, 120.0: -1.0}
+        assert -arrows[120.0] > max(arrows[20.0], arrows[220.0])
         (line,) = [line for line in axes.lines if line.get_label() == "deflection"]
         drawn = np.asarray(line.get_ydata())
         factor = drawn[np.abs(drawn).argmax()] / (1e3 * shaft.motion[plane][np.abs(drawn).argmax()])
