@@ -17,6 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _GAP = 2.0  # between neighbouring labels [mm]
 _RISE = 4.0  # of a leader between the last of what is drawn and the row [mm]
+_LONGEST = 40  # letters of a label: a line's frequency and the names of two gears
 _MEASURING_DPI = 200
 
 
@@ -139,7 +140,7 @@ def draw_row(axes: Axes, row: LabelRow, level: float, *, above: bool = True) -> 
         axes.text(
             place,
             level + sense * _RISE,
-            shortened(label.text),
+            shortened(label.text, _LONGEST),
             transform=paper,
             color=label.color,
             fontsize=NOTE,
@@ -155,5 +156,5 @@ def _size(text: str) -> tuple[float, float]:
     figure = Figure(dpi=_MEASURING_DPI)
     FigureCanvasAgg(figure)
     with missing_glyphs_as_boxes():
-        extent = figure.text(0.0, 0.0, shortened(text), fontsize=NOTE, parse_math=False).get_window_extent()
+        extent = figure.text(0.0, 0.0, shortened(text, _LONGEST), fontsize=NOTE, parse_math=False).get_window_extent()
     return extent.width / _MEASURING_DPI * MM_PER_INCH, extent.height / _MEASURING_DPI * MM_PER_INCH

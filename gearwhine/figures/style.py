@@ -73,12 +73,12 @@ def panel_size(axes: Axes) -> tuple[float, float]:
 
 
 def legend(figure: Figure, handles: Sequence[Artist]) -> None:
-    """Explain lines and tints in the upper right corner of a sheet, in one line."""
+    """Explain lines and tints in the upper right corner of a sheet, in one line, or many of them in two."""
     if handles:  # an empty one would warn
         figure.legend(
             handles=handles,
             loc="upper right",
-            ncols=len(handles),
+            ncols=len(handles) if len(handles) <= _IN_HEAD else (len(handles) + 1) // 2,
             frameon=False,
             fontsize=NOTE,
             handlelength=2.0,
