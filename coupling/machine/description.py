@@ -26,6 +26,7 @@ from coupling.machine.components import HousingComponent, RotorComponent, compon
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
     LARGEST_IMBALANCE,
+    LARGEST_OFFSET,
     GearedShafts,
     GearTrain,
     Output,
@@ -314,7 +315,7 @@ class Machine:
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
-            gears = self._static_gear(driver, geometry), self._static_gear(driven, geometry)
+            gears = self._static_gears((driver, driven), geometry)
             pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
         return solve_operating_point(
             [self._static_shaft(shaft, pairs) for shaft in self.shafts],
@@ -531,25 +532,38 @@ class Machine:
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 
-    def _static_gear(self, gear: ShaftGear, geometry: GearPairGeometry) -> StaticGear:
-        """Place a gear with the stations of the common face of a pair on its shaft."""
-        stations = gear.at + face_stations(geometry.face_width)
-        length = self.shaft(gear.shaft).rotor.length
-        within = stations[0] >= 0.0 and stations[-1] <= length
-        return StaticGear(gear.name, gear.shaft, gear.at, stations if within else None)
+    def _static_gears(
+        self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
+    ) -> tuple[StaticGear, StaticGear]:
+        """Place both gears of a pair on their shafts, with stations over the face that they have in common."""
+        starts = [self.shaft(gear.shaft).start for gear in gears]
+        middles = [start + gear.at for start, gear in zip(starts, gears, strict=True)]
+        halves = [0.5 * gear.gear.face_width for gear in gears]
+        left = max(middle - half for middle, half in zip(middles, halves, strict=True))
+        right = min(middle + half for middle, half in zip(middles, halves, strict=True))
+        aligned = abs(middles[0] - middles[1]) <= LARGEST_OFFSET
+        placed = []
+        for gear, start in zip(gears, starts, strict=True):
+            at = gear.at if aligned else 0.5 * (left + right) - start
+            stations, length = at + face_stations(geometry.face_width), self.shaft(gear.shaft).rotor.length
+            within = stations[0] >= 0.0 and stations[-1] <= length
+            placed.append(StaticGear(gear.name, gear.shaft, at, stations if within else None))
+        return placed[0], placed[1]
 
     def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
+        """Shaft with nodes at bearings, torques and faces, thickened by the bodies of its gears."""
         places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
-        bodies = []
         for pair in pairs:
-            for gear, made in ((pair.driver, pair.geometry.driver), (pair.driven, pair.geometry.driven)):
-                if gear.shaft != shaft.name:
-                    continue
-                places.append(gear.at)
-                if gear.stations is not None:
-                    places += gear.stations.tolist()
-                    bodies.append((float(gear.stations[0]), float(gear.stations[-1]), 2.0 * made.root_circle_radius))
+            for gear in (pair.driver, pair.driven):
+                if gear.shaft == shaft.name:
+                    places.append(gear.at)
+                    places += [] if gear.stations is None else gear.stations.tolist()
+        bodies = []
+        for one in self.gears:
+            if one.shaft == shaft.name:
+                ends = (max(one.at - 0.5 * one.gear.face_width, 0.0), one.at + 0.5 * one.gear.face_width)
+                bodies.append((ends[0], min(ends[1], shaft.rotor.length), 2.0 * one.gear.root_circle_radius))
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 

@@ -118,7 +118,9 @@ class CentrifugalBalls:
         soft = (self._outer_arm * lean[:, 1] ** 2 + approach * lean[:, 0] ** 2 / 1.5) / self.thrown
         light = np.clip((open_by - self._inner_arm) / soft, 0.0, self.thrown)[:, None] * lean
         pressed = static > self.thrown
-        return np.where(pressed[:, None], (static / np.maximum(distance, self._inner_arm))[:, None] * v, light)
+        return np.asarray(
+            np.where(pressed[:, None], (static / np.maximum(distance, self._inner_arm))[:, None] * v, light)
+        )
 
     def _closure(self, force: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """∂ψ/∂f − v by its size over the distance of the grooves' centres, (n,), itself and its slope ∂²ψ/∂f²."""

@@ -13,7 +13,7 @@ from own_statics import FULL, STEEL, STIFFNESS, TEETH, distance, linear_bearing,
 
 from coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftGear
 from coupling.errors import EquilibriumNotFoundError
-from coupling.gears import ConstantStiffness, loaded_transmission_error, tooth_contact
+from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
@@ -227,3 +227,27 @@ def test_the_load_of_a_pair_is_that_of_flanks_with_its_gap() -> None:
     assert np.polyfit(pair.z, pair.gap, 1)[0] == pytest.approx(pair.misalignment, rel=1e-9)
     # The flanks carry more where the gap is less.
     assert (pair.line_load.argmax() == 0) == (pair.misalignment > 0.0)
+
+
+def test_the_common_face_carries_wherever_it_lies() -> None:
+    """A wheel wider than its pinion and 8 mm off is pressed where the pinion is, and thicker where it is wider."""
+    machine = spur(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
+    wide = replace(machine.gears[1], gear=replace(machine.gears[1].gear, face_width=45e-3))
+    centred = replace(machine, gears=[machine.gears[0], wide]).operating_point()
+    moved = replace(machine, gears=[machine.gears[0], replace(wide, at=wide.at + 8e-3)]).operating_point()
+    for one, other in zip(centred.bearings, moved.bearings, strict=True):
+        np.testing.assert_allclose(other.force[:3], one.force[:3], rtol=0.0, atol=5e-3 * np.abs(one.force[:3]).max())
+    assert moved.pairs[0].misalignment == pytest.approx(centred.pairs[0].misalignment, rel=5e-2)
+
+
+def test_the_mean_load_is_that_of_sound_teeth() -> None:
+    """One pitted tooth and pitch deviations move the teeth as they pass, and not the mean over a hunting period."""
+    teeth = [GearPair("pinion", "wheel", "weber-banaschek")]
+    machine = spur(ISOTROPIC, gear_pairs=teeth)
+    damaged = replace(machine.gears[0].gear, faults=(Spall(0, 0.3, 0.45, 50e-6),), pitch_deviations=(5e-6, *[0.0] * 22))
+    (expected,) = machine.operating_point().pairs
+    (found,) = (
+        replace(machine, gears=[replace(machine.gears[0], gear=damaged), machine.gears[1]]).operating_point().pairs
+    )
+    np.testing.assert_array_equal(found.line_load, expected.line_load)
+    assert found.misalignment == expected.misalignment
