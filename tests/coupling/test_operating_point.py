@@ -13,7 +13,7 @@ from own_statics import FULL, STEEL, STIFFNESS, TEETH, distance, linear_bearing,
 
 from coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftGear
 from coupling.errors import EquilibriumNotFoundError
-from coupling.gears import ConstantStiffness, loaded_transmission_error, tooth_contact
+from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
@@ -227,3 +227,35 @@ def test_the_load_of_a_pair_is_that_of_flanks_with_its_gap() -> None:
     assert np.polyfit(pair.z, pair.gap, 1)[0] == pytest.approx(pair.misalignment, rel=1e-9)
     # The flanks carry more where the gap is less.
     assert (pair.line_load.argmax() == 0) == (pair.misalignment > 0.0)
+
+
+def test_the_common_face_carries_wherever_it_lies() -> None:
+    """A wheel wider than its pinion is pressed where the pinion is, 8 mm off its own middle or not.
+
+    Its shaft is thicker than its body, so that the place of the body does not matter.
+    """
+    machine = spur(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
+    thick = replace(machine.shafts[1], rotor=Rotor("out", [Segment(0.16, 0.12, 0.0, STEEL)]))
+    wide = replace(machine.gears[1], gear=replace(machine.gears[1].gear, face_width=45e-3))
+    centred, moved = (
+        replace(
+            machine, shafts=[machine.shafts[0], thick], gears=[machine.gears[0], replace(wide, at=wide.at + shift)]
+        ).operating_point()
+        for shift in (0.0, 8e-3)
+    )
+    for one, other in zip(centred.bearings, moved.bearings, strict=True):
+        np.testing.assert_allclose(other.force, one.force, rtol=0.0, atol=1e-7 * centred.pairs[0].force)
+    assert moved.pairs[0].misalignment == pytest.approx(centred.pairs[0].misalignment, rel=1e-7)
+
+
+def test_the_mean_load_is_that_of_sound_teeth() -> None:
+    """One pitted tooth and pitch deviations move the teeth as they pass, and not the mean over a hunting period."""
+    teeth = [GearPair("pinion", "wheel", "weber-banaschek")]
+    machine = spur(ISOTROPIC, gear_pairs=teeth)
+    damaged = replace(machine.gears[0].gear, faults=(Spall(0, 0.3, 0.45, 50e-6),), pitch_deviations=(5e-6, *[0.0] * 22))
+    (expected,) = machine.operating_point().pairs
+    (found,) = (
+        replace(machine, gears=[replace(machine.gears[0], gear=damaged), machine.gears[1]]).operating_point().pairs
+    )
+    np.testing.assert_array_equal(found.line_load, expected.line_load)
+    assert found.misalignment == expected.misalignment

@@ -43,10 +43,14 @@ JOURNAL = np.array([[2.0e7, 3.5e7], [-1.2e7, 6.0e7]])
 
 
 def assert_agrees(
-    point: OperatingPoint, own: OwnStatics, gravity: Sequence[float] | None = None, tolerance: float = 1e-9
+    point: OperatingPoint,
+    own: OwnStatics,
+    gravity: Sequence[float] | None = None,
+    tolerance: float = 1e-9,
+    sag: FloatArray | None = None,
 ) -> None:
     """Bearing forces, motions of shafts and seats, and misalignment are those of the independent assembly."""
-    x = own.solve(own.loads(gravity))
+    x = own.solve(own.loads(gravity, sag))
     assert point.residual < 1e-9
     size = max(float(np.abs(bearing.force[:3]).max()) for bearing in point.bearings)
     for bearing in point.bearings:
@@ -221,33 +225,36 @@ def in_box(modes: HousingModes, stiffness: npt.ArrayLike = FULL, **changes: Any)
     return replace(machine, shafts=shafts, bearings=held, housing=modes, **changes)
 
 
-def seat_compliance(machine: Machine) -> FloatArray:
-    """Compliance of the housing at its bearings (5 b, 5 b), by a sparse factorisation of its whole stiffness."""
+def condensed(machine: Machine, gravity: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+    """Compliance of the housing at its bearings (5 b, 5 b) and their sag (5 b,), by a sparse factorisation."""
     assert isinstance(machine.housing, HousingModes)
     housing = machine.housing.housing
     matrices, ports, rows = housing.matrices(), housing.seat_ports(), []
+    heights = {seat.name: seat.center[2] for seat in housing.seats}
     for one in machine.bearings:
         assert one.seat is not None
         port = ports[one.seat].toarray()
-        arm = (
-            machine.shaft(one.rotor).start
-            + one.bearing.at
-            - next(seat.center[2] for seat in housing.seats if seat.name == one.seat)
-        )
+        arm = machine.shaft(one.rotor).start + one.bearing.at - heights[one.seat]
         rows += [port[0] + arm * port[4], port[1] - arm * port[3], *port[2:5]]
     loads = np.array(rows)
     free = np.setdiff1d(np.arange(loads.shape[1]), matrices.fixed)
     factor = splu(matrices.stiffness.tocsc()[free][:, free])
-    return np.asarray(loads[:, free] @ factor.solve(loads[:, free].T))
+    weight = matrices.mass @ np.tile(gravity, loads.shape[1] // 3)
+    return loads[:, free] @ factor.solve(loads[:, free].T), loads[:, free] @ factor.solve(weight[free])
 
 
 def test_a_machine_in_its_housing(grounded: HousingModes) -> None:
     """Four modes of the housing and its residual ones hold its static stiffness, condensed by a sparse factor."""
     machine = in_box(grounded)
     names = [one.bearing.name for one in machine.bearings]
-    own = OwnStatics(machine, compliance=seat_compliance(machine), seated=names)
+    gravity = (0.0, -9.81e3, 2e3)  # a thousand times the earth's, so that the box sags by as much as it bends
+    compliance, sag = condensed(machine, gravity)
+    own = OwnStatics(machine, compliance=compliance, seated=names)
+    assert_agrees(machine.operating_point(gravity), own, gravity, 1e-7, sag)
     point = machine.operating_point()
     assert_agrees(point, own, tolerance=1e-7)
+    for one in point.bearings:
+        assert np.abs(one.seat_motion[:3]).max() > 1e-7
     assert abs(point.pairs[0].misalignment_by_cause["housing"]) > 1e-2 * abs(point.pairs[0].misalignment)
 
 
