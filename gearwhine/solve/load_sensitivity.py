@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import OUTCOMES, Adjoint, HousingFields, PortRates, housing_fields, pair_adjoints
+from coupling.statics.sensitivity import OUTCOMES, HousingFields, PortRates, housing_fields, pair_adjoints
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.box import FACES
 from gearwhine.case.units import kind_of
