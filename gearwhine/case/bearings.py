@@ -7,6 +7,7 @@ estimated. Attributes are named as the keys and are in SI.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -220,8 +221,6 @@ class _Mounted(Table):
         rotors.RotorError
             Where there is no such bearing.
         """
-        from dataclasses import replace
-
         from rotors.rolling_bearings import RollerRow, RollingBearing, paired, standing_rows
 
         row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"

@@ -11,12 +11,11 @@ tangent, for the equilibrium of a whole machine; `rolling_state` is the state at
 are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
-from rotors.rolling_bearings.catalogue import CatalogueType, catalogue_bearing, catalogue_row, standing_rows
+from rotors.rolling_bearings.catalogue import catalogue_bearing, catalogue_row, standing_rows
 from rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
 from rotors.rolling_bearings.element_contacts import ElementLoads
 from rotors.rolling_bearings.equilibrium import (
     COORDINATES,
-    LARGEST_APPROACH,
     RollingElements,
     RollingState,
     kramer_ball_stiffness,
@@ -26,25 +25,21 @@ from rotors.rolling_bearings.equilibrium import (
     rolling_state,
 )
 from rotors.rolling_bearings.frequencies import CharacteristicFrequencies, characteristic_frequencies
-from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, point_contact
+from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, point_contact
 from rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
-from rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, SphericalRollerRow, TaperedRollerRow
+from rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
 from rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
 from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 __all__ = [
     "COORDINATES",
-    "LARGEST_APPROACH",
     "STEEL",
     "BallRow",
-    "CatalogueType",
     "CharacteristicFrequencies",
     "ContactElasticity",
     "ElementLoads",
     "FourPointRow",
-    "LineContactRow",
     "OperatingClearance",
-    "PointContact",
     "RingFit",
     "RollerRow",
     "RollingBearing",

@@ -31,7 +31,6 @@ import numpy.typing as npt
 from rotors.errors import EquilibriumError
 from rotors.numerics.trust_region import Local, minimise
 from rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy, ball_kinematics, ball_loads, row_energy
-from rotors.rolling_bearings.hertz import PointContact
 from rotors.rolling_bearings.rows import BallRow
 
 FloatArray = npt.NDArray[np.float64]
@@ -57,13 +56,12 @@ class CentrifugalBalls:
         """Energy and its derivatives over q, every ball where its forces balance."""
         v, motion = self._vectors(q)
         force = self._inner_forces(v)
-        inner_value, _, inner_hessian = _reach(self.row.inner_contact, self._inner_arm, force)
-        outer_value, _, outer_hessian = _reach(self.row.outer_contact, self._outer_arm, force + self._outwards)
-        value = (force * v).sum(axis=1) - inner_value - outer_value
+        values, _, hessians = self._reaches(force)
+        value = (force * v).sum(axis=1) - values.sum(axis=0)
         # A ball in contact with one ring only adds no stiffness.
         hessian = np.zeros((self.row.count, 2, 2))
         both = force.any(axis=1) & (force + self._outwards).any(axis=1)
-        hessian[both] = np.linalg.inv(inner_hessian[both] + outer_hessian[both])
+        hessian[both] = np.linalg.inv(hessians.sum(axis=0)[both])
         return row_energy(motion, value, force, hessian)
 
     def loads(self, q: FloatArray) -> ElementLoads:
@@ -124,10 +122,20 @@ class CentrifugalBalls:
 
     def _closure(self, force: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """∂ψ/∂f − v by its size over the distance of the grooves' centres, (n,), itself and its slope ∂²ψ/∂f²."""
-        _, into, soft = _reach(self.row.inner_contact, self._inner_arm, force)
-        _, out, softer = _reach(self.row.outer_contact, self._outer_arm, force + self._outwards)
-        gradient = into + out - v
-        return np.linalg.norm(gradient, axis=1) / self.row.groove_distance, gradient, soft + softer
+        _, gradients, hessians = self._reaches(force)
+        gradient = gradients[0] + gradients[1] - v
+        error = np.hypot(gradient[:, 0], gradient[:, 1]) / self.row.groove_distance
+        return error, gradient, hessians[0] + hessians[1]
+
+    def _reaches(self, force: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """`_reach` of the inner and the outer contacts together under the inner contacts' forces, (2, n, ...)."""
+        return _reach(*self._contacts, np.stack([force, force + self._outwards]))
+
+    @cached_property
+    def _contacts(self) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and arm of the contact at either ring, (2, 1)."""
+        stiffness = (self.row.inner_contact.stiffness, self.row.outer_contact.stiffness)
+        return np.array(stiffness)[:, None], np.array([self._inner_arm, self._outer_arm])[:, None]
 
     def _inner_force(self, v: FloatArray) -> FloatArray:
         """Force of the inner contact on one ball's groove, (2,), N."""
@@ -146,13 +154,12 @@ class CentrifugalBalls:
 
         def local(part: FloatArray) -> Local:
             force = scale * part[None]
-            (inside,), (into,), (soft,) = _reach(row.inner_contact, self._inner_arm, force)
-            _, (out,), (softer,) = _reach(row.outer_contact, self._outer_arm, force + self._outwards)
-            outside, work = self._outer_rise(force[0]), float(force[0] @ v)
+            values, gradients, hessians = self._reaches(force)
+            inside, outside, work = float(values[0, 0]), self._outer_rise(force[0]), float(force[0] @ v)
             return Local(
                 value=(inside + outside - work) / scale,
-                gradient=into + out - v,
-                hessian=(soft + softer) * scale,
+                gradient=gradients[:, 0].sum(axis=0) - v,
+                hessian=hessians[:, 0].sum(axis=0) * scale,
                 noise=(inside + abs(outside) + abs(work)) / scale,
                 force=row.groove_distance,
             )
@@ -197,16 +204,18 @@ class CentrifugalBalls:
         return (self.row.outer_groove - 0.5) * self.row.ball_diameter
 
 
-def _reach(contact: PointContact, arm: float, forces: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _reach(stiffness: FloatArray, arm: FloatArray, forces: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the complementary energy A |g| + ⅗ c |g|^{5/3} of every force g, its gradient and its Hessian.
 
-    The shapes are (n,), (n, 2) and (n, 2, 2) for forces (n, 2).
+    The shapes are (...), (..., 2) and (..., 2, 2) for forces (..., 2).
     """
-    size = np.linalg.norm(forces, axis=1)
+    size = np.hypot(forces[..., 0], forces[..., 1])
     safe = np.where(size > 0.0, size, 1.0)
-    normal = forces / safe[:, None]
-    approach = (size / contact.stiffness) ** (2.0 / 3.0)
-    along = normal[:, :, None] * normal[:, None, :]
-    across = ((arm + approach) / safe)[:, None, None] * (np.eye(2) - along)
-    hessian = (approach / (1.5 * safe))[:, None, None] * along + across
-    return size * (arm + 0.6 * approach), (arm + approach)[:, None] * normal, hessian
+    normal = forces / safe[..., None]
+    approach = np.cbrt(size / stiffness) ** 2
+    reach = arm + approach
+    across = reach / safe
+    hessian = (approach / (1.5 * safe) - across)[..., None, None] * normal[..., :, None] * normal[..., None, :]
+    hessian[..., 0, 0] += across
+    hessian[..., 1, 1] += across
+    return size * (arm + 0.6 * approach), reach[..., None] * normal, hessian

@@ -33,6 +33,8 @@ FloatArray = npt.NDArray[np.float64]
 # largest accepted.
 _ROUNDED, _OPEN = 1e-13, 1e-10
 _NEWTON_STEPS, _HALVINGS = 10, 6
+# Part of E* D² that counts as a load of an unloaded ball, as it does of a bearing's equilibrium.
+_LEAST_FORCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -172,10 +174,14 @@ class FourPointBalls:
         """Force out of balance on balls at ``place``, relative (n,) and in N (n, 2), and its slope (n, 2, 2)."""
         _, force, slope = self._contacts(centres, place)
         out = -force.sum(axis=0) - np.array([self.thrown, 0.0])
+        return np.linalg.norm(out, axis=1) / self._scale(force, slope), out, slope.sum(axis=0)
+
+    def _scale(self, force: FloatArray, slope: FloatArray) -> FloatArray:
+        """Force on each ball against which its balance counts, (n,), N, from those of its contacts and their slopes."""
         # A contact's depth is a difference of lengths of its arm, which limits the digits of its force.
-        blur = 1e-3 * (np.einsum("mbii->b", slope) * float(self._arms.max()))
-        scale = np.linalg.norm(force, axis=2).sum(axis=0) + self.thrown + blur
-        return np.linalg.norm(out, axis=1) / np.where(scale > 0.0, scale, 1.0), out, slope.sum(axis=0)
+        blur = 1e-3 * float(self._arms.max()) * np.einsum("mbii->b", slope)
+        least = _LEAST_FORCE * self.row.elasticity.contact_modulus * self.row.ball_diameter**2
+        return np.asarray(np.linalg.norm(force, axis=2).sum(axis=0) + self.thrown + blur + least)
 
     def _first_places(self, centres: FloatArray) -> FloatArray:
         """Estimate the places: both diagonals between alike forces; thrown balls no lower than on the outer arcs."""
@@ -201,13 +207,13 @@ class FourPointBalls:
         def local(part: FloatArray) -> Local:
             value, force, slope = self._contacts(centres, (length * part)[None])
             work = self.thrown * length * float(part[0])
-            size = float(np.linalg.norm(force, axis=2).sum()) + self.thrown
+            size = float(self._scale(force, slope)[0])
             return Local(
                 value=float(value.sum()) - work,
                 gradient=-length * (force.sum(axis=(0, 1)) + [self.thrown, 0.0]),
                 hessian=length**2 * slope.sum(axis=(0, 1)),
                 noise=float(value.sum()) + abs(work) + size * 0.1 * length,
-                force=length * (size + 1e-12 * self.row.stiffness * length**1.5),
+                force=length * size,
             )
 
         found = minimise(local, start / length, 1e-3, _ROUNDED)

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import pytest
 from broken_cases import check_one_wrong
+
+from gearwhine.case.bearings import CatalogueType
+from rotors.rolling_bearings.catalogue import CatalogueType as LibraryType
 
 BALLS = {"count": 7, "element_diameter": "8 mm", "pitch_diameter": "43.5 mm"}
 ROLLERS = {**BALLS, "element_length": "8 mm"}
@@ -202,3 +207,7 @@ ONE_WRONG = {
 @pytest.mark.parametrize("kind", ONE_WRONG)
 def test_one_wrong_value_is_named_with_its_place_and_what_was_expected(kind: str) -> None:
     check_one_wrong(*ONE_WRONG[kind])
+
+
+def test_a_case_has_the_library_s_types_of_bearings() -> None:
+    assert get_args(CatalogueType) == get_args(LibraryType)

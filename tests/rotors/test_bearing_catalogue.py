@@ -34,6 +34,8 @@ def test_ratings_that_are_given_are_met(kind: str) -> None:
         assert dynamic_rating(dynamic) == pytest.approx(factor * dynamic_rating(usual), rel=1e-9)
         assert dynamic.count == static.count == usual.count
         assert dynamic.estimated
+    both = catalogue_row(kind, *SIZE, static=static_rating(usual), dynamic=1.05 * dynamic_rating(usual))  # type: ignore[arg-type]
+    assert both.count == usual.count
 
 
 def test_balls_are_counted_by_both_ratings() -> None:
@@ -55,6 +57,8 @@ def test_a_whole_bearing_carries_load(kind: str) -> None:
     assert bearing.estimated
     assert len(bearing.rows) == (1 if kind in ("tapered-roller", "four-point") else 2)
     state = rolling_equilibrium(bearing, [1000.0, 0.0, 800.0, 0.0, 0.0], held={"rx": 0.0, "ry": 0.0})
+    if len(bearing.rows) == 2:
+        assert {row.direction for row in bearing.rows} == {1, -1}
     assert (state.loose == ("rx", "ry")) == (kind == "spherical-roller")
     if kind in ("spherical-roller", "self-aligning-ball"):
         # The centre of the contact lines has moved with the ring.

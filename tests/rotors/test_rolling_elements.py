@@ -64,6 +64,7 @@ BEARINGS = {
     "spherical": (RollingBearing([SPHERICAL.facing(1), SPHERICAL.facing(-1)]), 0.0),
     "four-point": (RollingBearing([FOUR_POINT]), 0.0),
     "thrown four-point": (RollingBearing([FOUR_POINT]), 2000.0),
+    "thrown self-aligning": (paired(SELF_ALIGNING, "face to face", 45e-3 * math.tan(0.2)), 600.0),
     "self-aligning": (paired(SELF_ALIGNING, "face to face", 45e-3 * math.tan(0.2)), 0.0),
 }
 
@@ -331,7 +332,7 @@ def test_a_machine_that_adds_bearings_to_a_spring_finds_its_rest() -> None:
 def test_a_state_at_an_equilibrium_s_displacement_is_that_equilibrium(kind: str) -> None:
     bearing, speed = BEARINGS[kind]
     load = np.array([700.0, -300.0, 250.0 * bearing.has_axial_stiffness, 1.0, -0.5])
-    if kind in ("spherical", "self-aligning"):
+    if kind in ("spherical", "self-aligning", "thrown self-aligning"):
         load[3:] = 0.0
     if kind == "thrown tapered":
         load[2] = -2500.0
