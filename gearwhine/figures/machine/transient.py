@@ -86,7 +86,7 @@ def draw_sensor_spectra(
     rows = {}
     for name, spectrum in solved.sensor_spectra.items():
         named = [line for line in lines[name] if abs(line.value) >= _LEAST * abs(lines[name][0].value)][:_NAMED]
-        labels = [Label(shortened(_text(line)), line.frequency, abs(line.value), _color(line)) for line in named]
+        labels = [Label(_text(line), line.frequency, abs(line.value), _color(line)) for line in named]
         rows[name] = (spectrum, arrange(labels, [label.x / limit * width for label in labels], width))
     height = HEAD + FOOT + sum(_HEIGHT + _BETWEEN + row.height for _, row in rows.values())
     note = f"{title}; peak amplitudes, levels of their rms values re 1 µm/s²"
