@@ -67,8 +67,9 @@ def assert_agrees(
         expected = np.array([own.section(shaft.name, at) @ x for at in nodes.tolist()]).T
         # The rotation that nothing holds may stand anywhere.
         np.testing.assert_allclose(found[:5], expected[:5], rtol=0.0, atol=tolerance * np.abs(expected[:5]).max())
-    for pair, given in zip(point.pairs, own.machine.gear_pairs, strict=True):
+    for pair, given, torque in zip(point.pairs, own.machine.gear_pairs, own.machine.pair_torques, strict=True):
         over, _ = own.approach(given, pair.z)
+        assert pair.force == pytest.approx(abs(torque) / own.base_radius(own.gears[given.driver].gear), rel=1e-8)
         slope = float(pair.z @ over @ x) / float(pair.z @ pair.z)
         assert pair.misalignment == pytest.approx(-slope, rel=0.0, abs=tolerance * np.abs(x).max() / np.ptp(pair.z))
         assert sum(pair.misalignment_by_cause.values()) == pytest.approx(pair.misalignment, rel=1e-9)

@@ -289,7 +289,7 @@ class FaceContact:
         # d = D_F dF + D_g dg and dg = (1 - c l) dy give dF/dy; D_g = -by_force.
         shape_of = np.eye(self.size) - np.outer(uniform, mean)
         force_of = (mean + by_force @ shape_of) / compliance
-        stiffness = np.outer(by_force, force_of) + by_shape @ shape_of
+        stiffness = np.outer(by_force, force_of) + by_shape  # an even approach moves no part of by_shape
         complementary = float(np.mean(force * load.deflection - load.energy))
         return MeanContactState(
             energy=force * target - complementary,
