@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gearwhine.results.chapters import chapters_of
+from gearwhine.results import chapters_of
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
