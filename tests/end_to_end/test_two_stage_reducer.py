@@ -118,6 +118,14 @@ def test_the_loads_by_hand_are_those_of_the_machine(case: Case) -> None:
             np.testing.assert_allclose(forces[bearing.name][:3], given, rtol=0.0, atol=0.06 * np.linalg.norm(given))
 
 
+def test_check_tells_mesh_frequencies_and_speeds(gearwhine: Any) -> None:
+    """Closed forms z n / 60. A shaft that turns the other way has a speed of 0, not of -0."""
+    shown = gearwhine("check", NAME, "-q", "--set", "housing=", "--set", "bearing.*.seat=ground").out
+    assert f"{19 * 1450 / 60:.2f} Hz" in shown
+    assert f"{17 * 1450 * 19 / 77 / 60:.2f} Hz" in shown
+    assert "Campbell diagram at 51 speeds, -536.688 to 0 rpm" in shown
+
+
 def test_a_copied_example_brings_its_drawing(gearwhine: Any, script: ModuleType, tmp_path: Path) -> None:
     assert [file.name for file in bundled_files(NAME)] == [f"{NAME}.toml", f"{NAME}.step"]
     assert gearwhine("examples", "copy", NAME).code == 0
