@@ -27,9 +27,9 @@ from gearwhine.figures import (
     draw_whirl_modes,
     save,
 )
-from gearwhine.figures.labels import spread
+from gearwhine.figures.labels import Label, arrange, draw_row, spread
 from gearwhine.figures.rotors.whirl_shapes import local_direction
-from gearwhine.figures.style import legend, sheet
+from gearwhine.figures.style import legend, panel, sheet
 
 STEEL = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
 ALUMINIUM = rotors.ShaftMaterial(70e9, 26e9, 2700.0)
@@ -267,3 +267,11 @@ def test_a_legend_of_many_lines_leaves_the_title_free() -> None:
     FigureCanvasAgg(figure).draw()
     title, (key,) = figure.texts[0].get_window_extent(), figure.legends
     assert key.get_window_extent().x0 > title.x1
+
+
+def test_a_label_has_room_for_a_line_of_two_gears() -> None:
+    text = "2028 Hz 20× pinion 2 -> wheel 2"
+    figure = sheet(100.0, "Spectrum")
+    axes = panel(figure, 20.0, 30.0)
+    draw_row(axes, arrange([Label(text, 0.5, 0.5)], [50.0], 100.0), 32.0)
+    assert [drawn.get_text() for drawn in axes.texts] == [text]
