@@ -14,7 +14,16 @@ from hypothesis import strategies as st
 
 from gearwhine.case import Bearing, Case, CaseError, MatrixDamping, bundled_cases, dump_case, load_case, parse_case
 
-EXAMPLES = ("friswell-rotor", "gear-62-62", "helical-pair", "overhung-fan", "small-gearbox", "spur-pair", "steel-box")
+EXAMPLES = (
+    "friswell-rotor",
+    "gear-62-62",
+    "helical-pair",
+    "overhung-fan",
+    "small-gearbox",
+    "spur-pair",
+    "steel-box",
+    "two-stage-reducer",
+)
 
 
 def document_of(name: str) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from gearwhine.figures.rotors.mode_shapes import (
     draw_whirl_modes,
     local_direction,
 )
-from gearwhine.figures.style import legend, sheet, spread
+from gearwhine.figures.style import Label, arrange, draw_row, legend, panel, sheet, spread
 
 STEEL = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
 ALUMINIUM = rotors.ShaftMaterial(70e9, 26e9, 2700.0)
@@ -261,3 +261,11 @@ def test_a_legend_of_many_lines_leaves_the_title_free() -> None:
     FigureCanvasAgg(figure).draw()
     title, (key,) = figure.texts[0].get_window_extent(), figure.legends
     assert key.get_window_extent().x0 > title.x1
+
+
+def test_a_label_has_room_for_a_line_of_two_gears() -> None:
+    text = "2028 Hz 20× pinion 2 -> wheel 2"
+    figure = sheet(100.0, "Spectrum")
+    axes = panel(figure, 20.0, 30.0)
+    draw_row(axes, arrange([Label(text, 0.5, 0.5)], [50.0], 100.0), 32.0)
+    assert [drawn.get_text() for drawn in axes.texts] == [text]
