@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gearwhine.results.chapters import chapters_of
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.case import CaseError
 from gearwhine.cli import run_command
+from gearwhine.results import chapters_of
 from gearwhine.results.operating_point import sections
 from gearwhine.solve.operating_point import SolvedLoad, load_warnings
 
@@ -23,7 +23,7 @@ ROLLING = {
     "rolling": {
         "element": "ball",
         "count": 8,
-        "element_diameter": "17.5 mm",
+        "element_diameter": "15.081 mm",
         "pitch_diameter": "65 mm",
         "dynamic_rating": "42.3 kN",
     }
@@ -199,6 +199,7 @@ def test_life_of_a_ball_bearing_by_hand() -> None:
     radial = float(np.hypot(*bearing["force_n"][:2]))
     assert bearing["equivalent_load_n"] == pytest.approx(radial, rel=1e-9)
     assert bearing["life_h"] == pytest.approx(1e6 * (42.3e3 / radial) ** 3 / (60.0 * 5500.0), rel=1e-9)
+    assert (bearing["dynamic_rating_n"], bearing["dynamic_rating_from"]) == (42.3e3, "case")
     # The most loaded ball is the one in the direction of the load or beside it.
     element = bearing["most_loaded_element"]
     along = np.arctan2(bearing["force_n"][1], bearing["force_n"][0])
@@ -209,6 +210,32 @@ def test_life_of_a_ball_bearing_by_hand() -> None:
     assert loads.size == 8
     warned = [entry for entry in result.document["warnings"] if entry["name"] == "bearing load"]
     assert "made for a load of 100 N radial and 0 N axial, the equilibrium finds" in warned[0]["message"]
+
+
+def test_reference_life_is_that_of_the_loads_of_the_balls() -> None:
+    """By ISO/TS 16281 from the loads in the data, with ratings of the contacts made of C (its equations 18 to 21)."""
+    result = rolling("-294 N,-807 N,0 N")
+    (bearing,) = [one for one in result.document["bearings"] if one["life_h"] is not None]
+    loads = result.dataset["bearing_element_load"].sel(loaded_bearing=bearing["name"]).values
+    gamma, inner, outer = 15.081 / 65.0, 0.52, 0.53
+    ratio = 1.044 * ((1 - gamma) / (1 + gamma)) ** 1.72 * (inner * (2 * outer - 1) / (outer * (2 * inner - 1))) ** 0.41
+    whole = 42.3e3 / (0.407 * 8 * 1.0)
+    rated_inner = whole * (1.0 + ratio ** (10.0 / 3.0)) ** 0.3
+    rated_outer = 42.3e3 / (0.389 * 8) * (1.0 + ratio ** (-10.0 / 3.0)) ** 0.3
+    mean_inner = np.mean(loads**3) ** (1.0 / 3.0)
+    mean_outer = np.mean(loads ** (10.0 / 3.0)) ** 0.3
+    damage = (rated_inner / mean_inner) ** (-10.0 / 3.0) + (rated_outer / mean_outer) ** (-10.0 / 3.0)
+    assert bearing["reference_life_h"] == pytest.approx(1e6 * damage**-0.9 / (60.0 * 5500.0), rel=0.02)
+
+
+def test_a_bearing_without_a_rating_has_that_of_its_geometry() -> None:
+    bare = {"rolling": {key: value for key, value in ROLLING["rolling"].items() if key != "dynamic_rating"}}
+    load = {"x": "-294 N", "y": "-807 N", "z": "0 N"}
+    result = gw.load("spur-pair", {"bearing.0.stiffness": bare, "bearing.0.load": load}).operating_point()
+    (bearing,) = [one for one in result.document["bearings"] if one["life_h"] is not None]
+    assert bearing["dynamic_rating_from"] == "geometry"
+    # SKF's 6308 has 42.3 kN.
+    assert bearing["dynamic_rating_n"] == pytest.approx(42.3e3, rel=0.1)
 
 
 def test_a_bearing_made_for_its_load_is_not_warned_of_it() -> None:
