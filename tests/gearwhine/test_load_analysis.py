@@ -138,6 +138,8 @@ def test_over_torque_the_machine_is_the_same_at_its_own_torque(helical: Result[S
     # Crowned teeth carry on more of their face the more they carry.
     factors = [point["gear_pairs"][0]["k_h_beta"] for point in points]
     assert (np.diff(factors) < 0.0).all()
+    assert helical.dataset["face_load_factor_over_torque"].values[:, 0] == pytest.approx(factors)
+    assert helical.dataset["load_torque"].values == pytest.approx([point["torque_n_m"] for point in points])
 
 
 def test_a_given_misalignment_is_held_against_the_one_found(helical: Result[SolvedLoad]) -> None:
