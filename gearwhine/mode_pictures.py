@@ -173,7 +173,10 @@ def draw_deflection(
     if largest == 0.0:
         return []
     factor = DRAWN_SCALE * surface.diagonal * _MICRO / largest
-    title, note = "Housing under the mean load", f"largest {largest:.3g} µm, drawn {factor:.2g} times as large"
+    title, note = (
+        "Housing under the mean load",
+        f"largest {largest:.3g} µm, drawn {float(f'{factor:.2g}'):g} times as large",
+    )
     shape = DrawnShape("load-housing", title, note, motion, "Displacement [µm]", largest)
     return draw_in_process(surface, [shape], place, "png", view, progress)
 
