@@ -172,8 +172,9 @@ def draw_deflection(
     largest = _MICRO * float(np.linalg.norm(motion, axis=1).max())
     if largest == 0.0:
         return []
-    factor = float(f"{DRAWN_SCALE * surface.diagonal * _MICRO / largest:.2g}")
-    title, note = "Housing under the mean load", f"largest {largest:.3g} µm, drawn {factor:g} times as large"
+    factor = DRAWN_SCALE * surface.diagonal * _MICRO / largest
+    title = "Housing under the mean load"
+    note = f"largest {largest:.3g} µm, drawn {float(f'{factor:.2g}'):.0f} times as large"
     shape = DrawnShape("load-housing", title, note, motion, "Displacement [µm]", largest)
     return draw_in_process(surface, [shape], place, "png", view, progress)
 

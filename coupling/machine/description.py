@@ -26,6 +26,7 @@ from coupling.machine.assembly import CoupledMachine, assemble_machine
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
+    LARGEST_OFFSET,
     AppliedTorque,
     GearedShafts,
     GearTrain,
@@ -55,7 +56,7 @@ from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
 from coupling.signals.histories import histories, transient_outputs
 from coupling.statics.operating_point import OperatingPoint, solve_operating_point
-from coupling.statics.static_model import StaticGear, StaticShaftPart, static_bearing, static_pair
+from coupling.statics.static_model import StaticGear, StaticPair, StaticShaftPart, static_bearing, static_pair
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
@@ -291,16 +292,12 @@ class Machine:
         pairs = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             driver, driven = self._gears_of(pair)
-            gears = self._static_gear(driver, geometry.face_width), self._static_gear(driven, geometry.face_width)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
+            gears = self._static_gears((driver, driven), geometry)
             pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
-        gears_on = [gear for pair in pairs for gear in (pair.driver, pair.driven)]
         return solve_operating_point(
-            [
-                self._static_shaft(shaft, [gear for gear in gears_on if gear.shaft == shaft.name])
-                for shaft in self.shafts
-            ],
+            [self._static_shaft(shaft, pairs) for shaft in self.shafts],
             [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
             pairs,
             self.housing_component,
@@ -553,23 +550,38 @@ class Machine:
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 
-    def _static_gear(self, gear: ShaftGear, face_width: float) -> StaticGear:
-        """Place a gear with the stations of its face on its shaft."""
-        stations = gear.at + face_stations(face_width)
-        within = stations[0] >= 0.0 and stations[-1] <= self.shaft(gear.shaft).rotor.length
-        return StaticGear(gear.name, gear.shaft, gear.at, stations if within else None)
+    def _static_gears(
+        self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
+    ) -> tuple[StaticGear, StaticGear]:
+        """Place both gears of a pair on their shafts, with stations over the face that they have in common."""
+        starts = [self.shaft(gear.shaft).start for gear in gears]
+        middles = [start + gear.at for start, gear in zip(starts, gears, strict=True)]
+        halves = [0.5 * gear.gear.face_width for gear in gears]
+        left = max(middle - half for middle, half in zip(middles, halves, strict=True))
+        right = min(middle + half for middle, half in zip(middles, halves, strict=True))
+        aligned = abs(middles[0] - middles[1]) <= LARGEST_OFFSET
+        placed = []
+        for gear, start in zip(gears, starts, strict=True):
+            at = gear.at if aligned else 0.5 * (left + right) - start
+            stations, length = at + face_stations(geometry.face_width), self.shaft(gear.shaft).rotor.length
+            within = stations[0] >= 0.0 and stations[-1] <= length
+            placed.append(StaticGear(gear.name, gear.shaft, at, stations if within else None))
+        return placed[0], placed[1]
 
-    def _static_shaft(self, shaft: Shaft, gears: Sequence[StaticGear]) -> StaticShaftPart:
-        """Exact stiffness of a shaft with its gears, within whose faces it is as thick as their root circle."""
+    def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
+        """Shaft with nodes at bearings, torques and faces, thickened by the bodies of its gears."""
         places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
+        for pair in pairs:
+            for gear in (pair.driver, pair.driven):
+                if gear.shaft == shaft.name:
+                    places.append(gear.at)
+                    places += [] if gear.stations is None else gear.stations.tolist()
         bodies = []
-        for gear in gears:
-            places.append(gear.at)
-            if gear.stations is not None:
-                places += gear.stations.tolist()
-                made = next(one.gear for one in self.gears if one.name == gear.name)
-                bodies.append((float(gear.stations[0]), float(gear.stations[-1]), 2.0 * made.root_circle_radius))
+        for one in self.gears:
+            if one.shaft == shaft.name:
+                ends = (max(one.at - 0.5 * one.gear.face_width, 0.0), one.at + 0.5 * one.gear.face_width)
+                bodies.append((ends[0], min(ends[1], shaft.rotor.length), 2.0 * one.gear.root_circle_radius))
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 

@@ -75,13 +75,18 @@ class AxialForces:
 
 def axially_held(bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str]) -> set[str]:
     """Rotors ``among`` those given that a bearing with axial stiffness holds at their speeds [rad/s]."""
+    return {
+        mounted.rotor
+        for mounted in bearings
+        if mounted.rotor in among and _holds_axially(mounted, speeds[mounted.rotor])
+    }
 
-    def holds(mounted: MountedBearing) -> bool:
-        if mounted.needs_load and mounted.elements is not None:
-            return mounted.elements.has_axial_stiffness
-        return bool(mounted.bearing.at_speed(speeds[mounted.rotor]).spatial_stiffness[2, 2] > 0.0)
 
-    return {mounted.rotor for mounted in bearings if mounted.rotor in among and holds(mounted)}
+def _holds_axially(mounted: MountedBearing, speed: float) -> bool:
+    elements = mounted.elements
+    if mounted.needs_load and elements is not None:
+        return elements.has_axial_stiffness
+    return bool(mounted.bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0)
 
 
 def axial_forces(

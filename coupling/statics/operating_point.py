@@ -245,6 +245,31 @@ class PairLoad:
 
 
 @dataclass(frozen=True, eq=False)
+class StaticTangent:
+    """The static machine linearised about its equilibrium, by n coordinates: stations of the shafts, then the housing.
+
+    Attributes
+    ----------
+    stiffness : ndarray, shape (n, n)
+        Derivative of the forces by the coordinates, tangents of bearings and flanks included; free motions are held.
+    shafts : mapping of str to slice
+        Coordinates of each shaft, six at each station.
+    housing : slice
+        The housing's coordinates.
+    bearings : mapping of str to ndarray, shape (n, 5)
+        Deflection of each bearing by the coordinates, as columns.
+    pairs : tuple of ndarray, shape (n, m)
+        Approach of each pair's flanks by the coordinates, as columns.
+    """
+
+    stiffness: FloatArray
+    shafts: Mapping[str, slice]
+    housing: slice
+    bearings: Mapping[str, FloatArray]
+    pairs: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class OperatingPoint:
     """Static equilibrium of a machine under its mean load.
 
@@ -261,6 +286,8 @@ class OperatingPoint:
         Of the trust region and Newton's method.
     free : tuple of str
         Motions that nothing holds and no load drives, in words.
+    tangent : StaticTangent
+        For its sensitivities (:mod:`coupling.statics.sensitivity`).
     """
 
     shafts: tuple[ShaftDeflection, ...]
@@ -270,6 +297,7 @@ class OperatingPoint:
     residual: float
     iterations: int
     free: tuple[str, ...]
+    tangent: StaticTangent
 
     def shaft(self, name: str) -> ShaftDeflection:
         """Return the deflection of the shaft of this name."""
@@ -604,8 +632,9 @@ class _StaticModel:
         causes = self._causes(x, bearings)
         count = len(self.bearings)
         meshes = states[count : count + len(self.pairs)]
-        least = _IDLE * max((float(np.abs(force).sum()) for _, force, _ in meshes), default=0.0)
-        if self.pairs and least == 0.0:
+        pressed = max((float(loads[:-1].sum()) for _, loads, _ in meshes), default=0.0)
+        least = _IDLE * pressed
+        if self.pairs and pressed <= RESIDUAL_BAR * float(np.abs(self.load).max(initial=0.0)):
             names = ", ".join(pair.label for pair in self.pairs)
             turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())
             raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
@@ -616,10 +645,18 @@ class _StaticModel:
             )
         )
         shafts = tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts)
-        housing = None
-        if self.housing is not None:
-            housing = x[self.housing_first : self.housing_first + self.housing.size]
-        return OperatingPoint(shafts, bearings, pairs, housing, relative, iterations, free)
+        own = slice(self.housing_first, self.housing_first + (0 if self.housing is None else self.housing.size))
+        tangent = StaticTangent(
+            self.stiffness
+            + extra
+            + sum(rows @ slope @ rows.T for rows, (_, _, slope) in zip(self.directions, states, strict=True)),
+            {part.name: self._own(part.name) for part in self.shafts},
+            own,
+            {one.mounted.bearing.name: rows for one, rows in zip(self.bearings, self.directions, strict=False)},
+            tuple(self.directions[count : count + len(self.pairs)]),
+        )
+        housing = None if self.housing is None else x[own]
+        return OperatingPoint(shafts, bearings, pairs, housing, relative, iterations, free, tangent)
 
     def _relative(self, residual: FloatArray, forces: Sequence[FloatArray]) -> tuple[float, str]:
         """Largest force out of balance over the largest load, moments over that load times the longest shaft; where."""

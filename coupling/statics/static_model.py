@@ -148,7 +148,7 @@ class StaticGear:
     ----------
     name, shaft : str
     at : float
-        Middle of the face from the shaft's left end [m].
+        Middle of the pair's common face from the shaft's left end [m].
     stations : ndarray, shape (j,), or None
         Stations of the pair's common face on the shaft, from its left end [m]; None for a gear whose face reaches
         beyond the end of the shaft, which is rigid on the section at ``at``.
@@ -206,7 +206,7 @@ def static_pair(
     rotation: int,
     torque: float,
 ) -> StaticPair:
-    """Make a gear pair of the static model, on the flanks that its mean torque loads.
+    """Make a gear pair of the static model, of sound teeth, on the flanks that its mean torque loads.
 
     Parameters
     ----------
@@ -224,19 +224,20 @@ def static_pair(
     force = abs(torque) / geometry.driver.base_radius
     given = pair.stiffness
     model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
-    faces = face_slices(geometry, sense=rotation)
+    driver, driven = (replace(gear, faults=(), pitch_deviations=()) for gear in (geometry.driver, geometry.driven))
+    sound = replace(geometry, driver=driver, driven=driven)
+    faces = face_slices(sound, sense=rotation)
     if not pair.has_single_teeth:
         # The spring of a whole mesh, spread evenly over the face, with no coupling of its slices.
         stiffness = float(model.pair_stiffness(geometry).mean)
         faces = replace(faces, flattening=2.0 * stiffness / geometry.face_width, coupling=0.0)
-    contact = tooth_contact(geometry, model, corner_contact=pair.has_corner_contact, faces=faces)
+    contact = tooth_contact(sound, model, corner_contact=pair.has_corner_contact, faces=faces)
     backwards = torque < 0.0
     sense = -rotation if backwards else rotation
     backlash = pair.backlash_of(geometry)
     line = np.subtract(axes[1], axes[0])
     angle = geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
     axial = -sense * float(np.tan(geometry.driver.base_helix_angle))
-    contact = replace(contact, pitch_gaps=np.zeros(0), back_pitch_gaps=np.zeros(0))
     own = contact.back_flanks if backwards else contact
     return StaticPair(
         label=f"gear pair {pair.driver!r} -> {pair.driven!r}",

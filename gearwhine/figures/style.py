@@ -40,6 +40,7 @@ _NAME_OF_AXIS = 11.2  # left of a panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200
 _GAP = 2.0  # between neighbouring labels [mm]
 _RISE = 4.0  # of a leader between the last of what is drawn and the row [mm]
+_LONGEST_LABEL = 40  # letters of a label: a line's frequency and the names of two gears
 _MEASURING_DPI = 200
 
 
@@ -101,12 +102,12 @@ def stretches(kinds: Sequence[Kind]) -> Iterator[tuple[slice, Kind]]:
 
 
 def legend(figure: Figure, handles: Sequence[Artist]) -> None:
-    """Explain lines and tints in the upper right corner of a sheet, in one line."""
+    """Explain lines and tints in the upper right corner of a sheet, in one line, or many of them in two."""
     if handles:  # an empty one would warn
         figure.legend(
             handles=handles,
             loc="upper right",
-            ncols=len(handles),
+            ncols=len(handles) if len(handles) <= _IN_HEAD else (len(handles) + 1) // 2,
             frameon=False,
             fontsize=NOTE,
             handlelength=2.0,
@@ -272,7 +273,7 @@ def draw_row(axes: Axes, row: LabelRow, level: float, *, above: bool = True) -> 
         axes.text(
             place,
             level + sense * _RISE,
-            shortened(label.text),
+            shortened(label.text, _LONGEST_LABEL),
             transform=paper,
             color=label.color,
             fontsize=NOTE,
@@ -288,5 +289,7 @@ def _size(text: str) -> tuple[float, float]:
     figure = Figure(dpi=_MEASURING_DPI)
     FigureCanvasAgg(figure)
     with missing_glyphs_as_boxes():
-        extent = figure.text(0.0, 0.0, shortened(text), fontsize=NOTE, parse_math=False).get_window_extent()
+        extent = figure.text(
+            0.0, 0.0, shortened(text, _LONGEST_LABEL), fontsize=NOTE, parse_math=False
+        ).get_window_extent()
     return extent.width / _MEASURING_DPI * MM_PER_INCH, extent.height / _MEASURING_DPI * MM_PER_INCH

@@ -33,7 +33,9 @@ from meshes.box.morph import MorphError
 _SPREAD = 1.0 / 3.0  # of the larger distance from the nominal value to an end of the range
 FloatArray = npt.NDArray[np.float64]
 
-_STEP = 1e-4  # in z, of the differences that give the rates of what a parameter changes
+RATE_STEP = 1e-4
+"""In z, of the differences that give the rates of what a parameter changes."""
+
 _WORST_SHAPE = 0.12  # shape number below which a moved mesh is given up for a new one
 
 
@@ -86,6 +88,16 @@ class FittedCase:
     document: dict[str, Any]
     numbers: tuple[FittedNumber, ...]
 
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Fitted parameters."""
+        return tuple(number.parameter for number in self.numbers)
+
+    @property
+    def start(self) -> FloatArray:
+        """Coordinates z of the case as it stands."""
+        return np.array([number.parameter.coordinate(number.start) for number in self.numbers])
+
     def at(self, values: Sequence[float]) -> Case:
         """Return the case with these values in place.
 
@@ -105,15 +117,19 @@ class FittedCase:
         return document
 
 
-def fitted_case(case: Case, mesh_size: float | None = None) -> FittedCase:
-    """Return the case with its fitted parameters, with elements of another size if wanted [m].
+def fitted_case(
+    case: Case, mesh_size: float | None = None, parameters: Sequence[UpdateParameter] | None = None
+) -> FittedCase:
+    """Return the case with its fitted parameters, or with others, and with elements of another size if wanted [m].
 
     Raises
     ------
     CaseError
         With every key that leads to no number, is set twice, or whose number is outside its range.
     """
-    assert case.update is not None
+    if parameters is None:
+        assert case.update is not None
+        parameters = case.update.parameter
     document = case_document(case)
     box = document.get("housing", {}).get("box")
     if box is not None and not isinstance(box["wall"], Mapping):
@@ -122,7 +138,7 @@ def fitted_case(case: Case, mesh_size: float | None = None) -> FittedCase:
         box["mesh_size"] = mesh_size
     problems: list[Problem] = []
     numbers, taken = [], dict[Location, str]()
-    for index, given in enumerate(case.update.parameter):
+    for index, given in enumerate(parameters):
         label = f'parameter "{given.name}"'
         places = list[Location]()
         own = list[float]()
@@ -185,6 +201,101 @@ def with_entry(document: Any, place: Location, value: Any) -> Any:
 
 
 @dataclass(frozen=True)
+class MeshedParameters:
+    """A fitted case at coordinates z on a mesh: derivatives of the housing's model by its parameters.
+
+    Attributes
+    ----------
+    fitted : FittedCase
+    coordinates : ndarray, shape (n_parameters,)
+    case : Case
+        At the coordinates.
+    mesh : Mesh
+        Of its housing.
+    """
+
+    fitted: FittedCase
+    coordinates: FloatArray
+    case: Case
+    mesh: Mesh
+
+    def beside(self, number: int) -> tuple[Case, Case]:
+        """Return the cases `RATE_STEP` above and below in one coordinate."""
+        either = []
+        for way in (1.0, -1.0):
+            # Not by the case's own values, which stop at the end of the range.
+            parameter = self.fitted.parameters[number]
+            values = values_at(self.fitted.parameters, self.coordinates)
+            values[number] += parameter.deviation(float(self.coordinates[number]), way * RATE_STEP)
+            either.append(self.fitted.at(values.tolist()))
+        return either[0], either[1]
+
+    def rates(self) -> list[ModelSensitivity]:
+        """Differentiate the model by each coordinate: central differences of quantities linear in small steps."""
+        return [self._rate(number) for number in range(len(self.coordinates))]
+
+    def _rate(self, number: int) -> ModelSensitivity:
+        above, below = self.beside(number)
+        velocity = self._velocity(above, below)
+        return ModelSensitivity(
+            velocity, self._constants_rate(above, below), *self._attached_rates(above, below, velocity)
+        )
+
+    def _velocity(self, above: Case, below: Case) -> FloatArray | None:
+        geometries = [geometry_of(case) for case in (above, below)]
+        if geometries[0] == geometries[1]:
+            return None
+        assert geometries[0] is not None
+        assert geometries[1] is not None
+        apart = self.morph.displacement(geometries[0]) - self.morph.displacement(geometries[1])
+        return np.asarray(apart / (2.0 * RATE_STEP))
+
+    @cached_property
+    def morph(self) -> BoxMorph:
+        """Morphing of the mesh to other dimensions of its box."""
+        geometry = geometry_of(self.case)
+        assert geometry is not None
+        return BoxMorph(self.mesh, geometry)
+
+    def _constants_rate(self, above: Case, below: Case) -> FloatArray | None:
+        if above.material == below.material:
+            return None
+        constants = []
+        for case in (above, below):
+            parted, material, materials = materials_of(case, self.mesh)
+            constants.append(element_constants(parted, material, materials))
+        return np.asarray((constants[0] - constants[1]) / (2.0 * RATE_STEP))
+
+    def _attached_rates(
+        self, above: Case, below: Case, velocity: FloatArray | None
+    ) -> tuple[sparse.csr_array | None, sparse.csr_array | None]:
+        assert above.housing is not None
+        assert below.housing is not None
+        same = all(
+            getattr(above.housing, key) == getattr(below.housing, key) for key in ("support", "mount", "joint", "mass")
+        )
+        if same and velocity is None:
+            return None, None
+        matrices = []
+        for case, way in ((above, 1.0), (below, -1.0)):
+            mesh = self.mesh
+            if velocity is not None:
+                mesh = replace(mesh, points=mesh.points + way * RATE_STEP * velocity)
+            total = sum((attachment.additions(mesh) for *_, attachment in build_attachments(case)), Additions())
+            n = len(mesh.points)
+            matrices.append((total.stiffness.matrix(n), total.mass.matrix(n)))
+        stiffness, mass = ((one - other) / (2.0 * RATE_STEP) for one, other in zip(*matrices, strict=True))
+        return sparse.csr_array(stiffness), sparse.csr_array(mass)
+
+
+def geometry_of(case: Case) -> BoxGeometry | None:
+    """Return the dimensions of a case's box; None for another housing."""
+    given = case.housing
+    assert given is not None
+    return None if given.box is None else box_geometry(given.box, given.seat)
+
+
+@dataclass(frozen=True)
 class ParametricHousing:
     """Solves the housing of a case at coordinates z of its parameters.
 
@@ -215,12 +326,12 @@ class ParametricHousing:
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """Fitted parameters."""
-        return tuple(number.parameter for number in self.case.numbers)
+        return self.case.parameters
 
     @property
     def start(self) -> FloatArray:
         """Coordinates z of the case as it stands."""
-        return np.array([number.parameter.coordinate(number.start) for number in self.case.numbers])
+        return self.case.start
 
     def case_at(self, coordinates: FloatArray) -> Case:
         """Return the case at coordinates."""
@@ -313,83 +424,20 @@ class HousingAtParameters:
 
     def rates(self) -> list[ModelSensitivity]:
         """Differentiate the model by each coordinate: central differences of quantities linear in small steps."""
-        return [self._rate(number) for number in range(len(self.coordinates))]
-
-    def _rate(self, number: int) -> ModelSensitivity:
-        either = []
-        for way in (1.0, -1.0):
-            beside = self.coordinates.copy()
-            beside[number] += way * _STEP
-            # Not by the case's own values, which stop at the end of the range.
-            parameter = self.designs.parameters[number]
-            values = values_at(self.designs.parameters, self.coordinates)
-            values[number] += parameter.deviation(float(self.coordinates[number]), way * _STEP)
-            either.append(self.designs.case.at(values.tolist()))
-        above, below = either
-        velocity = self._velocity(above, below)
-        return ModelSensitivity(
-            velocity, self._constants_rate(above, below), *self._attached_rates(above, below, velocity)
-        )
-
-    def _velocity(self, above: Case, below: Case) -> FloatArray | None:
-        geometries = [_geometry(case) for case in (above, below)]
-        if geometries[0] == geometries[1]:
-            return None
-        assert geometries[0] is not None
-        assert geometries[1] is not None
-        apart = self._morph.displacement(geometries[0]) - self._morph.displacement(geometries[1])
-        return np.asarray(apart / (2.0 * _STEP))
+        return self._meshed.rates()
 
     @cached_property
-    def _morph(self) -> BoxMorph:
-        geometry = _geometry(self.case)
-        assert geometry is not None
-        return BoxMorph(self.mesh, geometry)
-
-    def _constants_rate(self, above: Case, below: Case) -> FloatArray | None:
-        if above.material == below.material:
-            return None
-        constants = []
-        for case in (above, below):
-            parted, material, materials = materials_of(case, self.mesh)
-            constants.append(element_constants(parted, material, materials))
-        return np.asarray((constants[0] - constants[1]) / (2.0 * _STEP))
-
-    def _attached_rates(
-        self, above: Case, below: Case, velocity: FloatArray | None
-    ) -> tuple[sparse.csr_array | None, sparse.csr_array | None]:
-        assert above.housing is not None
-        assert below.housing is not None
-        same = all(
-            getattr(above.housing, key) == getattr(below.housing, key) for key in ("support", "mount", "joint", "mass")
-        )
-        if same and velocity is None:
-            return None, None
-        matrices = []
-        for case, way in ((above, 1.0), (below, -1.0)):
-            mesh = self.mesh
-            if velocity is not None:
-                mesh = replace(mesh, points=mesh.points + way * _STEP * velocity)
-            total = sum((attachment.additions(mesh) for *_, attachment in build_attachments(case)), Additions())
-            n = len(mesh.points)
-            matrices.append((total.stiffness.matrix(n), total.mass.matrix(n)))
-        stiffness, mass = ((one - other) / (2.0 * _STEP) for one, other in zip(*matrices, strict=True))
-        return sparse.csr_array(stiffness), sparse.csr_array(mass)
-
-
-def _geometry(case: Case) -> BoxGeometry | None:
-    given = case.housing
-    assert given is not None
-    return None if given.box is None else box_geometry(given.box, given.seat)
+    def _meshed(self) -> MeshedParameters:
+        return MeshedParameters(self.designs.case, self.coordinates, self.case, self.mesh)
 
 
 def _followed(near: HousingAtParameters, case: Case) -> Mesh | None:
     """Return the neighbour's mesh, moved to a case's geometry; None where it cannot or should not be."""
-    geometry, before = _geometry(case), _geometry(near.case)
+    geometry, before = geometry_of(case), geometry_of(near.case)
     if geometry is None or geometry == before:
         return near.mesh
     try:
-        mesh = near._morph.moved(geometry)
+        mesh = near._meshed.morph.moved(geometry)
     except MorphError:
         return None
     return mesh if mesh_quality(mesh).shape[0] > _WORST_SHAPE else None

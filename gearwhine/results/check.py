@@ -460,6 +460,7 @@ def _analysis_lines(analysis: Document) -> Iterator[str]:
     for key, what in (("campbell_rpm", "Campbell diagram"), ("response_rpm", "response to unbalance and bow")):
         if analysis[key] is not None:
             low, high, count = analysis[key]
+            low, high = low + 0.0, high + 0.0  # of a shaft that turns the other way, no -0
             yield f"{analysis['rotor']}: {what} at {counted(count, 'speed')}, {low:.6g} to {high:.6g} rpm"
     if analysis["torques"]:
         yield f"{analysis['rotor']}: torsional response to {counted(analysis['torques'], 'torque')}"

@@ -8,6 +8,8 @@ from functools import cache
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from housing.errors import HousingError
 from meshes import ElementBlock, Mesh
@@ -65,6 +67,56 @@ def _block_quadrature(mesh: Mesh, block: ElementBlock) -> SurfaceQuadrature:
         points=np.einsum("fai,qa->fqi", nodes, values, optimize=True),
         areas=np.linalg.norm(normal, axis=2) * weights,
     )
+
+
+_ALIGNED = 1.0 - 1e-5  # cosine between the normals of neighbouring facets of one plane
+
+
+@dataclass(frozen=True)
+class FlatFace:
+    """A flat part of a mesh's boundary, in one piece.
+
+    Attributes
+    ----------
+    facets : tuple of ElementBlock
+    area : float
+        [m²].
+    center, normal : ndarray, shape (3,)
+        Centroid [m] and outward unit normal.
+    """
+
+    facets: Facets
+    area: float
+    center: FloatArray
+    normal: FloatArray
+
+
+def flat_faces(mesh: Mesh) -> list[FlatFace]:
+    """Divide a mesh's boundary into flat faces: facets that share edges and lie in one plane; the largest first."""
+    boundary = mesh.boundary
+    normals, centers = facet_normals(mesh.points, boundary), facet_centers(mesh.points, boundary)
+    ends, owners, first = [], [], 0
+    for block in boundary:
+        corners = block.corners
+        for side in range(corners.shape[1]):
+            ends.append(np.sort(corners[:, [side, (side + 1) % corners.shape[1]]], axis=1))
+            owners.append(first + np.arange(len(block)))
+        first += len(block)
+    edges, owner = np.concatenate(ends), np.concatenate(owners)
+    order = np.lexsort(edges.T)
+    edges, owner = edges[order], owner[order]
+    one, other = (owner[part][(edges[1:] == edges[:-1]).all(axis=1)] for part in (slice(None, -1), slice(1, None)))
+    flat = np.einsum("ei,ei->e", normals[one], normals[other]) > _ALIGNED
+    joined = sparse.coo_array((np.ones(flat.sum()), (one[flat], other[flat])), shape=(first, first))
+    count, face_of = connected_components(joined, directed=False)
+    areas = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(mesh, boundary)])
+    found = []
+    for number in np.argsort(-np.bincount(face_of, areas, count), kind="stable").tolist():
+        chosen = face_of == number
+        area, normal = float(areas[chosen].sum()), areas[chosen] @ normals[chosen]
+        center = areas[chosen] @ centers[chosen] / area
+        found.append(FlatFace(pick_facets(boundary, chosen), area, center, normal / np.linalg.norm(normal)))
+    return found
 
 
 @dataclass(frozen=True)

@@ -79,10 +79,15 @@ class StaticShaft:
     stiffness: FloatArray
     _motions: "tuple[_Motion, ...]" = field(repr=False)
 
+    @property
+    def length(self) -> float:
+        """Length of the shaft, m."""
+        return float(self._motions[0].nodes[-1])
+
     def node(self, at: float) -> int:
         """Index of the node at a position (m); raises `RotorError` where there is none."""
         index = station_index(self.places, at)
-        slack = 2.0 * STATION_TOLERANCE * float(self._motions[0].nodes[-1])
+        slack = 2.0 * STATION_TOLERANCE * self.length
         require(abs(self.places[index] - at) <= slack, "node position", at, f"one of {self.places.tolist()} m")
         return index
 

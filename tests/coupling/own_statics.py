@@ -166,13 +166,11 @@ class OwnStatics:
     def bodies(self, shaft: str) -> list[tuple[float, float, float]]:
         """Ends and root diameters of the gears on a shaft."""
         found = []
-        for pair in self.machine.gear_pairs:
-            for name in (pair.driver, pair.driven):
-                one = self.gears[name]
-                if one.shaft == shaft:
-                    gear, half = one.gear, 0.5 * self.width(pair)
-                    root = gear.module * gear.teeth / math.cos(gear.helix_angle) - 2.5 * gear.module
-                    found.append((one.at - half, one.at + half, root))
+        for one in self.machine.gears:
+            if one.shaft == shaft:
+                gear, half = one.gear, 0.5 * one.gear.face_width
+                root = gear.module * gear.teeth / math.cos(gear.helix_angle) - 2.5 * gear.module
+                found.append((one.at - half, one.at + half, root))
         return found
 
     def _nodes(self, shaft: str) -> FloatArray:
@@ -180,6 +178,7 @@ class OwnStatics:
         places = [0.0, *np.cumsum([part.length for part in rotor.segments])]
         places += [one.bearing.at for one in self.machine.bearings if one.rotor == shaft]
         places += [torque.at for torque in self.machine.constant_torques if torque.rotor == shaft]
+        places += [end for low, high, _ in self.bodies(shaft) for end in (low, high)]
         for pair in self.machine.gear_pairs:
             for name in (pair.driver, pair.driven):
                 if self.gears[name].shaft == shaft:
@@ -221,8 +220,12 @@ class OwnStatics:
         one = self.mounted(name)
         return self.section(one.rotor, one.bearing.at)[:5] - self.seat(name)
 
-    def loads(self, gravity: Sequence[float] | None = None) -> FloatArray:
+    def loads(self, gravity: Sequence[float] | None = None, sag: FloatArray | None = None) -> FloatArray:
+        """Torques, weight of the shafts, and the forces that let the seats sag by (5 b,) under the housing's own."""
         found = np.zeros(self.size)
+        if sag is not None:
+            here = slice(self.seat_first, self.seat_first + sag.size)
+            found[here] = self.linear[here, here] @ sag
         for torque in self.machine.constant_torques:
             found += torque.value * self.section(torque.rotor, torque.at)[5]
         if gravity is not None:

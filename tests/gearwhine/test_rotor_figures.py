@@ -9,7 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from PIL import Image
 
 import rotors
@@ -21,7 +23,7 @@ from gearwhine.figures.rotors.mode_shapes import (
     draw_whirl_modes,
     local_direction,
 )
-from gearwhine.figures.style import spread
+from gearwhine.figures.style import legend, sheet, spread
 
 STEEL = rotors.ShaftMaterial(211e9, 81.2e9, 7810.0)
 ALUMINIUM = rotors.ShaftMaterial(70e9, 26e9, 2700.0)
@@ -250,3 +252,12 @@ def test_static_deflection_and_its_loads() -> None:
     assert (down_tail - down_tip) / (up_tip - up_tail) == pytest.approx(120.0 / 480.0)
     with pytest.raises(ValueError, match="bearing loads"):
         draw_static_deflection(TWO_DISCS, z, np.zeros((31, 2)), [[0.0, 1.0]])
+
+
+def test_a_legend_of_many_lines_leaves_the_title_free() -> None:
+    figure = sheet(100.0, "Rotor intermediate: Campbell diagram")
+    names = ("forward", "backward", "planar or mixed", "along the axis", "operation")
+    legend(figure, [Line2D([], [], label=name) for name in names])
+    FigureCanvasAgg(figure).draw()
+    title, (key,) = figure.texts[0].get_window_extent(), figure.legends
+    assert key.get_window_extent().x0 > title.x1

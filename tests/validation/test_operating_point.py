@@ -1,7 +1,7 @@
 """Static equilibrium of whole machines against an independent assembly, closed forms and ISO 6336-1."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,16 +20,20 @@ from own_statics import (
     one_stage,
     toothed,
 )
+from scipy.optimize import nnls
 from scipy.sparse.linalg import splu
 
 from coupling import Machine, MountedBearing, Output, Shaft, ShaftGear
-from coupling.gears import ConstantStiffness
+from coupling.gears import ConstantStiffness, HelixDeviation, TipRelief, tooth_contact
+from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
+from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.statics.operating_point import OperatingPoint
 from housing import Housing, HousingModes, Material, Seat, Support
 from meshes import BoxGeometry, mesh_box
 from meshes.box.parts import Bore, WallThickness
 from rotors import Pedestal, Rotor, Segment
+from rotors.rolling_bearings import BallRow, RollerRow, RollingBearing, paired
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,10 +43,14 @@ JOURNAL = np.array([[2.0e7, 3.5e7], [-1.2e7, 6.0e7]])
 
 
 def assert_agrees(
-    point: OperatingPoint, own: OwnStatics, gravity: Sequence[float] | None = None, tolerance: float = 1e-9
+    point: OperatingPoint,
+    own: OwnStatics,
+    gravity: Sequence[float] | None = None,
+    tolerance: float = 1e-9,
+    sag: FloatArray | None = None,
 ) -> None:
     """Bearing forces, motions of shafts and seats, and misalignment are those of the independent assembly."""
-    x = own.solve(own.loads(gravity))
+    x = own.solve(own.loads(gravity, sag))
     assert point.residual < 1e-9
     size = max(float(np.abs(bearing.force[:3]).max()) for bearing in point.bearings)
     for bearing in point.bearings:
@@ -217,33 +225,36 @@ def in_box(modes: HousingModes, stiffness: npt.ArrayLike = FULL, **changes: Any)
     return replace(machine, shafts=shafts, bearings=held, housing=modes, **changes)
 
 
-def seat_compliance(machine: Machine) -> FloatArray:
-    """Compliance of the housing at its bearings (5 b, 5 b), by a sparse factorisation of its whole stiffness."""
+def condensed(machine: Machine, gravity: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+    """Compliance of the housing at its bearings (5 b, 5 b) and their sag (5 b,), by a sparse factorisation."""
     assert isinstance(machine.housing, HousingModes)
     housing = machine.housing.housing
     matrices, ports, rows = housing.matrices(), housing.seat_ports(), []
+    heights = {seat.name: seat.center[2] for seat in housing.seats}
     for one in machine.bearings:
         assert one.seat is not None
         port = ports[one.seat].toarray()
-        arm = (
-            machine.shaft(one.rotor).start
-            + one.bearing.at
-            - next(seat.center[2] for seat in housing.seats if seat.name == one.seat)
-        )
+        arm = machine.shaft(one.rotor).start + one.bearing.at - heights[one.seat]
         rows += [port[0] + arm * port[4], port[1] - arm * port[3], *port[2:5]]
     loads = np.array(rows)
     free = np.setdiff1d(np.arange(loads.shape[1]), matrices.fixed)
     factor = splu(matrices.stiffness.tocsc()[free][:, free])
-    return np.asarray(loads[:, free] @ factor.solve(loads[:, free].T))
+    weight = matrices.mass @ np.tile(gravity, loads.shape[1] // 3)
+    return loads[:, free] @ factor.solve(loads[:, free].T), loads[:, free] @ factor.solve(weight[free])
 
 
 def test_a_machine_in_its_housing(grounded: HousingModes) -> None:
     """Four modes of the housing and its residual ones hold its static stiffness, condensed by a sparse factor."""
     machine = in_box(grounded)
     names = [one.bearing.name for one in machine.bearings]
-    own = OwnStatics(machine, compliance=seat_compliance(machine), seated=names)
+    gravity = (0.0, -9.81e3, 2e3)  # a thousand times the earth's, so that the box sags by as much as it bends
+    compliance, sag = condensed(machine, gravity)
+    own = OwnStatics(machine, compliance=compliance, seated=names)
+    assert_agrees(machine.operating_point(gravity), own, gravity, 1e-7, sag)
     point = machine.operating_point()
     assert_agrees(point, own, tolerance=1e-7)
+    for one in point.bearings:
+        assert np.abs(one.seat_motion[:3]).max() > 1e-7
     assert abs(point.pairs[0].misalignment_by_cause["housing"]) > 1e-2 * abs(point.pairs[0].misalignment)
 
 
@@ -348,3 +359,136 @@ def test_the_face_load_factor_of_iso_6336(excess: float) -> None:
         exact = 1.0 + per_width * misalignment * (0.5 * width - half) * width / force
         assert factor == pytest.approx(exact, rel=1e-10)
     assert load.argmax() == 0  # the end at -z, as the gap opens towards +z
+
+
+BALL = BallRow(9, 11e-3, 46e-3, clearance=12e-6)
+ANGULAR = BallRow(13, 9.5e-3, 46e-3, contact_angle=math.radians(25.0))
+ROLLERS = RollerRow(12, 9e-3, 10e-3, 55e-3, clearance=10e-6, profile="straight")
+DEEP = BallRow(9, 12e-3, 55e-3, clearance=8e-6)
+ROLLING = (
+    RollingBearing([BALL], name="ball bearing with clearance"),
+    paired(ANGULAR, "back to back", 18e-3, preload=300.0, name="preloaded pair"),
+    RollingBearing([ROLLERS], name="cylindrical rollers"),
+    RollingBearing([DEEP], name="deep-groove bearing"),
+)
+
+
+def rolling_machine(**changes: Any) -> Machine:
+    """`one_stage` on rolling bearings that have no stiffness but by their elements, with crowned compliant teeth."""
+    held = [
+        MountedBearing(
+            linear_bearing(one.bearing.name, one.bearing.at, np.zeros((5, 5))), one.rotor, None, rolling=made
+        )
+        for one, made in zip(one_stage().bearings, ROLLING, strict=True)
+    ]
+    crowned = {"helix_deviation": HelixDeviation(crowning=12e-6), "tip_relief": TipRelief(15e-6, length=2e-3)}
+    gears = [
+        ShaftGear(toothed("pinion", TEETH[0], 1.0, **crowned), "in", 0.07),
+        ShaftGear(toothed("wheel", TEETH[1], -1.0), "out", 0.07),
+    ]
+    pairs = [GearPair("pinion", "wheel", "potential-energy", backlash=1e-4)]
+    return one_stage(**{"bearings": held, "gears": gears, "gear_pairs": pairs} | changes)
+
+
+def rolling_energy(bearing: RollingBearing, q: FloatArray) -> float:
+    """Energy of the elements one by one: Hertz's point contacts of balls, ISO 16281's lines of rollers [J]."""
+    total = -bearing.axial_preload * q[2]
+    for row in bearing.rows:
+        for number in range(row.count):
+            angle = 2.0 * math.pi * number / row.count
+            outward = np.array([math.cos(angle), math.sin(angle), 0.0])
+            if isinstance(row, BallRow):
+                span = (row.inner_groove + row.outer_groove - 1.0) * row.ball_diameter
+                arm = (row.inner_groove - 0.5) * row.ball_diameter
+                radius = 0.5 * row.pitch_diameter + arm * math.cos(row.contact_angle)
+                z = row.position + row.direction * arm * math.sin(row.contact_angle)
+                moved = q[:3] + np.cross([q[3], q[4], 0.0], radius * outward + [0.0, 0.0, z])
+                radial = span * math.cos(row.contact_angle) - 0.5 * row.clearance + outward @ moved
+                axial = row.direction * (span * math.sin(row.contact_angle) + row.axial_offset) + moved[2]
+                approach = max(math.hypot(radial, axial) - span, 0.0)
+                total += 0.4 * row.stiffness * approach**2.5
+                continue
+            for part in range(row.slices):
+                z = row.position + row.length * ((part + 0.5) / row.slices - 0.5)
+                moved = q[:3] + np.cross([q[3], q[4], 0.0], [0.0, 0.0, z])
+                approach = max(outward @ moved - 0.5 * row.clearance, 0.0)
+                line = 35948.0 * (1e3 * row.length) ** (8.0 / 9.0)  # N and mm
+                total += 9.0 / 19.0 * line / row.slices * (1e3 * approach) ** (19.0 / 9.0) * 1e-3
+    return float(total)
+
+
+def central_differences(function: Callable[[FloatArray], float], at: FloatArray, steps: FloatArray) -> FloatArray:
+    return np.array([(function(at + step) - function(at - step)) / (2.0 * step.max()) for step in np.diag(steps)])
+
+
+def line_loads(base: FloatArray, flat: float, coupling: float, width: float, depth: FloatArray) -> FloatArray:
+    """Load per width on the slices of a tooth pair pressed in by a depth, 0 or more, by quadratic programming."""
+    count = base.size
+    chain = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+    chain[0, 0] = chain[-1, -1] = 1.0
+    compliance = np.linalg.inv(np.diag(base) + coupling / width**2 * chain) + np.eye(count) / flat
+    lower = np.linalg.cholesky(compliance)
+    found, _ = nnls(lower.T, np.linalg.solve(lower, depth))
+    return np.asarray(found)
+
+
+def tooth_forces(point: OperatingPoint, own: OwnStatics, x: FloatArray) -> FloatArray:
+    """Forces of the teeth on all coordinates, mean over the phases, by their own quadratic programs (n,).
+
+    Stiffness and gaps of the slices are those of the tooth model. The depth of each phase is the one found, at which
+    the programs must carry the mesh force.
+    """
+    (pair,), (given,) = point.pairs, own.machine.gear_pairs
+    torque = own.machine.pair_torques[0]
+    geometry, (push, axial) = pair.pair.geometry, (own.plane(given)[0], own.plane(given)[1])
+    assert push == pytest.approx(pair.pair.push)
+    sense = 1 if own.machine.speeds["in"] > 0 else -1
+    faces = face_slices(geometry, sense=sense)
+    model = stiffness_under_load("potential-energy", geometry, abs(torque) / geometry.driver.base_radius)
+    contact = tooth_contact(geometry, model, corner_contact=True, faces=faces)
+    over, tilt = own.approach(given, faces.z)
+    found, phases = np.zeros(own.size), pair.mean.phases
+    states = contact.pairs(phases)
+    assert states.faces is not None
+    rows = np.argwhere(states.present)
+    shape = over @ x - float((over @ x).mean())
+    # The load does not move the mean approach, which has the shared compliance in it.
+    shared = contact.shared_compliance * pair.force
+    carried = np.zeros(phases.size)
+    for number, (phase, slot) in enumerate(rows):
+        xi = (states.position[phase, slot] + faces.shift - geometry.pitch_point_position) * geometry.base_pitch
+        depth = pair.mean.deflection[phase] - shared + shape - axial * xi * (tilt @ x) - states.faces.gap[number]
+        depth = np.where(states.faces.meeting[number], depth, -1.0)
+        load = line_loads(states.faces.base[number], faces.flattening, faces.coupling, faces.width, depth)
+        carried[phase] += faces.width * load.sum()
+        found += faces.width * load @ (over - axial * xi[:, None] * tilt) / phases.size
+    np.testing.assert_allclose(carried, pair.force, rtol=1e-6)
+    return found
+
+
+@pytest.mark.parametrize("torque", [20.0, 150.0])
+def test_rolling_bearings_and_crowned_teeth(torque: float) -> None:
+    """The equilibrium found is one of a machine whose every force is computed here: bearings by differences of energy.
+
+    The energy is convex, so it has no other. At 20 N m part of the face and half of the balls carry nothing.
+    """
+    machine = rolling_machine(torque=torque)
+    point, own = machine.operating_point(), OwnStatics(machine)
+    assert point.residual < 1e-9
+    x = np.concatenate([point.shaft(name).motions(nodes).T.ravel() for name, nodes in own.nodes.items()])
+    left = own.linear @ x - own.loads()
+    for bearing, made in zip(point.bearings, ROLLING, strict=True):
+        rows = own.bearing(bearing.name)
+        np.testing.assert_allclose(rows @ x, bearing.deflection, rtol=0.0, atol=1e-12)
+        steps = 2e-9 * np.array([1.0, 1.0, 1.0, 20.0, 20.0])
+        force = central_differences(lambda q, made=made: rolling_energy(made, q), rows @ x, steps)
+        np.testing.assert_allclose(bearing.force, force, rtol=0.0, atol=1e-5 * np.abs(force).max())
+        left += rows.T @ force
+    teeth = tooth_forces(point, own, x)
+    left += teeth
+    largest = np.abs(teeth.reshape(-1, 6)[:, :3]).max()
+    assert np.abs(left.reshape(-1, 6)[:, :3]).max() < 1e-7 * largest
+    assert np.abs(left.reshape(-1, 6)[:, 3:]).max() < 1e-7 * largest * 0.05
+    if torque == 20.0:
+        assert point.pairs[0].line_load.min() == 0.0
+        assert point.bearing("in 0.016").rolling.loaded < BALL.count

@@ -1,0 +1,294 @@
+r"""Sensitivity of the operating point: gradients of misalignment, K_Hβ and transmission error by the adjoint method.
+
+Let R(x, p) = 0 be the equilibrium of the static machine (:mod:`coupling.statics.operating_point`) and K_T = ∂R/∂x its
+tangent, bearings and flanks included. For an outcome y(x) with the gradient c = ∂y/∂x, one adjoint solve
+
+    K_Tᵀ λ = c      gives      dy/dp = -λᵀ ∂R/∂p
+
+for every parameter p (Haug, Choi and Komkov, Design Sensitivity Analysis of Structural Systems, 1986, section 1.2).
+
+- Bearing with the deflection δ = Eᵀ x and the force f, its law multiplied by 1 + p: dy/dp = -(Eᵀ λ) · f.
+- Bearing moved along its shaft by p, its seat staying: with w' the slope of the shaft's motions along z less that of
+  the seat's rigid motion, and t = ∂f/∂δ, dy/dp = -w'(λ) · f - (Eᵀ λ) · t w'(x). Strains of the shaft jump at a bearing;
+  the mean of both sides is exact, as the jumps of the two fields are alike.
+- Housing with K u = Sᵀ f and δ = x_s - S u, u the nodes' displacements and S the motions of the seats:
+
+    dy/dp = -λ_uᵀ dK u + λ_uᵀ dM g + f · dS λ_u + (tᵀ Eᵀ λ) · dS u,
+
+  with g the acceleration of free fall. Both fields are static responses to forces at the seats, which the residual
+  modes make exact, except that of the housing's own weight.
+- Housing with material added on its surface, by the thickness h along the outward normal: the surface without
+  tractions gives dy = ∫ G h dA with the density
+
+    G = -σ(u) : ε(λ_u) + ρ g · λ_u.
+
+Outcomes of the flanks follow by the chain rule from the approach over the face, on which they depend alone.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg, sparse
+
+from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
+from housing import ModeSet
+from housing.updating.sensitivities import ModelSensitivity, modal_sensitivities
+from meshes import Mesh
+from meshes.shape_functions import determinants, inverses, jacobians, shape_functions
+
+FloatArray = npt.NDArray[np.float64]
+
+OUTCOMES = ("misalignment", "k_h_beta", "transmission_error")
+"""Outcomes of a gear pair: misalignment [rad], K_Hβ, and peak-to-peak transmission error under load [m]."""
+
+_STEP = 1e-4  # of the flanks' compression under load, in the differences of K_Hβ and transmission error
+_SHAFT_STEP = 1e-6  # of the shaft's length, in the one-sided differences of its motions
+
+
+@dataclass(frozen=True, eq=False)
+class Adjoint:
+    """Adjoint state λ of an outcome at an operating point.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+    values : ndarray, shape (n,)
+        λ by the coordinates of the static machine: the outcome per unit of a load [outcome/N, outcome/(N m)].
+    """
+
+    point: OperatingPoint
+    values: FloatArray
+
+    @property
+    def housing(self) -> FloatArray:
+        """λ by the housing's coordinates, shape (h,)."""
+        return self.values[self.point.tangent.housing]
+
+    def deflection(self, bearing: str) -> FloatArray:
+        """Eᵀ λ of a bearing, shape (5,)."""
+        return np.asarray(self.point.tangent.bearings[bearing].T @ self.values)
+
+    def force(self, bearing: str) -> FloatArray:
+        """tᵀ Eᵀ λ of a bearing, shape (5,)."""
+        return np.asarray(self.point.bearing(bearing).stiffness.T @ self.deflection(bearing))
+
+    def by_bearing_stiffness(self, bearing: str) -> float:
+        """Differentiate the outcome by the factor 1 + p on a bearing's force and tangent, its preload included."""
+        return -float(self.deflection(bearing) @ self.point.bearing(bearing).force)
+
+    def by_bearing_position(self, bearing: str) -> float:
+        """Differentiate the outcome by a bearing's position on its shaft, towards +z [outcome/m]."""
+        load = self.point.bearing(bearing)
+        shaft = self.point.shaft(load.mounted.rotor)
+        adjoint = ShaftDeflection(shaft.part, self.values[self.point.tangent.shafts[shaft.name]], None)
+        moved = _slope(adjoint, load) - _seat_slope(self.point, load, self.housing)
+        own = _slope(shaft, load) - _seat_slope(self.point, load, self.point.housing)
+        return -float(moved @ load.force + self.force(bearing) @ own)
+
+
+def adjoint(point: OperatingPoint, gradient: FloatArray) -> Adjoint:
+    """Solve the adjoint state of an outcome.
+
+    Parameters
+    ----------
+    point : OperatingPoint
+    gradient : ndarray, shape (n,)
+        c, the outcome's gradient by the coordinates of the static machine.
+    """
+    return Adjoint(point, np.asarray(linalg.solve(point.tangent.stiffness.T, gradient)))
+
+
+def pair_adjoints(point: OperatingPoint) -> tuple[dict[str, Adjoint], ...]:
+    """Solve the adjoint states of the `OUTCOMES` of each gear pair; of an idle pair, of its misalignment alone."""
+    found = []
+    for pair, rows in zip(point.pairs, point.tangent.pairs, strict=True):
+        gradients = {"misalignment": -pair.pair.contact.face_slope}
+        if pair.force > 0.0:
+            gradients |= dict(zip(OUTCOMES[1:], _face_gradients(pair), strict=True))
+        found.append({name: adjoint(point, rows @ gradient) for name, gradient in gradients.items()})
+    return tuple(found)
+
+
+def tilt_adjoint(point: OperatingPoint, bearing: str) -> Adjoint:
+    """Solve the adjoint state of the angle between a shaft and its seat [rad]; its tilt must not be zero."""
+    load = point.bearing(bearing)
+    return adjoint(point, point.tangent.bearings[bearing][:, 3:] @ (load.deflection[3:] / load.tilt))
+
+
+def _face_gradients(pair: PairLoad) -> FloatArray:
+    """Gradients of K_Hβ and peak-to-peak transmission error by the approach, by central differences, (2, m)."""
+    contact = pair.pair.contact
+    approach = pair.approach - pair.pair.clearance * contact.uniform
+
+    def outcomes(approach: FloatArray) -> FloatArray:
+        shape = approach - contact.uniform * float(contact.face_mean @ approach)
+        fine = contact.under_force(contact.at(approach).force, shape, pair.fine.phases)
+        load = fine.line_load.mean(axis=0)
+        return np.array([load.max() / load.mean(), np.ptp(fine.deflection)])
+
+    step = _STEP * pair.force / pair.mean_stiffness
+    steps = step * np.eye(contact.size)
+    # The tilt has another unit; at its step the ends of the path of contact approach as much.
+    steps[-1] /= pair.pair.geometry.base_pitch
+    sizes = np.diag(steps)
+    return np.array(
+        [
+            (outcomes(approach + way) - outcomes(approach - way)) / (2.0 * size)
+            for way, size in zip(steps, sizes, strict=True)
+        ]
+    ).T
+
+
+def _slope(shaft: ShaftDeflection, load: BearingLoad) -> FloatArray:
+    """Differentiate a shaft's motions at a bearing along z, as the mean of its two sides, shape (5,)."""
+    at, step = load.mounted.bearing.at, _SHAFT_STEP * shaft.part.shaft.length
+    here = shaft.motions([at])[:5, 0]
+    sides = []
+    for way in (1.0, -1.0):
+        places = at + way * step * np.array([1.0, 2.0])
+        if 0.0 <= places[1] <= shaft.part.shaft.length:
+            near, far = shaft.motions(places)[:5].T
+            sides.append((4.0 * near - far - 3.0 * here) / (2.0 * way * step))
+        else:
+            # Beyond the end nothing strains.
+            sides.append(_rigid_slope(here[3:]))
+    return np.asarray(0.5 * (sides[0] + sides[1]))
+
+
+def _seat_slope(point: OperatingPoint, load: BearingLoad, coordinates: FloatArray | None) -> FloatArray:
+    """Differentiate a seat's rigid motion along z, by the housing's coordinates, shape (5,)."""
+    if coordinates is None:
+        return np.zeros(5)
+    rows = point.tangent.bearings[load.name][point.tangent.housing]
+    return _rigid_slope(-rows[:, 3:].T @ coordinates)
+
+
+def _rigid_slope(rotation: FloatArray) -> FloatArray:
+    """Differentiate the motions of a rigid body along z, by its rotations about x and y."""
+    return np.array([rotation[1], -rotation[0], 0.0, 0.0, 0.0])
+
+
+PortRates = Mapping[str, sparse.csr_array]
+"""dS of each bearing whose port a parameter moves: its motions from the nodes', shape (5, 3 n_nodes)."""
+
+
+@dataclass(frozen=True, eq=False)
+class HousingFields:
+    """Displacements of a housing's nodes: of the operating point, of adjoint states, and of the weight's acceleration.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    constants : ndarray, shape (3, n_elements)
+        λ, μ [Pa] and ρ [kg/m³].
+    point : OperatingPoint
+    adjoints : sequence of Adjoint
+    displacement : ndarray, shape (n_nodes, 3)
+        u [m].
+    adjoint : ndarray, shape (n_adjoints, n_nodes, 3)
+        λ_u of each adjoint state [outcome/N].
+    gravity : ndarray, shape (3,)
+        g [m/s²].
+    """
+
+    mesh: Mesh
+    constants: FloatArray
+    point: OperatingPoint
+    adjoints: Sequence[Adjoint]
+    displacement: FloatArray
+    adjoint: FloatArray
+    gravity: FloatArray
+
+    def by_parameters(self, rates: Sequence[ModelSensitivity], ports: Sequence[PortRates]) -> FloatArray:
+        """Differentiate each adjoint state's outcome by parameters of the housing, shape (n_adjoints, n_parameters).
+
+        Parameters
+        ----------
+        rates : sequence of ModelSensitivity
+            Derivatives of the housing's model by each parameter.
+        ports : sequence of PortRates
+            Those of the bearings' ports.
+        """
+        weight = np.broadcast_to(self.gravity, self.displacement.shape)
+        fields = np.concatenate([np.stack([self.displacement, weight]), self.adjoint])
+        found = modal_sensitivities(self.mesh, self.constants, fields, rates)
+        total = found.mass[:, 1, 2:] - found.stiffness[:, 0, 2:]
+        for row, changes in zip(total, ports, strict=True):
+            for name, change in changes.items():
+                moved = change @ self.adjoint.reshape(len(self.adjoint), -1).T
+                seat = change @ self.displacement.ravel()
+                row += self.point.bearing(name).force @ moved
+                row += np.array([one.force(name) @ seat for one in self.adjoints])
+        return total.T
+
+    def surface_density(self) -> FloatArray:
+        """G of each adjoint state at the nodes [outcome/m³], shape (n_adjoints, n_nodes); of use on the surface.
+
+        Gradients of the fields are averaged over the elements at a node, weighted by their volumes there.
+        """
+        fields = np.concatenate([self.displacement[None], self.adjoint])
+        gradients, constants = _nodal_means(self.mesh, fields, self.constants)
+        strains = 0.5 * (gradients + gradients.swapaxes(-1, -2))
+        lam, mu, density = constants
+        stress = 2.0 * mu[:, None, None] * strains[0]
+        stress += (lam * np.trace(strains[0], axis1=1, axis2=2))[:, None, None] * np.eye(3)
+        own = np.einsum("nij,anij->an", stress, strains[1:], optimize=True)
+        return np.asarray(density * (self.adjoint @ self.gravity) - own)
+
+
+def housing_fields(
+    point: OperatingPoint, adjoints: Sequence[Adjoint], mesh: Mesh, constants: FloatArray, modes: ModeSet
+) -> HousingFields:
+    """Return the displacements of a housing's nodes at an operating point and of adjoint states.
+
+    Parameters
+    ----------
+    point : OperatingPoint
+        With this housing.
+    adjoints : sequence of Adjoint
+    mesh : Mesh
+    constants : ndarray, shape (3, n_elements)
+        λ, μ [Pa] and ρ [kg/m³].
+    modes : ModeSet
+        With residual modes for the bearings.
+    """
+    assert point.housing is not None
+    every = np.arange(len(mesh.points))
+    moved = [modes.displacement(coordinates, every) for coordinates in (point.housing, *(a.housing for a in adjoints))]
+    gravity = point.shafts[0].gravity
+    return HousingFields(
+        mesh,
+        constants,
+        point,
+        adjoints,
+        moved[0],
+        np.array(moved[1:]).reshape(-1, *moved[0].shape),
+        np.zeros(3) if gravity is None else np.array(gravity),
+    )
+
+
+def _nodal_means(mesh: Mesh, fields: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Means over the elements at each node: ∂_j f_i, (n_fields, n_nodes, 3, 3), and constants, (3, n_nodes)."""
+    nodes = len(mesh.points)
+    gradients, means = np.zeros((len(fields), nodes, 3, 3)), np.zeros((3, nodes))
+    weights, first = np.zeros(nodes), 0
+    for block in mesh.blocks:
+        places = np.array(block.of.places, dtype=np.float64).T
+        reference = shape_functions(block.kind, places)[1]
+        jacobian = jacobians(mesh.points, block.nodes, reference)
+        determinant = determinants(jacobian)
+        inverse = inverses(jacobian, determinant)
+        own = constants[:, first : first + len(block)]
+        first += len(block)
+        slopes = np.einsum("kjeq,qak->eqja", inverse, reference, optimize=True)
+        at = block.nodes.ravel()
+        np.add.at(weights, at, determinant.ravel())
+        for mean, values in zip(means, own, strict=True):
+            np.add.at(mean, at, (determinant * values[:, None]).ravel())
+        for gradient, field in zip(gradients, fields, strict=True):
+            local = np.einsum("eqja,eai->eqij", slopes, field[block.nodes], optimize=True)
+            np.add.at(gradient, at, (local * determinant[..., None, None]).reshape(-1, 3, 3))
+    weights = np.where(weights > 0.0, weights, 1.0)
+    return gradients / weights[:, None, None], means / weights

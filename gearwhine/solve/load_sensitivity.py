@@ -1,0 +1,209 @@
+"""Sensitivity of a case's operating point: change of every gear pair by walls, bearing stiffness and positions.
+
+The gradients are those of :mod:`coupling.statics.sensitivity`. Parameters of the housing are those of the case's
+``[update]``, else the walls of a box; of any other housing, the flat faces of its surface.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from coupling.statics.operating_point import OperatingPoint
+from coupling.statics.sensitivity import OUTCOMES, HousingFields, PortRates, housing_fields, pair_adjoints
+from gearwhine.case import Case, UpdateParameter
+from gearwhine.case.box import FACES
+from gearwhine.case.units import kind_of
+from gearwhine.from_case.mesh import materials_of
+from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
+from housing.fem.surface import flat_faces, surface_quadrature
+from housing.model.housing import bearing_port
+from housing.model.material import element_constants
+from housing.model.seats import seat_matrix
+from housing.updating import ModelSensitivity
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+_LENGTH, _PART = 1e-3, 0.1  # steps of the table: of lengths [m], and relative ones
+_LEAST_FACE = 0.01  # part of the whole surface from which a flat face is told
+
+
+@dataclass(frozen=True, eq=False)
+class Influence:
+    """Influence of a parameter on every gear pair, to first order.
+
+    Attributes
+    ----------
+    parameter : str
+    kind : str
+        ``housing``, ``face``, ``bearing stiffness`` or ``bearing position``.
+    step : float
+        Change of the parameter: a length [m], or a part of its value.
+    is_length : bool
+    changes : ndarray, shape (n_pairs, 3)
+        Of the `OUTCOMES` by the step; NaN for the last two of an idle pair.
+    """
+
+    parameter: str
+    kind: str
+    step: float
+    is_length: bool
+    changes: FloatArray
+
+    @property
+    def step_text(self) -> str:
+        """The step in words."""
+        return f"+{1e3 * self.step:.3g} mm" if self.is_length else f"+{100.0 * self.step:.3g} %"
+
+
+@dataclass(frozen=True, eq=False)
+class LoadSensitivity:
+    """Sensitivity of an operating point.
+
+    Attributes
+    ----------
+    influences : tuple of Influence
+        The largest change of a misalignment over the face first.
+    density : ndarray, shape (n_pairs, n_nodes), or None
+        Misalignment by material added on the housing's surface, by its thickness and area [rad/m³].
+    """
+
+    influences: tuple[Influence, ...]
+    density: FloatArray | None
+
+
+def solve_load_sensitivity(
+    case: Case, point: OperatingPoint, housing: SolvedHousing | None, progress: Progress = silent
+) -> LoadSensitivity:
+    """Compute the gradients of an operating point, ranked.
+
+    Parameters
+    ----------
+    case : Case
+    point : OperatingPoint
+        Of its machine.
+    housing : SolvedHousing or None
+        That the machine stands in.
+    progress : callable
+
+    Raises
+    ------
+    meshes.GeometryError
+        Where the mesh of a box cannot follow its parameters.
+    """
+    progress("adjoint states of the gear pairs")
+    pairs = pair_adjoints(point)
+    adjoints = [one for pair in pairs for one in pair.values()]
+    places = [(n, OUTCOMES.index(name)) for n, pair in enumerate(pairs) for name in pair]
+
+    def influence(parameter: str, kind: str, derivatives: Sequence[float] | FloatArray, step: float) -> Influence:
+        changes = np.full((len(pairs), len(OUTCOMES)), np.nan)
+        for place, derivative in zip(places, derivatives, strict=True):
+            changes[place] = step * derivative
+        return Influence(parameter, kind, step, step == _LENGTH, changes)
+
+    found = []
+    for bearing in point.bearings:
+        name = bearing.name
+        found.append(influence(name, "bearing stiffness", [one.by_bearing_stiffness(name) for one in adjoints], _PART))
+        found.append(influence(name, "bearing position", [one.by_bearing_position(name) for one in adjoints], _LENGTH))
+    density = None
+    if housing is not None and point.housing is not None:
+        progress("gradients by the housing")
+        parted, material, materials = materials_of(case, housing.mesh)
+        constants = element_constants(parted, material, materials)
+        fields = housing_fields(point, adjoints, housing.mesh, constants, housing.modes)
+        surface = fields.surface_density()
+        density = surface[[n for n, (_, outcome) in enumerate(places) if outcome == 0]]
+        parameters = housing_parameters(case)
+        if parameters:
+            derivatives = by_case_parameters(case, fields, parameters)
+            for given, column in zip(parameters, derivatives.T, strict=True):
+                number = fitted_case(case, parameters=[given]).numbers[0]
+                is_length = not given.factor and kind_of(given.range[0]) == kind_of("1 m")
+                step = _LENGTH if is_length else _PART * number.start
+                one = influence(given.name, "housing", column, step)
+                found.append(one if is_length else Influence(one.parameter, one.kind, _PART, False, one.changes))
+        else:
+            for name, integrals in _faces(housing.mesh, surface):
+                found.append(influence(name, "face", integrals, _LENGTH))
+    widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
+    found.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
+    return LoadSensitivity(tuple(found), density)
+
+
+def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
+    """Return the parameters of a case's ``[update]``, else a thickness for every wall of its box; none for others."""
+    if case.update is not None:
+        return tuple(case.update.parameter)
+    if case.housing is None or case.housing.box is None:
+        return ()
+    box = case.housing.box
+    made = []
+    for face in FACES:
+        thickness = getattr(box.walls, face)
+        is_cover = box.cover is not None and box.cover.face == face and box.cover.thickness is not None
+        key = "housing.box.cover.thickness" if is_cover else f"housing.box.wall.{face}"
+        span = (f"{0.5 * thickness:.9g} m", f"{2.0 * thickness:.9g} m")
+        made.append(UpdateParameter(name=f"{face} wall", keys=(key,), range=span))
+    return tuple(made)
+
+
+def by_case_parameters(case: Case, fields: HousingFields, parameters: Sequence[UpdateParameter]) -> FloatArray:
+    """Differentiate outcomes by numbers of a case's housing, in SI, shape (n_adjoints, n_parameters).
+
+    Raises
+    ------
+    CaseError
+        As :func:`gearwhine.from_case.parametric_housing.fitted_case`.
+    meshes.GeometryError
+        Where the mesh of a box cannot follow.
+    """
+    fitted = fitted_case(case, parameters=parameters)
+    meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
+    rates = meshed.rates()
+    ports = [_port_rates(meshed, number, rate) for number, rate in enumerate(rates)]
+    slopes = [one.deviation(z, 1.0) for one, z in zip(fitted.parameters, fitted.start.tolist(), strict=True)]
+    return fields.by_parameters(rates, ports) / np.array(slopes)
+
+
+def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> PortRates:
+    """Differentiate the ports of all bearings by a coordinate; empty where their seats stay."""
+    above, below = meshed.beside(number)
+    assert above.housing is not None
+    assert below.housing is not None
+    if rate.velocity is None and above.housing.seat == below.housing.seat:
+        return {}
+    ports: list[dict[str, sparse.csr_array]] = []
+    for case, way in ((above, 1.0), (below, -1.0)):
+        assert case.housing is not None
+        mesh = (
+            meshed.mesh
+            if rate.velocity is None
+            else replace(meshed.mesh, points=meshed.mesh.points + way * RATE_STEP * rate.velocity)
+        )
+        seats = {seat.name: seat.build() for seat in case.housing.seat}
+        places = bearing_places(case)
+        ports.append({name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()})
+    return {name: (port - ports[1][name]) / (2.0 * RATE_STEP) for name, port in ports[0].items()}
+
+
+def _faces(mesh: Mesh, density: FloatArray) -> Iterator[tuple[str, FloatArray]]:
+    """Yield the flat faces of a surface that are large, each with its words and the integral of densities over it."""
+    faces = flat_faces(mesh)
+    whole = sum(face.area for face in faces)
+    for face in faces:
+        if face.area < _LEAST_FACE * whole:
+            continue
+        total = np.zeros(len(density))
+        for part in surface_quadrature(mesh, face.facets):
+            total += np.einsum("nfa,qa,fq->n", density[:, part.facets], part.shape_values, part.areas, optimize=True)
+        axis = int(np.abs(face.normal).argmax())
+        way = f"{'-+'[int(face.normal[axis] > 0.0)]}{'xyz'[axis]}"
+        x, y, z = (1e3 * face.center).round().astype(int).tolist()
+        yield f"face to {way} at ({x}, {y}, {z}) mm", total

@@ -1,0 +1,261 @@
+"""Operating point: machines that have none, symmetries, causes of misalignment, and what a pair tells of its load."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from own_statics import FULL, STEEL, STIFFNESS, TEETH, distance, linear_bearing, one_stage, toothed
+
+from coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftGear
+from coupling.errors import EquilibriumNotFoundError
+from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, tooth_contact
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.loaded.gear_pair import GearPair
+from coupling.gears.stiffness.models import stiffness_under_load
+from coupling.machine.components import HousingComponent
+from coupling.statics import static_model
+from coupling.statics.operating_point import CAUSES
+from rotors import EquilibriumError, Rotor, Segment
+from rotors.rolling_bearings import BallRow, RollingBearing
+
+FloatArray = npt.NDArray[np.float64]
+
+RADIAL = 1e8 * np.eye(2)
+ISOTROPIC = np.diag([2e8, 2e8, 5e7, 3e4, 3e4])
+BALL = RollingBearing([BallRow(9, 11e-3, 46e-3, clearance=12e-6)])
+
+
+def idler(housing: HousingComponent | None = None, **changes: Any) -> Machine:
+    """Three equal gears in a row: as much torque leaves the machine as enters it."""
+    apart = distance(23, 23, 0.0)
+    names = ("one", "two", "three")
+    seats = {name: None if housing is None else f"{name}" for name in names}
+    shafts = [Shaft(Rotor(name, [Segment(0.2, 0.04, 0.0, STEEL)]), (n * apart, 0.0)) for n, name in enumerate(names)]
+    held = [
+        MountedBearing(
+            linear_bearing(f"{name} {at}", at, FULL),
+            name,
+            None if seats[name] is None else f"{name} {at}",
+        )
+        for name in names
+        for at in (0.02, 0.17)
+    ]
+    gears = [ShaftGear(toothed(name, 23), name, 0.08) for name in names]
+    pairs = [GearPair(*names[n : n + 2], ConstantStiffness(STIFFNESS)) for n in (0, 1)]
+    parts: dict[str, Any] = {"speed": 100.0, "torque": 80.0, "housing": housing}
+    return Machine(shafts, held, gears, pairs, **parts | changes)
+
+
+def rigid_housing(machine: Machine, mass: float = 30.0) -> HousingComponent:
+    """A housing free in space that does not deform: six modes at rest."""
+    seats, heights, axes = {}, {}, {}
+    for one in machine.bearings:
+        axis = machine.shaft(one.rotor).axis
+        centre = np.array([*axis, one.bearing.at])
+        turns = np.cross(np.eye(3), centre)  # motion of the centre by rotations about x, y, z
+        seats[one.bearing.name] = np.block([[np.eye(3), np.zeros((3, 3))], [turns, np.eye(3)]]) / math.sqrt(mass)
+        heights[one.bearing.name], axes[one.bearing.name] = one.bearing.at, axis
+    return HousingComponent(
+        "box",
+        ("housing",) * 6,
+        np.zeros((6, 6)),
+        np.zeros((6, 6)),
+        np.zeros((6, 6)),
+        seats=seats,
+        seat_z=heights,
+        sensors={},
+        seat_axes=axes,
+    )
+
+
+def test_a_free_housing_carries_what_balances_and_nothing_else() -> None:
+    grounded = idler()
+    box = rigid_housing(grounded)
+    free = idler(box)
+    point, expected = free.operating_point(), grounded.operating_point()
+    for one in expected.bearings:
+        np.testing.assert_allclose(point.bearing(one.name).force, one.force, atol=1e-6 * expected.pairs[0].force)
+    assert sum("the housing" in words for words in point.free) >= 1
+    # With gears of other sizes the housing has to be held against the difference of the torques.
+    with pytest.raises(CouplingError, match=r"nothing holds .*, and the loads drive it; expected a bearing that holds"):
+        idler(box, outputs=[Output("two", 80.0)]).operating_point()
+    with pytest.raises(CouplingError, match="box: expected its participation in rigid motions, for its weight"):
+        free.operating_point((0.0, -9.81, 0.0))
+
+
+def spur(stiffness: npt.ArrayLike = RADIAL, **changes: Any) -> Machine:
+    return one_stage(hand=0.0, stiffness=stiffness, **changes)
+
+
+def test_machines_without_an_operating_point_are_refused() -> None:
+    with pytest.raises(CouplingError, match=r"nothing holds the axial motion of shaft 'in', and the loads drive it"):
+        spur().operating_point((0.0, 0.0, -9.81))
+    with pytest.raises(CouplingError, match="'pinion' -> 'wheel': no flanks carry a load under a torque of 0 N m; exp"):
+        spur(torque=0.0).operating_point((0.0, -9.81, 0.0))
+    machine = spur()
+    missing = replace(machine, bearings=machine.bearings[1:])
+    with pytest.raises(
+        EquilibriumNotFoundError, match=r"out of balance on shaft 'in' after \d+ steps; expected at most"
+    ):
+        missing.operating_point()
+    with pytest.raises(CouplingError, match=r"nothing holds the .* of shaft 'in', and the loads drive it"):
+        replace(machine, bearings=machine.bearings[2:]).operating_point()
+
+
+def rolling(machine: Machine, *which: int) -> Machine:
+    held = [
+        replace(one, bearing=linear_bearing(one.bearing.name, one.bearing.at, np.zeros((5, 5))), rolling=BALL)
+        if number in which
+        else one
+        for number, one in enumerate(machine.bearings)
+    ]
+    return replace(machine, bearings=held)
+
+
+def test_an_overloaded_rolling_bearing_is_refused() -> None:
+    machine = replace(rolling(spur(ISOTROPIC), 0), torque=4e4)
+    with pytest.raises(
+        EquilibriumError, match=r"the elements of row 1 are pressed by .* % of their diameter; expected"
+    ):
+        machine.operating_point()
+
+
+def test_a_shaft_loose_in_its_play_bears_nothing() -> None:
+    """An idle branch in bearings with clearance finds some place; its bearings and teeth carry no load."""
+    machine = idler(outputs=[Output("two", 80.0)])
+    point = rolling(machine, 4, 5).operating_point()
+    for at in (0.02, 0.17):
+        assert np.abs(point.bearing(f"three {at}").force).max() < 1e-6 * point.pairs[0].force
+    assert point.pairs[1].force < 1e-6 * point.pairs[0].force
+
+
+def test_gaps_alone_hold_a_loaded_shaft() -> None:
+    """A ring with play bears along the load as deep as its law says: F (depth)^n beyond the gap."""
+    law = GapLaw(2000.0, 2e-5, 1.5, 8e-6)
+    machine = spur()
+    point = replace(machine, bearings=[replace(one, law=law) for one in machine.bearings]).operating_point()
+    for bearing in point.bearings:
+        size, reach = np.hypot(*bearing.force[:2]), np.hypot(*bearing.deflection[:2])
+        assert reach == pytest.approx(law.gap + law.depth * (size / law.force) ** (1.0 / law.exponent), rel=1e-9)
+        np.testing.assert_allclose(bearing.force[:2] / size, bearing.deflection[:2] / reach, atol=1e-9)
+        np.testing.assert_allclose(bearing.stiffness[:2, :2], law.tangent(bearing.force[:2]), rtol=1e-6)
+    total = sum(bearing.force for bearing in point.bearings if bearing.mounted.rotor == "in")
+    assert np.hypot(*total[:2]) == pytest.approx(point.pairs[0].force, rel=1e-9)
+
+
+@settings(max_examples=6)
+@given(st.floats(-math.pi, math.pi), st.sampled_from([-1, 1]), st.floats(20.0, 300.0))
+def test_the_machine_may_stand_at_any_angle(angle: float, sense: int, torque: float) -> None:
+    """About its first axis, on bearings alike in all directions: forces turn with it, and nothing else changes."""
+    teeth = [GearPair("pinion", "wheel", "weber-banaschek", backlash=1e-4)]
+    apart = distance(*TEETH, 1.0)
+    still = one_stage(stiffness=ISOTROPIC, gear_pairs=teeth, torque=sense * torque)
+    turned = replace(
+        still,
+        shafts=[still.shafts[0], replace(still.shafts[1], axis=(apart * math.cos(angle), apart * math.sin(angle)))],
+    )
+    one, other = still.operating_point(), turned.operating_point()
+    c, s = math.cos(angle - 0.4), math.sin(angle - 0.4)
+    whole = np.zeros((5, 5))
+    whole[:2, :2] = whole[3:, 3:] = [[c, -s], [s, c]]
+    whole[2, 2] = 1.0
+    for first, second in zip(one.bearings, other.bearings, strict=True):
+        np.testing.assert_allclose(second.force, whole @ first.force, atol=1e-7 * one.pairs[0].force)
+    assert other.pairs[0].misalignment == pytest.approx(one.pairs[0].misalignment, rel=1e-6)
+    assert other.pairs[0].k_h_beta == pytest.approx(one.pairs[0].k_h_beta, rel=1e-6)
+
+
+def test_stiff_parts_have_no_share_in_the_misalignment() -> None:
+    """Each cause vanishes with the compliance that makes it, and the shares are the whole."""
+    hard = np.diag([1e13, 1e13, 1e13, 1e11, 1e11])
+    soft = spur(ISOTROPIC)
+    (given,) = soft.operating_point().pairs
+    assert set(given.misalignment_by_cause) == set(CAUSES)
+    assert sum(given.misalignment_by_cause.values()) == pytest.approx(given.misalignment, rel=1e-9)
+    assert given.misalignment_by_cause["housing"] == 0.0
+    (stiff,) = spur(hard).operating_point().pairs
+    assert abs(stiff.misalignment_by_cause["bearings"]) < 1e-4 * abs(stiff.misalignment)
+    material = replace(STEEL, youngs_modulus=1e3 * STEEL.youngs_modulus, shear_modulus=1e3 * STEEL.shear_modulus)
+    shafts = [
+        replace(
+            one, rotor=replace(one.rotor, segments=[replace(part, material=material) for part in one.rotor.segments])
+        )  # type: ignore[arg-type]
+        for one in soft.shafts
+    ]
+    (rigid,) = replace(soft, shafts=shafts).operating_point().pairs
+    for cause in ("shafts", "bodies"):
+        assert abs(rigid.misalignment_by_cause[cause]) < 2e-3 * abs(given.misalignment_by_cause[cause])
+    # Rigid shafts tilt as their bearings give: by the difference of their deflections over their distance.
+    point = replace(soft, shafts=shafts).operating_point()
+    tilt = 0.0
+    for shaft, side, (left, right) in (("in", 1.0, (0.016, 0.164)), ("out", -1.0, (0.01, 0.154))):
+        first, last = (point.bearing(f"{shaft} {at}").deflection[:2] for at in (left, right))
+        tilt += side * float(np.array(rigid.pair.push) @ (last - first)) / (right - left)
+    assert rigid.misalignment == pytest.approx(-tilt, rel=1e-2)
+
+
+def test_five_stations_over_the_face_are_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = one_stage(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
+    (coarse,) = machine.operating_point().pairs
+    monkeypatch.setattr(static_model, "FACE_STATIONS", 9)
+    (fine,) = machine.operating_point().pairs
+    assert coarse.misalignment == pytest.approx(fine.misalignment, rel=2e-3)
+    assert coarse.k_h_beta == pytest.approx(fine.k_h_beta, rel=5e-3)
+    assert coarse.misalignment_by_cause["bodies"] == pytest.approx(fine.misalignment_by_cause["bodies"], rel=5e-3)
+
+
+def test_the_load_of_a_pair_is_that_of_flanks_with_its_gap() -> None:
+    """Spur teeth see the machine's deflection as a gap over the face, as if their flanks had been ground so."""
+    machine = spur(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
+    (pair,) = machine.operating_point().pairs
+    geometry = pair.pair.geometry
+    assert pair.force == pytest.approx(150.0 / geometry.driver.base_radius, rel=1e-9)
+    model = stiffness_under_load("weber-banaschek", geometry, pair.force)
+    contact = tooth_contact(geometry, model, corner_contact=True, faces=replace(face_slices(geometry), gap=pair.gap))
+    ground = loaded_transmission_error(contact, pair.force, pair.fine.phases)
+    assert ground.line_loads is not None
+    load = ground.line_loads.sum(axis=1).mean(axis=0)
+    assert pair.k_h_beta == pytest.approx(load.max() / load.mean(), rel=1e-6)
+    np.testing.assert_allclose(pair.transmission_error, ground.transmission_error, rtol=1e-6)
+    assert pair.mean_stiffness == pytest.approx(ground.tangent_stiffness.mean(), rel=1e-6)
+    assert pair.gap.mean() == pytest.approx(0.0, abs=1e-12)
+    assert np.polyfit(pair.z, pair.gap, 1)[0] == pytest.approx(pair.misalignment, rel=1e-9)
+    # The flanks carry more where the gap is less.
+    assert (pair.line_load.argmax() == 0) == (pair.misalignment > 0.0)
+
+
+def test_the_common_face_carries_wherever_it_lies() -> None:
+    """A wheel wider than its pinion is pressed where the pinion is, 8 mm off its own middle or not.
+
+    Its shaft is thicker than its body, so that the place of the body does not matter.
+    """
+    machine = spur(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
+    thick = replace(machine.shafts[1], rotor=Rotor("out", [Segment(0.16, 0.12, 0.0, STEEL)]))
+    wide = replace(machine.gears[1], gear=replace(machine.gears[1].gear, face_width=45e-3))
+    centred, moved = (
+        replace(
+            machine, shafts=[machine.shafts[0], thick], gears=[machine.gears[0], replace(wide, at=wide.at + shift)]
+        ).operating_point()
+        for shift in (0.0, 8e-3)
+    )
+    for one, other in zip(centred.bearings, moved.bearings, strict=True):
+        np.testing.assert_allclose(other.force, one.force, rtol=0.0, atol=1e-7 * centred.pairs[0].force)
+    assert moved.pairs[0].misalignment == pytest.approx(centred.pairs[0].misalignment, rel=1e-7)
+
+
+def test_the_mean_load_is_that_of_sound_teeth() -> None:
+    """One pitted tooth and pitch deviations move the teeth as they pass, and not the mean over a hunting period."""
+    teeth = [GearPair("pinion", "wheel", "weber-banaschek")]
+    machine = spur(ISOTROPIC, gear_pairs=teeth)
+    damaged = replace(machine.gears[0].gear, faults=(Spall(0, 0.3, 0.45, 50e-6),), pitch_deviations=(5e-6, *[0.0] * 22))
+    (expected,) = machine.operating_point().pairs
+    (found,) = (
+        replace(machine, gears=[replace(machine.gears[0], gear=damaged), machine.gears[1]]).operating_point().pairs
+    )
+    np.testing.assert_array_equal(found.line_load, expected.line_load)
+    assert found.misalignment == expected.misalignment
