@@ -236,8 +236,11 @@ def require_load(case: Case) -> None:
     """
     require(case, "rotor", "bearing", "operation", command="load")
     assert case.operation is not None
-    if case.operation.torque == 0.0 and case.operation.gravity is None:
-        expected = "a torque, or gravity: without a load the machine stays as it is"
+    operation = case.operation
+    if operation.torque == 0.0 and (case.gear_pair or operation.gravity is None):
+        expected = (
+            "a torque, which loads the flanks" if case.gear_pair else "a torque, or gravity, which loads the shafts"
+        )
         raise CaseError([Problem("operation.torque", 0.0, expected)])
     require_machine(case)
 

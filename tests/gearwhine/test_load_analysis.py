@@ -172,7 +172,9 @@ def test_the_terminal_is_compact(helical: Result[SolvedLoad], capsys: pytest.Cap
 
 def test_nothing_that_loads_the_machine_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["load", "spur-pair", "-q", "--set", "operation.torque=0 N*m"]) == 2
-    assert "operation.torque: expected a torque, or gravity: without a load" in capsys.readouterr().err
+    assert "operation.torque: expected a torque, which loads the flanks, got 0.0" in capsys.readouterr().err
+    assert run_command(["load", "overhung-fan", "-q"]) == 2
+    assert "operation.torque: expected a torque, or gravity, which loads the shafts" in capsys.readouterr().err
     with pytest.raises(CaseError, match="rotor"):
         gw.load("gear-62-62").operating_point()
 
@@ -184,14 +186,14 @@ def test_thrust_that_nothing_carries_is_refused(capsys: pytest.CaptureFixture[st
     assert "input" in capsys.readouterr().err
 
 
-def test_weight_alone_loads_a_machine_without_torque() -> None:
-    changes = {"operation.torque": 0.0, "operation.gravity": [0.0, -9.81, 0.0]}
-    study = gw.load("spur-pair", changes)
-    result = study.operating_point()
-    carried = sum(bearing["force_n"][1] for bearing in result.document["bearings"])
-    mass = sum(study.machine.rotor(name).mass for name in ("input", "output"))
-    assert carried == pytest.approx(-9.81 * mass, rel=1e-6)
-    assert result.document["gravity_m_per_s2"] == [0.0, -9.81, 0.0]
+def test_weight_alone_loads_a_machine_without_gears() -> None:
+    study = gw.load("overhung-fan", {"operation.gravity": [0.0, -9.81, 0.0]})
+    document = study.operating_point().document
+    carried = sum(bearing["force_n"][1] for bearing in document["bearings"])
+    (shaft,) = study.machine.shafts
+    assert carried == pytest.approx(-9.81 * study.machine.rotor(shaft.name).mass, rel=1e-6)
+    assert document["gravity_m_per_s2"] == [0.0, -9.81, 0.0]
+    assert document["gear_pairs"] == []
 
 
 def test_life_of_a_ball_bearing_by_hand() -> None:
