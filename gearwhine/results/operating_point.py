@@ -74,8 +74,6 @@ BEARING = (
         _MOTION,
         "",
         "tangent stiffness over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad",
-        heading="stiffness x, y [N/µm]",
-        shown=lambda row: ", ".join(f"{_MEGA * row['stiffness'][motion][motion]:.3g}" for motion in range(2)),
     ),
     Quantity(
         "peak_pressure_pa",
@@ -98,6 +96,11 @@ BEARING = (
         "load of the rolling element on the outer ring, row after row",
     ),
     Quantity("equivalent_load_n", lambda one: one.equivalent_load),
+    Quantity("dynamic_rating_n", lambda one: one.rating),
+    Quantity(
+        "dynamic_rating_from",
+        lambda one: None if one.rating is None else "geometry" if one.given_rating is None else "case",
+    ),
     Quantity(
         "life_h",
         lambda one: one.life,
@@ -105,7 +108,17 @@ BEARING = (
         (),
         "h",
         "basic rating life L10 by ISO 281 at the speed of operation",
-        heading="life L10 [h]",
+        heading="L10 [h]",
+        shown=".3g",
+    ),
+    Quantity(
+        "reference_life_h",
+        lambda one: one.reference_life,
+        "bearing_reference_life",
+        (),
+        "h",
+        "basic reference rating life L10r by ISO/TS 16281 of the elements' loads, at the speed of operation",
+        heading="L10r [h]",
         shown=".3g",
     ),
 )

@@ -6,7 +6,7 @@ equilibrium finds.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -22,8 +22,8 @@ from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.plausibility import bearing_load_warnings
-from rotors.rolling_bearings import BallRow, RollerRow
-from rotors.rolling_bearings.life import equivalent_load, rated_revolutions
+from rotors.rolling_bearings import BallRow, RollerRow, RollingState, Row, dynamic_rating
+from rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,7 +39,7 @@ _ARC_MINUTE = math.radians(1.0 / 60.0)
 # Largest angles between shaft and seat (SKF, Rolling Bearings, 2018: deep groove ball bearings 2' to 10', cylindrical
 # roller bearings 3' or 4' by their series), and the pressures of the static rating (ISO 76) [Pa].
 _BALL_TILT, _ROLLER_TILT = 10.0 * _ARC_MINUTE, 4.0 * _ARC_MINUTE
-_BALL_PRESSURE, _ROLLER_PRESSURE = 4.2e9, 4.0e9
+_BALL_PRESSURE, _SELF_ALIGNING_PRESSURE, _ROLLER_PRESSURE = 4.2e9, 4.6e9, 4.0e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,15 +49,23 @@ class LoadedBearing:
     Attributes
     ----------
     load : BearingLoad
-    rating : float or None
+    given_rating : float or None
         Dynamic rating C that the case gives [N].
     speed : float
         Of its shaft [rad/s].
     """
 
     load: BearingLoad
-    rating: float | None
+    given_rating: float | None
     speed: float
+
+    @property
+    def rating(self) -> float | None:
+        """Dynamic rating C of a rolling bearing [N]: as given, else of the geometry by ISO 281."""
+        if self.given_rating is not None or self.load.rolling is None:
+            return self.given_rating
+        rows = self.load.rolling.bearing.rows
+        return dynamic_rating(rows[0], len(rows))
 
     @property
     def peak_pressure(self) -> float | None:
@@ -71,11 +79,19 @@ class LoadedBearing:
 
     @property
     def life(self) -> float | None:
-        """Basic rating life L10 by ISO 281 at the speed of operation [h]; None without a rating or a speed."""
-        state = self.load.rolling
-        if state is None or self.rating is None or self.speed == 0.0:
+        """Basic rating life L10 by ISO 281 at the speed of operation [h]; None where it is not defined."""
+        return self._hours(rated_revolutions)
+
+    @property
+    def reference_life(self) -> float | None:
+        """Basic reference rating life L10r by ISO/TS 16281 of the elements' loads [h]; None for other bearings."""
+        return self._hours(reference_revolutions)
+
+    def _hours(self, life: Callable[[RollingState, float], float | None]) -> float | None:
+        state, rating = self.load.rolling, self.rating
+        if state is None or rating is None or self.speed == 0.0:
             return None
-        revolutions = rated_revolutions(state, self.rating)
+        revolutions = life(state, rating)
         return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
 
     @property
@@ -220,8 +236,11 @@ def require_load(case: Case) -> None:
     """
     require(case, "rotor", "bearing", "operation", command="load")
     assert case.operation is not None
-    if case.operation.torque == 0.0 and case.operation.gravity is None:
-        expected = "a torque, or gravity: without a load the machine stays as it is"
+    operation = case.operation
+    if operation.torque == 0.0 and (case.gear_pair or operation.gravity is None):
+        expected = (
+            "a torque, which loads the flanks" if case.gear_pair else "a torque, or gravity, which loads the shafts"
+        )
         raise CaseError([Problem("operation.torque", 0.0, expected)])
     require_machine(case)
 
@@ -245,8 +264,11 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
     state, name = one.load.rolling, one.load.name
     if state is None:
         return
-    rollers = isinstance(state.bearing.rows[0], RollerRow)
-    most = _ROLLER_PRESSURE if rollers else _BALL_PRESSURE
+    row = state.bearing.rows[0]
+    if isinstance(row, BallRow):
+        most = _SELF_ALIGNING_PRESSURE if row.self_aligning else _BALL_PRESSURE
+    else:
+        most = _ROLLER_PRESSURE
     if state.peak_pressure > most:
         yield warning(
             "static rating",
@@ -255,11 +277,8 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
             bearing=name,
             peak_pressure_pa=state.peak_pressure,
         )
-    row = state.bearing.rows[0]
-    deep_groove = isinstance(row, BallRow) and row.contact_angle == 0.0
-    limit = _ROLLER_TILT if rollers else _BALL_TILT
-    if (rollers or deep_groove) and len(state.bearing.rows) == 1 and one.load.tilt > limit:
-        kind = "cylindrical roller" if rollers else "deep groove ball"
+    limit, kind = _tilt_limit(row)
+    if len(state.bearing.rows) == 1 and one.load.tilt > limit:
         yield warning(
             "bearing tilt",
             f'bearing "{name}": shaft and seat are {one.load.tilt / _ARC_MINUTE:.3g}\' out of line; {kind} bearings '
@@ -270,10 +289,20 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
     if one.life is not None and one.life < _SHORT_LIFE:
         yield warning(
             "bearing life",
-            f'bearing "{name}": a rated life L10 of {one.life:.3g} h, below {_SHORT_LIFE:.0f} h',
+            f'bearing "{name}": a rated life L10 of {one.life:.3g} h, below {_SHORT_LIFE:.0f} h, by the dynamic rating '
+            f"of {one.rating:.4g} N that " + ("its geometry has" if one.given_rating is None else "the case gives"),
             bearing=name,
             life_h=one.life,
         )
+
+
+def _tilt_limit(row: Row) -> tuple[float, str]:
+    """Largest usual angle of shaft and seat [rad], and the kind of bearing; infinite where none is known."""
+    if isinstance(row, RollerRow):
+        return _ROLLER_TILT, "cylindrical roller"
+    if type(row) is BallRow and row.contact_angle == 0.0 and not row.self_aligning:
+        return _BALL_TILT, "deep groove ball"
+    return math.inf, ""
 
 
 def _stiffness_warnings(case: Case, solved: SolvedLoad, told: set[str]) -> Iterator[dict[str, Any]]:

@@ -23,7 +23,7 @@ ROLLING = {
     "rolling": {
         "element": "ball",
         "count": 8,
-        "element_diameter": "17.5 mm",
+        "element_diameter": "15.081 mm",
         "pitch_diameter": "65 mm",
         "dynamic_rating": "42.3 kN",
     }
@@ -138,6 +138,8 @@ def test_over_torque_the_machine_is_the_same_at_its_own_torque(helical: Result[S
     # Crowned teeth carry on more of their face the more they carry.
     factors = [point["gear_pairs"][0]["k_h_beta"] for point in points]
     assert (np.diff(factors) < 0.0).all()
+    assert helical.dataset["face_load_factor_over_torque"].values[:, 0] == pytest.approx(factors)
+    assert helical.dataset["load_torque"].values == pytest.approx([point["torque_n_m"] for point in points])
 
 
 def test_a_given_misalignment_is_held_against_the_one_found(helical: Result[SolvedLoad]) -> None:
@@ -170,7 +172,9 @@ def test_the_terminal_is_compact(helical: Result[SolvedLoad], capsys: pytest.Cap
 
 def test_nothing_that_loads_the_machine_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["load", "spur-pair", "-q", "--set", "operation.torque=0 N*m"]) == 2
-    assert "operation.torque: expected a torque, or gravity: without a load" in capsys.readouterr().err
+    assert "operation.torque: expected a torque, which loads the flanks, got 0.0" in capsys.readouterr().err
+    assert run_command(["load", "overhung-fan", "-q"]) == 2
+    assert "operation.torque: expected a torque, or gravity, which loads the shafts" in capsys.readouterr().err
     with pytest.raises(CaseError, match="rotor"):
         gw.load("gear-62-62").operating_point()
 
@@ -182,14 +186,14 @@ def test_thrust_that_nothing_carries_is_refused(capsys: pytest.CaptureFixture[st
     assert "input" in capsys.readouterr().err
 
 
-def test_weight_alone_loads_a_machine_without_torque() -> None:
-    changes = {"operation.torque": 0.0, "operation.gravity": [0.0, -9.81, 0.0]}
-    study = gw.load("spur-pair", changes)
-    result = study.operating_point()
-    carried = sum(bearing["force_n"][1] for bearing in result.document["bearings"])
-    mass = sum(study.machine.rotor(name).mass for name in ("input", "output"))
-    assert carried == pytest.approx(-9.81 * mass, rel=1e-6)
-    assert result.document["gravity_m_per_s2"] == [0.0, -9.81, 0.0]
+def test_weight_alone_loads_a_machine_without_gears() -> None:
+    study = gw.load("overhung-fan", {"operation.gravity": [0.0, -9.81, 0.0]})
+    document = study.operating_point().document
+    carried = sum(bearing["force_n"][1] for bearing in document["bearings"])
+    (shaft,) = study.machine.shafts
+    assert carried == pytest.approx(-9.81 * study.machine.rotor(shaft.name).mass, rel=1e-6)
+    assert document["gravity_m_per_s2"] == [0.0, -9.81, 0.0]
+    assert document["gear_pairs"] == []
 
 
 def test_life_of_a_ball_bearing_by_hand() -> None:
@@ -199,6 +203,7 @@ def test_life_of_a_ball_bearing_by_hand() -> None:
     radial = float(np.hypot(*bearing["force_n"][:2]))
     assert bearing["equivalent_load_n"] == pytest.approx(radial, rel=1e-9)
     assert bearing["life_h"] == pytest.approx(1e6 * (42.3e3 / radial) ** 3 / (60.0 * 5500.0), rel=1e-9)
+    assert (bearing["dynamic_rating_n"], bearing["dynamic_rating_from"]) == (42.3e3, "case")
     # The most loaded ball is the one in the direction of the load or beside it.
     element = bearing["most_loaded_element"]
     along = np.arctan2(bearing["force_n"][1], bearing["force_n"][0])
@@ -209,6 +214,32 @@ def test_life_of_a_ball_bearing_by_hand() -> None:
     assert loads.size == 8
     warned = [entry for entry in result.document["warnings"] if entry["name"] == "bearing load"]
     assert "made for a load of 100 N radial and 0 N axial, the equilibrium finds" in warned[0]["message"]
+
+
+def test_reference_life_is_that_of_the_loads_of_the_balls() -> None:
+    """By ISO/TS 16281 from the loads in the data, with ratings of the contacts made of C (its equations 18 to 21)."""
+    result = rolling("-294 N,-807 N,0 N")
+    (bearing,) = [one for one in result.document["bearings"] if one["life_h"] is not None]
+    loads = result.dataset["bearing_element_load"].sel(loaded_bearing=bearing["name"]).values
+    gamma, inner, outer = 15.081 / 65.0, 0.52, 0.53
+    ratio = 1.044 * ((1 - gamma) / (1 + gamma)) ** 1.72 * (inner * (2 * outer - 1) / (outer * (2 * inner - 1))) ** 0.41
+    whole = 42.3e3 / (0.407 * 8 * 1.0)
+    rated_inner = whole * (1.0 + ratio ** (10.0 / 3.0)) ** 0.3
+    rated_outer = 42.3e3 / (0.389 * 8) * (1.0 + ratio ** (-10.0 / 3.0)) ** 0.3
+    mean_inner = np.mean(loads**3) ** (1.0 / 3.0)
+    mean_outer = np.mean(loads ** (10.0 / 3.0)) ** 0.3
+    damage = (rated_inner / mean_inner) ** (-10.0 / 3.0) + (rated_outer / mean_outer) ** (-10.0 / 3.0)
+    assert bearing["reference_life_h"] == pytest.approx(1e6 * damage**-0.9 / (60.0 * 5500.0), rel=0.02)
+
+
+def test_a_bearing_without_a_rating_has_that_of_its_geometry() -> None:
+    bare = {"rolling": {key: value for key, value in ROLLING["rolling"].items() if key != "dynamic_rating"}}
+    load = {"x": "-294 N", "y": "-807 N", "z": "0 N"}
+    result = gw.load("spur-pair", {"bearing.0.stiffness": bare, "bearing.0.load": load}).operating_point()
+    (bearing,) = [one for one in result.document["bearings"] if one["life_h"] is not None]
+    assert bearing["dynamic_rating_from"] == "geometry"
+    # SKF's 6308 has 42.3 kN.
+    assert bearing["dynamic_rating_n"] == pytest.approx(42.3e3, rel=0.1)
 
 
 def test_a_bearing_made_for_its_load_is_not_warned_of_it() -> None:
