@@ -219,10 +219,10 @@ def draw_sensitivity(
         largest = float(np.quantile(np.abs(values), _SHOWN_PART))
         if largest == 0.0 or not motion.any():
             continue
-        title = f"{pair.pair.driver.name} → {pair.pair.driven.name}: misalignment by added material"
+        title = f"{pair.pair.driver.name} on {pair.pair.driven.name}: misalignment by added material"
         note = (
-            f"{_MICRO * pair.misalignment:.3g} µrad now; change by each mm of material on a dm² of surface.\n"
-            f"Deeper colours than the scale's lie on the {100.0 * (1.0 - _SHOWN_PART):.2g} % beyond its ends."
+            f"{_MICRO * pair.misalignment:.3g} µrad now; blue takes off, red adds, each mm on a dm² of surface. "
+            f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
         )
         quantity = "Change [µrad/(mm·dm²)]"
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
