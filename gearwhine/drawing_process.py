@@ -53,6 +53,7 @@ def draw_in_process(
     }
     with tempfile.TemporaryDirectory() as desk, tempfile.TemporaryFile("w+", encoding="utf-8") as troubles:
         arrays: dict[str, Any] = {f"motion_{i}": shape.motion for i, shape in enumerate(shapes)}
+        arrays |= {f"values_{i}": shape.values for i, shape in enumerate(shapes) if shape.values is not None}
         np.savez(Path(desk) / "arrays.npz", rest=housing.rest, triangles=housing.triangles, **arrays)
         (Path(desk) / "task.json").write_text(json.dumps(task), encoding="utf-8")
         process = subprocess.Popen(
@@ -126,7 +127,10 @@ def _draw(desk: Path) -> list[str]:
     task = json.loads((desk / "task.json").read_text(encoding="utf-8"))
     with np.load(desk / "arrays.npz", allow_pickle=False) as arrays:
         rest, triangles = arrays["rest"], arrays["triangles"]
-        shapes = [DrawnShape(motion=arrays[f"motion_{i}"], **words) for i, words in enumerate(task["shapes"])]
+        shapes = [
+            DrawnShape(motion=arrays[f"motion_{i}"], values=arrays.get(f"values_{i}"), **words)
+            for i, words in enumerate(task["shapes"])
+        ]
     housing, folder, view = DrawnHousing(rest, triangles, np.arange(len(rest))), Path(task["folder"]), task["view"]
 
     def progress(message: str) -> None:

@@ -9,10 +9,12 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
+from gearwhine.output import file_stems
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
+    from gearwhine.solve.operating_point import SolvedLoad
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
 
@@ -22,6 +24,8 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
+_PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
+_SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
 _MOST_MODES = 5000
 _DOMINANT = 8
 
@@ -177,6 +181,53 @@ def draw_deflection(
     note = f"largest {largest:.3g} µm, drawn {float(f'{factor:.2g}'):.0f} times as large"
     shape = DrawnShape("load-housing", title, note, motion, "Displacement [µm]", largest)
     return draw_in_process(surface, [shape], place, "png", view, progress)
+
+
+def draw_sensitivity(
+    housing: SolvedHousing, solved: "SolvedLoad", view: str, place: Path, progress: Progress
+) -> list[str]:
+    """Draw where material on the housing changes the misalignment of each gear pair, as ``load-sensitivity-PAIR.png``.
+
+    Parameters
+    ----------
+    housing : SolvedHousing
+    solved : SolvedLoad
+        In this housing, with its sensitivity.
+    view : str
+        From where to look.
+    place : path
+    progress : callable
+
+    Raises
+    ------
+    housing.errors.RendererUnavailableError
+        Where nothing here draws.
+    """
+    from gearwhine.drawing_process import draw_in_process
+    from housing.pictures.drawn_shapes import DrawnShape, drawn_housing
+
+    assert solved.sensitivity is not None
+    if solved.sensitivity.density is None or solved.point.housing is None:
+        return []
+    surface = drawn_housing(housing.mesh)
+    motion = housing.modes.displacement(solved.point.housing, surface.nodes)
+    names = [f"{pair.pair.driver.name}-{pair.pair.driven.name}" for pair in solved.point.pairs]
+    shapes = []
+    for stem, pair, density in zip(
+        file_stems(names, "load-sensitivity-"), solved.point.pairs, solved.sensitivity.density, strict=True
+    ):
+        values = _PER_MM_DM2 * density[surface.nodes]
+        largest = float(np.quantile(np.abs(values), _SHOWN_PART))
+        if largest == 0.0 or not motion.any():
+            continue
+        title = f"{pair.pair.driver.name} on {pair.pair.driven.name}: misalignment by added material"
+        note = (
+            f"{_MICRO * pair.misalignment:.3g} µrad now; blue takes off, red adds, each mm on a dm² of surface. "
+            f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
+        )
+        quantity = "Change [µrad/(mm·dm²)]"
+        shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
+    return draw_in_process(surface, shapes, place, "png", view, progress) if shapes else []
 
 
 def draw_measured(

@@ -210,11 +210,17 @@ class Study:
 
         return machine.gears(self.case, progress=self.progress)
 
-    def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
+    def operating_point(self, *, over_torque: bool = False, sensitivity: bool = False) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.machine.operating_point`."""
         from gearwhine.analyses import machine
 
-        return machine.operating_point(self.case, over_torque=over_torque, housing=self.housing, progress=self.progress)
+        return machine.operating_point(
+            self.case,
+            over_torque=over_torque,
+            sensitivity=sensitivity,
+            housing=self.housing,
+            progress=self.progress,
+        )
 
     def system(
         self, *, campbell: bool = False, sidebands: int = 0, mesh_phase: float | None = None

@@ -43,7 +43,7 @@ FloatArray = npt.NDArray[np.float64]
 OUTCOMES = ("misalignment", "k_h_beta", "transmission_error")
 """Outcomes of a gear pair: misalignment [rad], K_Hβ, and peak-to-peak transmission error under load [m]."""
 
-_STEP = 1e-4  # of the flanks' compression under load, in the differences of K_Hβ and transmission error
+_STEP = 1e-6  # of the flanks' compression under load, in the differences of K_Hβ and transmission error
 _SHAFT_STEP = 1e-6  # of the shaft's length, in the one-sided differences of its motions
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require, swept_keys
 from gearwhine.from_case.machine import basis_error, solve_machine, solve_pairs
-from gearwhine.mode_pictures import draw_deflection
+from gearwhine.mode_pictures import draw_deflection, draw_sensitivity
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
@@ -113,6 +113,7 @@ def operating_point(
     case: Case,
     *,
     over_torque: bool = False,
+    sensitivity: bool = False,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -126,6 +127,8 @@ def operating_point(
         Without a housing its seats are rigid.
     over_torque : bool
         Whether to find it from 10 to 150 % of the torque as well.
+    sensitivity : bool
+        Whether to rank walls, bearing stiffness and positions by their influence on the gear pairs.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -139,7 +142,7 @@ def operating_point(
     require_load(case)
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    solved = solve_load(case, housing, progress, over_torque=over_torque)
+    solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=sensitivity)
     document = load_document(case.title, solved)
     add_warnings(document, load_warnings(case, solved))
 
@@ -153,6 +156,8 @@ def operating_point(
             return
         try:
             draw_deflection(housing, solved.point.housing, "iso", place, progress)
+            if solved.sensitivity is not None:
+                draw_sensitivity(housing, solved, "iso", place, progress)
         except RendererUnavailableError as error:
             # The figures and numbers are there without it.
             add_warnings(result.document, [warning("pictures", f"no picture of the housing: {error}")])

@@ -56,6 +56,14 @@ def load(
         bool,
         Parameter(name=["--over-torque"], negative=(), help="Also solve from 10 to 150 % of the torque."),
     ] = False,
+    sensitivity: Annotated[
+        bool,
+        Parameter(
+            name=["--sensitivity"],
+            negative=(),
+            help="Also rank walls, bearing stiffness and bearing positions by their influence on the gear pairs.",
+        ),
+    ] = False,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
@@ -66,7 +74,12 @@ def load(
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         found = analyses.operating_point(
-            given, over_torque=over_torque, folder=common.output, fresh=fresh, progress=progress
+            given,
+            over_torque=over_torque,
+            sensitivity=sensitivity,
+            folder=common.output,
+            fresh=fresh,
+            progress=progress,
         )
         return written(found, common.output, progress)
 

@@ -312,6 +312,40 @@ TORQUE = (
 )
 """Of a torque and the operating point under it."""
 
+INFLUENCE = (
+    Quantity("parameter", lambda row: row[0].parameter),
+    Quantity("kind", lambda row: row[0].kind),
+    Quantity("step", lambda row: row[0].step_text),
+    Rows(
+        "gear_pairs",
+        lambda row: zip(row[1], row[0].changes.tolist(), strict=True),
+        (
+            Quantity("driver", lambda one: one[0].pair.driver.name),
+            Quantity("driven", lambda one: one[0].pair.driven.name),
+            Quantity("misalignment_rad", lambda one: one[1][0]),
+            Quantity("k_h_beta", lambda one: _unless_idle(one[1][1])),
+            Quantity("transmission_error_peak_to_peak_m", lambda one: _unless_idle(one[1][2])),
+        ),
+    ),
+)
+"""Of a parameter's influence, and the gear pairs: their change by a step of it, to first order."""
+
+
+def _unless_idle(value: float) -> Any:
+    return ABSENT if np.isnan(value) else value
+
+
+def _influence(name: str, unit: str, what: str, column: int) -> Quantity:
+    """Declare a change of every gear pair by every parameter's step, for the file."""
+
+    def taken(solved: "SolvedLoad") -> Any:
+        if solved.sensitivity is None or not solved.point.pairs:
+            return None
+        return np.array([one.changes[:, column] for one in solved.sensitivity.influences])
+
+    what = f"change of the {what} by a step of the parameter, to first order"
+    return Quantity("", taken, f"{name}_change", ("influence", "loaded_pair"), unit, what)
+
 
 def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
     """Declare a quantity of every gear pair over torque, for the file."""
@@ -338,6 +372,28 @@ LOAD = (
     Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
     Rows("gear_pairs", lambda solved: solved.point.pairs, PAIR, "loaded_pair"),
     Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
+    Rows(
+        "sensitivity",
+        lambda solved: (
+            ABSENT
+            if solved.sensitivity is None
+            else [(one, solved.point.pairs) for one in solved.sensitivity.influences]
+        ),
+        INFLUENCE,
+    ),
+    Quantity(
+        "",
+        lambda solved: (
+            None
+            if solved.sensitivity is None or not solved.point.pairs
+            else [f"{one.kind}: {one.parameter}, {one.step_text}" for one in solved.sensitivity.influences]
+        ),
+        "influence",
+        ("influence",),
+    ),
+    _influence("misalignment", "rad", "angle between the flanks", 0),
+    _influence("face_load_factor", "1", "face load factor K_Hbeta", 1),
+    _influence("transmission_error_peak_to_peak", "m", "peak-to-peak static transmission error", 2),
     Quantity(
         "",
         lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
@@ -383,6 +439,32 @@ _TORQUE_COLUMNS = (
     Column("TE p-p [µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
 )
 
+_MOST_INFLUENCES = 15  # rows of the table
+_INFLUENCE_COLUMNS = (
+    Column("parameter", "parameter"),
+    Column("of", "kind"),
+    Column("step", "step"),
+    Column("pair", "pair"),
+    Column("misaligned [µrad]", "misalignment_rad", "+.3f", _MICRO),
+    Column("K_Hβ", "k_h_beta", "+.4f"),
+    Column("TE p-p [nm]", "transmission_error_peak_to_peak_m", "+.2f", 1e9),
+)
+
+
+def _influences(document: Document) -> Iterator[str | Table]:
+    """Yield the changes of the gear pairs by the strongest parameters."""
+    found = document.get("sensitivity", ())
+    rows = [
+        {key: one[key] for key in ("parameter", "kind", "step")}
+        | {"pair": f"{pair['driver']} → {pair['driven']}"}
+        | pair
+        for one in found[:_MOST_INFLUENCES]
+        for pair in one["gear_pairs"]
+    ]
+    yield from table_of(_INFLUENCE_COLUMNS, rows, "Change by a step of one parameter, to first order")
+    if rows and len(found) > _MOST_INFLUENCES:
+        yield f"{len(found) - _MOST_INFLUENCES} weaker parameters are in the files only"
+
 
 def _content(document: Document) -> Iterator[str | Table]:
     seats = "on its housing" if document["seats"] == "housing" else "in rigid seats (no housing)"
@@ -396,6 +478,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         for pair in point["gear_pairs"]
     ]
     yield from table_of(_TORQUE_COLUMNS, rows, "Over torque")
+    yield from _influences(document)
     yield from table_of(columns_of(SHAFT), document["shafts"], "Deflection of the shafts")
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:

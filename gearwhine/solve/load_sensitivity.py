@@ -20,12 +20,12 @@ from gearwhine.from_case.mesh import materials_of
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
-from housing.fem.surface import flat_faces, surface_quadrature
+from housing.fem.surface import flat_faces
 from housing.model.housing import bearing_port
 from housing.model.material import element_constants
 from housing.model.seats import seat_matrix
 from housing.updating import ModelSensitivity
-from meshes import Mesh
+from meshes.box.morph import MorphError, with_middles
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -71,10 +71,13 @@ class LoadSensitivity:
         The largest change of a misalignment over the face first.
     density : ndarray, shape (n_pairs, n_nodes), or None
         Misalignment by material added on the housing's surface, by its thickness and area [rad/m³].
+    note : str or None
+        Why flat faces stand in place of walls.
     """
 
     influences: tuple[Influence, ...]
     density: FloatArray | None
+    note: str | None = None
 
 
 def solve_load_sensitivity(
@@ -90,11 +93,6 @@ def solve_load_sensitivity(
     housing : SolvedHousing or None
         That the machine stands in.
     progress : callable
-
-    Raises
-    ------
-    meshes.GeometryError
-        Where the mesh of a box cannot follow its parameters.
     """
     progress("adjoint states of the gear pairs")
     pairs = pair_adjoints(point)
@@ -112,8 +110,8 @@ def solve_load_sensitivity(
         name = bearing.name
         found.append(influence(name, "bearing stiffness", [one.by_bearing_stiffness(name) for one in adjoints], _PART))
         found.append(influence(name, "bearing position", [one.by_bearing_position(name) for one in adjoints], _LENGTH))
-    density = None
-    if housing is not None and point.housing is not None:
+    density, note = None, None
+    if adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
         parted, material, materials = materials_of(case, housing.mesh)
         constants = element_constants(parted, material, materials)
@@ -121,8 +119,12 @@ def solve_load_sensitivity(
         surface = fields.surface_density()
         density = surface[[n for n, (_, outcome) in enumerate(places) if outcome == 0]]
         parameters = housing_parameters(case)
-        if parameters:
+        try:
             derivatives = by_case_parameters(case, fields, parameters)
+        except MorphError as error:
+            parameters = ()
+            note = f"the mesh of the box does not follow its walls, so that flat faces stand in their place: {error}"
+        if parameters:
             for given, column in zip(parameters, derivatives.T, strict=True):
                 number = fitted_case(case, parameters=[given]).numbers[0]
                 is_length = not given.factor and kind_of(given.range[0]) == kind_of("1 m")
@@ -130,11 +132,10 @@ def solve_load_sensitivity(
                 one = influence(given.name, "housing", column, step)
                 found.append(one if is_length else Influence(one.parameter, one.kind, _PART, False, one.changes))
         else:
-            for name, integrals in _faces(housing.mesh, surface):
-                found.append(influence(name, "face", integrals, _LENGTH))
+            found += [influence(name, "face", own, _LENGTH) for name, own in _faces(case, fields)]
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     found.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
-    return LoadSensitivity(tuple(found), density)
+    return LoadSensitivity(tuple(found), density, note)
 
 
 def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
@@ -161,9 +162,11 @@ def by_case_parameters(case: Case, fields: HousingFields, parameters: Sequence[U
     ------
     CaseError
         As :func:`gearwhine.from_case.parametric_housing.fitted_case`.
-    meshes.GeometryError
+    meshes.box.morph.MorphError
         Where the mesh of a box cannot follow.
     """
+    if not parameters:
+        return np.zeros((len(fields.adjoints), 0))
     fitted = fitted_case(case, parameters=parameters)
     meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
     rates = meshed.rates()
@@ -193,17 +196,26 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
     return {name: (port - ports[1][name]) / (2.0 * RATE_STEP) for name, port in ports[0].items()}
 
 
-def _faces(mesh: Mesh, density: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    """Yield the flat faces of a surface that are large, each with its words and the integral of densities over it."""
+def _faces(case: Case, fields: HousingFields) -> Iterator[tuple[str, FloatArray]]:
+    """Yield the large flat faces of a surface in words, with the derivatives by material added on them [outcome/m].
+
+    The face moves along its normal with the layer of elements on it; seats and what is fastened stay.
+    """
+    assert case.housing is not None
+    mesh = fields.mesh
+    seats = [mesh.surface(seat.name) for seat in case.housing.seat]
+    held = np.unique(np.concatenate([block.nodes.ravel() for seat in seats for block in seat] or [np.empty(0, int)]))
     faces = flat_faces(mesh)
     whole = sum(face.area for face in faces)
-    for face in faces:
-        if face.area < _LEAST_FACE * whole:
-            continue
-        total = np.zeros(len(density))
-        for part in surface_quadrature(mesh, face.facets):
-            total += np.einsum("nfa,qa,fq->n", density[:, part.facets], part.shape_values, part.areas, optimize=True)
+    large = [face for face in faces if face.area >= _LEAST_FACE * whole]
+    rates = []
+    for face in large:
+        velocity = np.zeros_like(mesh.points)
+        velocity[np.unique(np.concatenate([block.corners.ravel() for block in face.facets]))] = face.normal
+        velocity[held] = 0.0
+        rates.append(ModelSensitivity(with_middles(mesh, velocity)))
+    for face, derivatives in zip(large, fields.by_parameters(rates, [{}] * len(large)).T, strict=True):
         axis = int(np.abs(face.normal).argmax())
         way = f"{'-+'[int(face.normal[axis] > 0.0)]}{'xyz'[axis]}"
         x, y, z = (1e3 * face.center).round().astype(int).tolist()
-        yield f"face to {way} at ({x}, {y}, {z}) mm", total
+        yield f"to {way} at ({x}, {y}, {z}) mm", derivatives

@@ -21,6 +21,7 @@ from gearwhine.from_case.machine import describe_machine, reduce_housing, requir
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.load_sensitivity import LoadSensitivity, solve_load_sensitivity
 from gearwhine.solve.plausibility import bearing_load_warnings
 from rotors.rolling_bearings import BallRow, RollerRow, RollingState, Row, dynamic_rating
 from rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
@@ -127,6 +128,8 @@ class SolvedLoad:
         [m/s²].
     over_torque : dict of float to OperatingPoint
         Equilibria by the torque of the first driver [N m], where they are asked for.
+    sensitivity : LoadSensitivity or None
+        Where it is asked for.
     """
 
     machine: Machine
@@ -135,6 +138,7 @@ class SolvedLoad:
     housing: SolvedHousing | None
     gravity: tuple[float, ...] | None
     over_torque: dict[float, OperatingPoint]
+    sensitivity: LoadSensitivity | None = None
 
     @cached_property
     def shafts(self) -> tuple["DeflectedShaft", ...]:
@@ -181,7 +185,12 @@ def _deflected(one: ShaftDeflection, machine: Machine) -> DeflectedShaft:
 
 
 def solve_load(
-    case: Case, housing: SolvedHousing | None, progress: Progress = silent, *, over_torque: bool = False
+    case: Case,
+    housing: SolvedHousing | None,
+    progress: Progress = silent,
+    *,
+    over_torque: bool = False,
+    sensitivity: bool = False,
 ) -> SolvedLoad:
     """Find the static equilibrium of a case's machine under its torques and its weight.
 
@@ -193,6 +202,8 @@ def solve_load(
     progress : callable
     over_torque : bool
         Whether to find it at `TORQUES` as well.
+    sensitivity : bool
+        Whether to compute its gradients, see :func:`gearwhine.solve.load_sensitivity.solve_load_sensitivity`.
 
     Raises
     ------
@@ -223,7 +234,8 @@ def solve_load(
     bearings = tuple(
         LoadedBearing(one, ratings.get(one.name), machine.speeds[one.mounted.rotor]) for one in point.bearings
     )
-    return SolvedLoad(machine, point, bearings, housing, operation.gravity, found)
+    gradients = solve_load_sensitivity(case, point, housing, progress) if sensitivity else None
+    return SolvedLoad(machine, point, bearings, housing, operation.gravity, found, gradients)
 
 
 def require_load(case: Case) -> None:
@@ -247,9 +259,11 @@ def require_load(case: Case) -> None:
 
 def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
     """Warnings of an operating point that is formally right and physically doubtful."""
+    note = None if solved.sensitivity is None else solved.sensitivity.note
     told = bearing_load_warnings(case, {one.name: one.force[:3] for one in solved.point.bearings}, "the equilibrium")
     loads = {entry["bearing"] for entry in told}
     return [
+        *([] if note is None else [warning("sensitivity", note)]),
         *told,
         *(found for one in solved.bearings for found in _bearing_warnings(one)),
         *_stiffness_warnings(case, solved, loads),

@@ -135,6 +135,8 @@ class DrawnShape:
         Quantity shown by the colours, with its unit.
     largest : float
         That quantity where the motion is largest.
+    values : ndarray, shape (n_points,), optional
+        A quantity of either sign that the colours show in place of the displacement, from -`largest` to `largest`.
 
     Raises
     ------
@@ -148,6 +150,7 @@ class DrawnShape:
     motion: FloatArray | ComplexArray
     quantity: str = MODE_QUANTITY
     largest: float = 1.0
+    values: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Check that the displacements are finite and not all zero."""

@@ -75,7 +75,7 @@ VIEWS = tuple(_VIEWS)
 STRIP = 34
 """Height of the colour bar's strip under a sheet [pixels]."""
 
-_COLOURS = "viridis"
+_COLOURS, _SIGNED_COLOURS = "viridis", "RdBu_r"
 _INK = "#202428"
 _FINER = 1.5  # times larger than shown are pictures drawn
 _LOWER = 0.06  # how far below the middle the housing stands, as a part of half the height: captions are above it
@@ -148,8 +148,10 @@ class Scene:
     def show(self, shape: DrawnShape) -> None:
         """Put a shape's captions and colours in place."""
         self._title.input, self._note.input = shape.title, shape.note
-        self._solid["shown"] = (shape.largest * shape.amplitude)[self._origin]
-        self._actor.mapper.scalar_range = (0.0, shape.largest)
+        values = shape.largest * shape.amplitude if shape.values is None else shape.values
+        self._solid["shown"] = values[self._origin]
+        self._actor.mapper.lookup_table.apply_cmap(_COLOURS if shape.values is None else _SIGNED_COLOURS, 256)
+        self._actor.mapper.scalar_range = (0.0 if shape.values is None else -shape.largest, shape.largest)
 
     def picture(self, shape: DrawnShape, angle: float = 0.0) -> Image:
         """Draw a shape at a phase angle [rad], as pixels of shape (height, width, 3)."""

@@ -206,7 +206,7 @@ class BoxMorph:
                 self._give(given, nodes, axis, carried(points[nodes], cylinders[number], turned[number])[:, axis])
         for axis, harmonic in enumerate(self._harmonic):
             moved[self._vertices, axis] = harmonic.extended(given[self._vertices, axis])
-        moved = _with_middles(self._mesh, moved)
+        moved = with_middles(self._mesh, moved)
         for number, _, nodes in self._round:
             moved[nodes, :2] = carried(points[nodes], cylinders[number], turned[number])
         return moved
@@ -281,7 +281,7 @@ def _laplacian(mesh: Mesh) -> sparse.csr_array:
     return sparse.csr_array(total)
 
 
-def _with_middles(mesh: Mesh, moved: FloatArray) -> FloatArray:
+def with_middles(mesh: Mesh, moved: FloatArray) -> FloatArray:
     """Motions of the corners, and half the sum of both ends' for the middle of each edge."""
     for block in mesh.blocks:
         places, corners = np.array(block.of.places), block.of.n_corners

@@ -1,0 +1,154 @@
+"""Gradients of a case's operating point by its housing, against equilibria of housings that are solved anew."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import gearwhine as gw
+from coupling.statics.operating_point import OperatingPoint
+from coupling.statics.sensitivity import OUTCOMES, HousingFields, housing_fields, pair_adjoints
+from gearwhine.case import Case, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.case.box import FACES
+from gearwhine.from_case.mesh import build_mesh, materials_of
+from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
+from gearwhine.results.operating_point import sections
+from gearwhine.solve import housing_modes
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.load_sensitivity import _faces, by_case_parameters, housing_parameters
+from gearwhine.solve.operating_point import solve_load
+from housing.model.material import element_constants
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+KEYS = ("misalignment_rad", "k_h_beta", "transmission_error_peak_to_peak_m")
+PARAMETERS = [
+    UpdateParameter(name="front wall", keys=("housing.box.wall.front",), range=("5 mm", "20 mm")),
+    UpdateParameter(name="bottom wall", keys=("housing.box.wall.bottom",), range=("5 mm", "20 mm")),
+    UpdateParameter(name="bosses", keys=("housing.seat.*.boss.diameter",), range=("60 mm", "80 mm")),
+    UpdateParameter(
+        name="length", keys=("housing.box.size[2]", "housing.seat.*.center[2]"), range=(0.9, 1.1), factor=True
+    ),
+    UpdateParameter(name="feet", keys=("housing.support.*.stiffness.y",), range=(0.5, 2.0), factor=True),
+    UpdateParameter(name="modulus", keys=("material.iron.youngs_modulus",), range=("90 GPa", "130 GPa")),
+]
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    """The small gearbox with bosses, its gears out of the middle, and softer feet on one side."""
+    overrides = ["housing.box.mesh_size=60 mm", "gear.*.at=70 mm", "housing.frequency_limit=1.6 kHz"]
+    document = case_document(load_case("small-gearbox", overrides).case)
+    for seat in document["housing"]["seat"]:
+        seat["boss"] = {"diameter": "70 mm", "length": "20 mm"}
+    document["material"]["iron"] = {"youngs_modulus": "110 GPa", "poisson_ratio": 0.25, "density": "7200 kg/m^3"}
+    document["housing"]["material"] = "iron"
+    document["housing"]["support"][0]["stiffness"]["y"] = 2e9
+    return parse_case(document)
+
+
+@pytest.fixture(scope="module")
+def fitted(case: Case) -> FittedCase:
+    return fitted_case(case, parameters=PARAMETERS)
+
+
+Solve = Callable[[Case, Mesh], tuple[SolvedHousing, OperatingPoint]]
+
+
+@pytest.fixture(scope="module")
+def solve() -> Solve:
+    def solved(case: Case, mesh: Mesh) -> tuple[SolvedHousing, OperatingPoint]:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
+            housing = solve_housing(case)
+        return housing, solve_load(case, housing).point
+
+    return solved
+
+
+@pytest.fixture(scope="module")
+def fields(case: Case, solve: Solve) -> HousingFields:
+    housing, point = solve(case, build_mesh(case))
+    parted, material, materials = materials_of(case, housing.mesh)
+    constants = element_constants(parted, material, materials)
+    (pair,) = pair_adjoints(point)
+    return housing_fields(point, list(pair.values()), housing.mesh, constants, housing.modes)
+
+
+def test_numbers_of_the_housing(case: Case, fitted: FittedCase, fields: HousingFields, solve: Solve) -> None:
+    """Walls, bosses, a length with its seats, springs and a modulus together, along a direction: to 1e-5."""
+    own = by_case_parameters(case, fields, PARAMETERS)
+    meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
+    values = np.array([number.start for number in fitted.numbers])
+    way = values * np.random.default_rng(1).normal(size=len(values))
+    either = []
+    for step in (3e-4, -3e-4):
+        there = fitted.at((values + step * way).tolist())
+        geometry = geometry_of(there)
+        assert geometry is not None
+        (pair,) = solve(there, meshed.morph.moved(geometry))[1].pairs
+        either.append([pair.misalignment, pair.k_h_beta, np.ptp(pair.transmission_error)])
+    expected = (np.array(either[0]) - either[1]) / 6e-4
+    error = np.abs(own @ way - expected) / np.abs(own * way).max(axis=1)
+    # A misaligned spur gear keeps its transmission error while all of its face carries.
+    assert (error[:2] < 1e-5).all()
+    assert abs(own[2] @ way) < 1e-13
+    assert abs(expected[2]) < 1e-13
+
+
+def test_material_on_a_face_is_a_thicker_wall(case: Case, fields: HousingFields) -> None:
+    """Of the bottom's inner face, against the wall's thickness, by which all nodes of the mesh move."""
+    faces = dict(_faces(case, fields))
+    own = faces["to +y at (0, 10, 0) mm"]
+    np.testing.assert_allclose(own[:2], by_case_parameters(case, fields, PARAMETERS[1:2])[:2, 0], rtol=0.05)
+    # Every side of the box is there, and the sides of the feet are not.
+    assert sum(name.startswith("to +y") for name in faces) >= 2
+
+
+def test_the_density_of_even_strains(fields: HousingFields) -> None:
+    """Linear fields u = A x and λ = B x have the density -σ(A) : ε(B) everywhere, with gravity ρ g · λ."""
+    gradient, other = np.random.default_rng(2).normal(size=(2, 3, 3))
+    points, gravity = fields.mesh.points, np.array([1.0, -9.81, 0.5])
+    linear = replace(fields, displacement=points @ gradient.T, adjoint=(points @ other.T)[None], gravity=gravity)
+    lam, mu, density = fields.constants[:, 0]
+    strain, against = 0.5 * (gradient + gradient.T), 0.5 * (other + other.T)
+    stress = lam * np.trace(strain) * np.eye(3) + 2.0 * mu * strain
+    expected = density * points @ other.T @ gravity - np.sum(stress * against)
+    np.testing.assert_allclose(linear.surface_density()[0], expected, rtol=1e-9)
+
+
+def test_the_document_ranks_what_changes_the_pair_most() -> None:
+    """Rigid seats: bearings alone, by the library's derivatives and the steps of the table."""
+    result = gw.load("helical-pair").operating_point(sensitivity=True)
+    rows = result.document["sensitivity"]
+    (pair,) = pair_adjoints(result.solved.point)
+    found = {(row["parameter"], row["kind"]): row["gear_pairs"][0] for row in rows}
+    for bearing in result.document["bearings"]:
+        name = bearing["name"]
+        for outcome, key in zip(OUTCOMES, KEYS, strict=True):
+            expected = 0.1 * pair[outcome].by_bearing_stiffness(name)
+            assert found[name, "bearing stiffness"][key] == pytest.approx(expected)
+            expected = 1e-3 * pair[outcome].by_bearing_position(name)
+            assert found[name, "bearing position"][key] == pytest.approx(expected)
+    changes = [abs(row["gear_pairs"][0]["misalignment_rad"]) for row in rows]
+    assert changes == sorted(changes, reverse=True)
+    assert {row["step"] for row in rows} == {"+10 %", "+1 mm"}
+    data = result.dataset["misalignment_change"]
+    assert (data.dims, data.attrs["units"]) == (("influence", "loaded_pair"), "rad")
+    np.testing.assert_allclose(np.abs(data.values[:, 0]), changes)
+    (section,) = sections(result.document)
+    (table,) = [one for one in section.tables if one.caption.startswith("Change by a step")]
+    assert len(table.rows) == min(len(rows), 15)
+    assert "sensitivity" not in gw.load("helical-pair").operating_point().document
+
+
+def test_walls_of_a_box_and_parameters_of_a_fit() -> None:
+    box = load_case("small-gearbox").case
+    assert [one.name for one in housing_parameters(box)] == [f"{face} wall" for face in FACES]
+    fit = load_case("nasa-gear-noise-rig-nominal").case
+    assert fit.update is not None
+    assert housing_parameters(fit) == tuple(fit.update.parameter)
+    assert housing_parameters(load_case("helical-pair").case) == ()
