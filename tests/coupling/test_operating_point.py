@@ -134,6 +134,20 @@ def test_a_shaft_loose_in_its_play_bears_nothing() -> None:
     assert point.pairs[1].force < 1e-6 * point.pairs[0].force
 
 
+@pytest.mark.parametrize("torque", [0.25, 4.0, -60.0])
+def test_light_loads_float_in_the_play_of_all_bearings(torque: float) -> None:
+    """Shafts move by their play, far more than they bend, and the bearings balance the force of the teeth."""
+    teeth = [GearPair("pinion", "wheel", "weber-banaschek", backlash=1e-4)]
+    machine = rolling(one_stage(gear_pairs=teeth), 0, 1, 2, 3)
+    point = replace(machine, torque=torque).operating_point()
+    assert point.residual < 1e-8
+    (pair,) = point.pairs
+    for name, side in (("in", -1.0), ("out", 1.0)):
+        total = sum(one.force for one in point.bearings if one.mounted.rotor == name)[:3]
+        push = np.array([*pair.pair.push, pair.pair.axial]) * pair.force * side
+        np.testing.assert_allclose(total, push, rtol=0.0, atol=1e-7 * pair.force)
+
+
 def test_gaps_alone_hold_a_loaded_shaft() -> None:
     """A ring with play bears along the load as deep as its law says: F (depth)^n beyond the gap."""
     law = GapLaw(2000.0, 2e-5, 1.5, 8e-6)
