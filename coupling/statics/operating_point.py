@@ -55,7 +55,7 @@ _TOLERANCE = 1e-12
 _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
-_ROUNDED = 1e-13  # part of the deflections below which a step that does not halve their error is the last
+_ROUNDED = 1e-13  # part of the deflections below which steps are whole, and end where their error does not fall
 _ROUNDINGS = 8.0  # units of rounding of the terms of an elastic force
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
 _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
@@ -517,14 +517,13 @@ class _StaticModel:
         for _ in range(_NEWTON_STEPS):
             gap, slope, left = here
             step = size * np.linalg.lstsq(slope, gap, rcond=None)[0]
-            rounded = left <= _ROUNDED * float(np.linalg.norm(z / size))
-            for halving in range(1 if rounded else _HALVINGS):
+            for halving in range(1 if left <= _ROUNDED * float(np.linalg.norm(z / size)) else _HALVINGS):
                 there = z - 0.5**halving * step
                 trial = unbalanced(there)
                 if trial[2] < left:
                     z, here, iterations = there, trial, iterations + 1
                     break
-            if here[2] == left or (rounded and here[2] > 0.5 * left):
+            if here[2] == left:
                 break
         x, _ = motions(z)
         return self._result(x, extra, free, iterations)
@@ -544,8 +543,10 @@ class _StaticModel:
         residual = self.load - (self.stiffness + extra) @ x
         for rows, force in zip(self.directions, forces, strict=True):
             residual = residual - rows @ force
-        # Elastic forces are differences of large ones where a part is short and stiff: their rounding is no imbalance.
-        rounding = _ROUNDINGS * np.finfo(np.float64).eps * (np.abs(self.stiffness + extra) @ np.abs(x))
+        # Elastic forces are differences of large ones where a part is short and stiff: their rounding is no imbalance,
+        # on whatever node it is left.
+        terms = np.abs(self.stiffness + extra) @ np.abs(x)
+        rounding = _ROUNDINGS * np.finfo(np.float64).eps * float(terms[: self.housing_first].max())
         beyond, _ = self._relative(np.maximum(np.abs(residual) - rounding, 0.0), forces)
         relative, where = self._relative(residual, forces)
         if not (beyond <= RESIDUAL_BAR and relative <= _LARGEST_ROUNDING):
