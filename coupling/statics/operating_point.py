@@ -23,7 +23,7 @@ Friction of the teeth and the change of the load with the mesh phase are left ou
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -562,7 +562,7 @@ class _StaticModel:
                 deflection,
                 self.seat_rows(one.mounted) @ x,
                 tangent,
-                _rolling_state(one.law, deflection),
+                _rolling_state(one, deflection),
             )
             for one, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
         )
@@ -666,10 +666,13 @@ class _StaticModel:
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)
 
 
-def _rolling_state(law: ConnectorLaw, deflection: FloatArray) -> RollingState | None:
-    if not isinstance(law, RollingElementLaw):
+def _rolling_state(one: StaticBearing, deflection: FloatArray) -> RollingState | None:
+    if not isinstance(one.law, RollingElementLaw):
         return None
-    return rolling_state(law.elements.bearing, deflection, speed=law.elements.speed)
+    elements = one.law.elements
+    # Messages name the bearing by its place in the machine.
+    named = replace(elements.bearing, name=f"bearing {one.mounted.bearing.name!r}")
+    return rolling_state(named, deflection, speed=elements.speed)
 
 
 def _rigid_rows(at: float) -> FloatArray:
