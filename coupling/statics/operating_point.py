@@ -57,6 +57,8 @@ RESIDUAL_BAR = 1e-9
 _TOLERANCE = 1e-12
 _NEWTON_STEPS = 30
 _HALVINGS = 6
+_REFINEMENTS = 2
+_ROUNDED = 1e-13  # part of the deflections below which steps are whole, and end where their error does not fall
 _ROUNDINGS = 8.0  # units of rounding of the terms of an elastic force
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
 _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
@@ -283,7 +285,8 @@ class OperatingPoint:
     housing : ndarray, shape (h,), or None
         The housing's modal coordinates.
     residual : float
-        Largest force out of balance over the largest load; moments over that load times the longest shaft.
+        Largest force out of balance over the largest load; moments over that load times the longest shaft. Beyond the
+        rounding of the elastic forces it is at most `RESIDUAL_BAR`.
     iterations : int
         Of the trust region and Newton's method.
     free : tuple of str
@@ -533,12 +536,21 @@ class _StaticModel:
         """Minimise the potential, polish by Newton's method, and prove the balance of forces."""
         extra, free = self._hold_free_motions()
         directions, nominal = self.all_directions, self.nominal
-        held = linalg.lu_factor(self.stiffness + extra + directions @ nominal @ directions.T)
+        held = self.stiffness + extra + directions @ nominal @ directions.T
+        factor = linalg.lu_factor(held)
+
+        def answer_to(loads: FloatArray) -> FloatArray:
+            """Motions under loads; refined, so that a short span's stiffness costs a soft bearing no digits."""
+            x = linalg.lu_solve(factor, loads)
+            for _ in range(_REFINEMENTS):
+                x = x + linalg.lu_solve(factor, loads - held @ x)
+            return np.asarray(x)
+
         # The nominal law k0 (z - z0) starts the search near closed flanks.
         shift = nominal @ np.concatenate([self._offset(n) for n in range(len(self.laws))])
-        unloaded = linalg.lu_solve(held, self.load + directions @ shift)
+        unloaded = answer_to(self.load + directions @ shift)
         start = directions.T @ unloaded
-        compliance = directions.T @ linalg.lu_solve(held, directions)
+        compliance = directions.T @ answer_to(directions)
         values, vectors = np.linalg.eigh(0.5 * (compliance + compliance.T))
         kept = values > 1e-13 * values[-1]
         spread = vectors[:, kept] * np.sqrt(values[kept])
@@ -570,33 +582,37 @@ class _StaticModel:
                 force=float(np.abs(nu).max(initial=0.0)) + float(np.abs(spread.T @ force).max(initial=0.0)) + 1e-300,
             )
 
-        def unbalanced(nu: FloatArray) -> tuple[FloatArray, FloatArray, float, float]:
-            """Gradient, its derivative, its size, and the size that rounding leaves."""
-            _, force, tangent = remainder(start + spread @ nu, self.laws)
-            push = spread.T @ force
-            rounding = _TOLERANCE * float(np.linalg.norm(nu) + np.linalg.norm(push))
-            gradient = nu + push
-            return gradient, np.eye(nu.size) + spread.T @ tangent @ spread, float(np.linalg.norm(gradient)), rounding
+        size = np.sqrt(np.abs(np.diag(compliance)))
+        size = np.where(size > 0.0, size, 1.0)
+
+        def motions(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+            """Motions under the loads and the forces at deflections z, and the tangents there."""
+            _, force, tangent = remainder(z, self.laws)
+            # In one solution, as the difference of two large ones would lose digits.
+            return answer_to(self.load + directions @ (shift - force)), tangent
+
+        def unbalanced(z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+            """Deflections less those of the motions, over `size`, their derivative and their size."""
+            x, tangent = motions(z)
+            gap = (z - directions.T @ x) / size
+            return gap, np.eye(z.size) + compliance @ tangent * size / size[:, None], float(np.linalg.norm(gap))
 
         radius = max(float(np.sqrt(abs(self.load @ unloaded))), 1e-9)
         found = minimise(potential, np.zeros(spread.shape[1]), radius, _TOLERANCE)
-        nu, iterations = found.place, found.iterations
-        here = unbalanced(nu)
+        z, iterations = start + spread @ found.place, found.iterations
+        here = unbalanced(z)
         for _ in range(_NEWTON_STEPS):
-            gradient, tangent, left, rounding = here
-            step = np.linalg.lstsq(tangent, gradient, rcond=None)[0]
-            for halving in range(1 if left <= rounding else _HALVINGS):
-                there = nu - 0.5**halving * step
+            gap, slope, left = here
+            step = size * np.linalg.lstsq(slope, gap, rcond=None)[0]
+            for halving in range(1 if left <= _ROUNDED * float(np.linalg.norm(z / size)) else _HALVINGS):
+                there = z - 0.5**halving * step
                 trial = unbalanced(there)
                 if trial[2] < left:
-                    nu, here, iterations = there, trial, iterations + 1
+                    z, here, iterations = there, trial, iterations + 1
                     break
-            if left <= rounding or here[2] == left:
+            if here[2] == left:
                 break
-        z = start + spread @ nu
-        _, force, _ = remainder(z, self.laws)
-        # In one solution, as the difference of two large ones would lose digits.
-        x = linalg.lu_solve(held, self.load + directions @ (shift - force))
+        x, _ = motions(z)
         return self._result(x, extra, free, iterations)
 
     def _offset(self, number: int) -> FloatArray:
@@ -614,8 +630,10 @@ class _StaticModel:
         residual = self.load - (self.stiffness + extra) @ x
         for rows, force in zip(self.directions, forces, strict=True):
             residual = residual - rows @ force
-        # Elastic forces are differences of large ones where a part is short and stiff: their rounding is no imbalance.
-        rounding = _ROUNDINGS * np.finfo(np.float64).eps * (np.abs(self.stiffness + extra) @ np.abs(x))
+        # Elastic forces are differences of large ones where a part is short and stiff: their rounding is no imbalance,
+        # on whatever node it is left.
+        terms = np.abs(self.stiffness + extra) @ np.abs(x)
+        rounding = _ROUNDINGS * np.finfo(np.float64).eps * float(terms[: self.housing_first].max())
         beyond, _ = self._relative(np.maximum(np.abs(residual) - rounding, 0.0), forces)
         relative, where = self._relative(residual, forces)
         if not (beyond <= RESIDUAL_BAR and relative <= _LARGEST_ROUNDING):
@@ -631,7 +649,7 @@ class _StaticModel:
                 deflection,
                 self.seat_rows(one.mounted) @ x,
                 tangent,
-                _rolling_state(one.law, deflection),
+                _rolling_state(one, deflection),
             )
             for one, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
         )
@@ -743,10 +761,13 @@ class _StaticModel:
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)
 
 
-def _rolling_state(law: ConnectorLaw, deflection: FloatArray) -> RollingState | None:
-    if not isinstance(law, RollingElementLaw):
+def _rolling_state(one: StaticBearing, deflection: FloatArray) -> RollingState | None:
+    if not isinstance(one.law, RollingElementLaw):
         return None
-    return rolling_state(law.elements.bearing, deflection, speed=law.elements.speed)
+    elements = one.law.elements
+    # Messages name the bearing by its place in the machine.
+    named = replace(elements.bearing, name=f"bearing {one.mounted.bearing.name!r}")
+    return rolling_state(named, deflection, speed=elements.speed)
 
 
 def _rigid_rows(at: float) -> FloatArray:
