@@ -172,7 +172,7 @@ def by_case_parameters(case: Case, fields: HousingFields, parameters: Sequence[U
     rates = meshed.rates()
     ports = [_port_rates(meshed, number, rate) for number, rate in enumerate(rates)]
     slopes = [one.deviation(z, 1.0) for one, z in zip(fitted.parameters, fitted.start.tolist(), strict=True)]
-    return fields.by_parameters(rates, ports) / np.array(slopes)
+    return np.asarray(fields.by_parameters(rates, ports) / np.array(slopes))
 
 
 def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> PortRates:
