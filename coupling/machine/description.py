@@ -564,12 +564,13 @@ class Machine:
         for gear, start in zip(gears, starts, strict=True):
             at = gear.at if aligned else 0.5 * (left + right) - start
             stations, length = at + face_stations(geometry.face_width), self.shaft(gear.shaft).rotor.length
-            within = stations[0] >= 0.0 and stations[-1] <= length
+            # A rim on a web does not follow the shaft over the face: its teeth stand on one section.
+            within = gear.gear.rim_thickness is None and stations[0] >= 0.0 and stations[-1] <= length
             placed.append(StaticGear(gear.name, gear.shaft, at, stations if within else None))
         return placed[0], placed[1]
 
     def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
-        """Shaft with nodes at bearings, torques and faces, thickened by the bodies of its gears."""
+        """Shaft with nodes at bearings, torques and faces, thickened by the solid bodies of its gears."""
         places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         for pair in pairs:
@@ -579,7 +580,7 @@ class Machine:
                     places += [] if gear.stations is None else gear.stations.tolist()
         bodies = []
         for one in self.gears:
-            if one.shaft == shaft.name:
+            if one.shaft == shaft.name and one.gear.rim_thickness is None:
                 ends = (max(one.at - 0.5 * one.gear.face_width, 0.0), one.at + 0.5 * one.gear.face_width)
                 bodies.append((ends[0], min(ends[1], shaft.rotor.length), 2.0 * one.gear.root_circle_radius))
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)

@@ -150,8 +150,8 @@ class StaticGear:
     at : float
         Middle of the pair's common face from the shaft's left end [m].
     stations : ndarray, shape (j,), or None
-        Stations of the pair's common face on the shaft, from its left end [m]; None for a gear whose face reaches
-        beyond the end of the shaft, which is rigid on the section at ``at``.
+        Stations of the pair's common face on the shaft, from its left end [m]; None for a gear with a rim, or
+        whose face reaches beyond the end of the shaft, which is rigid on the section at ``at``.
     """
 
     name: str

@@ -18,7 +18,6 @@ from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.machine.components import HousingComponent
-from coupling.statics import static_model
 from coupling.statics.operating_point import CAUSES
 from rotors import EquilibriumError, Rotor, Segment
 from rotors.rolling_bearings import BallRow, RollingBearing
@@ -214,11 +213,23 @@ def test_stiff_parts_have_no_share_in_the_misalignment() -> None:
 def test_five_stations_over_the_face_are_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     machine = one_stage(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
     (coarse,) = machine.operating_point().pairs
-    monkeypatch.setattr(static_model, "FACE_STATIONS", 9)
+    monkeypatch.setattr("coupling.gears.contact.face_slices.FACE_STATIONS", 9)
     (fine,) = machine.operating_point().pairs
     assert coarse.misalignment == pytest.approx(fine.misalignment, rel=2e-3)
     assert coarse.k_h_beta == pytest.approx(fine.k_h_beta, rel=5e-3)
     assert coarse.misalignment_by_cause["bodies"] == pytest.approx(fine.misalignment_by_cause["bodies"], rel=5e-3)
+
+
+def test_a_gear_with_a_rim_does_not_stiffen_its_shaft() -> None:
+    """A solid pinion bends with its shaft and stiffens it; a rim on a web stands on one section of the bare shaft."""
+    solid = one_stage()
+    rims = [replace(one, gear=replace(one.gear, rim_thickness=4e-3, web_thickness=5e-3)) for one in solid.gears]
+    webbed = replace(solid, gears=rims)
+    places = np.linspace(0.02, 0.14, 9)
+    for first, second in zip(solid.operating_point().shafts, webbed.operating_point().shafts, strict=True):
+        assert np.ptp(first.motions(places)[:2]) < np.ptp(second.motions(places)[:2])
+    (pair,) = webbed.operating_point().pairs
+    assert pair.misalignment_by_cause["bodies"] == pytest.approx(0.0, abs=1e-15)
 
 
 def test_the_load_of_a_pair_is_that_of_flanks_with_its_gap() -> None:
