@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gearwhine.results.chapters import chapters_of
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.case import CaseError
 from gearwhine.cli import run_command
+from gearwhine.results import chapters_of
 from gearwhine.results.operating_point import sections
 from gearwhine.solve.operating_point import SolvedLoad, load_warnings
 
