@@ -97,6 +97,21 @@ def test_numbers_of_the_housing(case: Case, fitted: FittedCase, fields: StaticSe
     assert abs(expected[2]) < 1e-13
 
 
+def test_the_weight_of_the_housing(case: Case, solve: Solve) -> None:
+    """Its density, by which weight alone acts, to 1e-6."""
+    document = case_document(case)
+    document["operation"]["gravity"] = [3.0, -9.81, 0.0]
+    density = [UpdateParameter(name="density", keys=("material.iron.density",), range=("6000 kg/m^3", "8000 kg/m^3"))]
+    fitted = fitted_case(parse_case(document), parameters=density)
+    mesh = build_mesh(case)
+    lighter, heavy, heavier = (solve(fitted.at([value]), mesh) for value in (7100.0, 7200.0, 7300.0))
+    (pair,) = pair_adjoints(heavy[1])
+    fields = housing_fields(parse_case(document), *heavy, [pair["misalignment"]])
+    own = by_case_parameters(parse_case(document), fields, density)[0, 0]
+    either = [point.pairs[0].misalignment for _, point in (heavier, lighter)]
+    assert own == pytest.approx((either[0] - either[1]) / 200.0, rel=1e-6)
+
+
 def test_material_on_a_face_is_a_thicker_wall(case: Case, fields: StaticSensitivity) -> None:
     """Of the bottom's inner face, against the wall's thickness, by which all nodes of the mesh move."""
     faces = dict(_faces(case, fields))
