@@ -204,6 +204,7 @@ def draw_sensitivity(
         Where nothing here draws.
     """
     from gearwhine.drawing_process import draw_in_process
+    from gearwhine.figures.style import shortened
     from housing.pictures.drawn_shapes import DrawnShape, drawn_housing
 
     assert solved.sensitivity is not None
@@ -220,9 +221,10 @@ def draw_sensitivity(
         largest = float(np.quantile(np.abs(values), _SHOWN_PART))
         if largest == 0.0 or not motion.any():
             continue
-        title = f"{pair.pair.driver.name} on {pair.pair.driven.name}: misalignment by added material"
+        driver, driven = (shortened(name, 14) for name in pair.names)
+        title = f"{driver} on {driven}: misalignment by added material"
         note = (
-            f"{_MICRO * pair.misalignment:.3g} µrad now; blue takes off, red adds, each mm on a dm² of surface. "
+            f"{_MICRO * pair.misalignment:.3g} µrad now; blue lowers, red raises it by each mm on a dm² of surface. "
             f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
         )
         quantity = "Change [µrad/(mm·dm²)]"

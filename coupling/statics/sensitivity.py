@@ -11,32 +11,18 @@ for every parameter p (Haug, Choi and Komkov, Design Sensitivity Analysis of Str
 - Bearing moved along its shaft by p, its seat staying: with w' the slope of the shaft's motions along z less that of
   the seat's rigid motion, and t = ∂f/∂δ, dy/dp = -w'(λ) · f - (Eᵀ λ) · t w'(x). Strains of the shaft jump at a bearing;
   the mean of both sides is exact, as the jumps of the two fields are alike.
-- Housing with K u = Sᵀ f and δ = x_s - S u, u the nodes' displacements and S the motions of the seats:
-
-    dy/dp = -λ_uᵀ dK u + λ_uᵀ dM g + f · dS λ_u + (tᵀ Eᵀ λ) · dS u,
-
-  with g the acceleration of free fall. Both fields are static responses to forces at the seats, which the residual
-  modes make exact, except that of the housing's own weight.
-- Housing with material added on its surface, by the thickness h along the outward normal: the surface without
-  tractions gives dy = ∫ G h dA with the density
-
-    G = -σ(u) : ε(λ_u) + ρ g · λ_u.
+- Housing: :mod:`housing.updating.static_sensitivity`, by the fields of λ and x in it and the forces of the bearings.
 
 Outcomes of the flanks follow by the chain rule from the approach over the face, on which they depend alone.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg, sparse
+from scipy import linalg
 
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
-from housing import ModeSet
-from housing.updating.sensitivities import ModelSensitivity, modal_sensitivities
-from meshes import Mesh
-from meshes.shape_functions import determinants, inverses, jacobians, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -168,127 +154,3 @@ def _seat_slope(point: OperatingPoint, load: BearingLoad, coordinates: FloatArra
 def _rigid_slope(rotation: FloatArray) -> FloatArray:
     """Differentiate the motions of a rigid body along z, by its rotations about x and y."""
     return np.array([rotation[1], -rotation[0], 0.0, 0.0, 0.0])
-
-
-PortRates = Mapping[str, sparse.csr_array]
-"""dS of each bearing whose port a parameter moves: its motions from the nodes', shape (5, 3 n_nodes)."""
-
-
-@dataclass(frozen=True, eq=False)
-class HousingFields:
-    """Displacements of a housing's nodes: of the operating point, of adjoint states, and of the weight's acceleration.
-
-    Attributes
-    ----------
-    mesh : Mesh
-    constants : ndarray, shape (3, n_elements)
-        λ, μ [Pa] and ρ [kg/m³].
-    point : OperatingPoint
-    adjoints : sequence of Adjoint
-    displacement : ndarray, shape (n_nodes, 3)
-        u [m].
-    adjoint : ndarray, shape (n_adjoints, n_nodes, 3)
-        λ_u of each adjoint state [outcome/N].
-    gravity : ndarray, shape (3,)
-        g [m/s²].
-    """
-
-    mesh: Mesh
-    constants: FloatArray
-    point: OperatingPoint
-    adjoints: Sequence[Adjoint]
-    displacement: FloatArray
-    adjoint: FloatArray
-    gravity: FloatArray
-
-    def by_parameters(self, rates: Sequence[ModelSensitivity], ports: Sequence[PortRates]) -> FloatArray:
-        """Differentiate each adjoint state's outcome by parameters of the housing, shape (n_adjoints, n_parameters).
-
-        Parameters
-        ----------
-        rates : sequence of ModelSensitivity
-            Derivatives of the housing's model by each parameter.
-        ports : sequence of PortRates
-            Those of the bearings' ports.
-        """
-        weight = np.broadcast_to(self.gravity, self.displacement.shape)
-        fields = np.concatenate([np.stack([self.displacement, weight]), self.adjoint])
-        found = modal_sensitivities(self.mesh, self.constants, fields, rates)
-        total = found.mass[:, 1, 2:] - found.stiffness[:, 0, 2:]
-        for row, changes in zip(total, ports, strict=True):
-            for name, change in changes.items():
-                moved = change @ self.adjoint.reshape(len(self.adjoint), -1).T
-                seat = change @ self.displacement.ravel()
-                row += self.point.bearing(name).force @ moved
-                row += np.array([one.force(name) @ seat for one in self.adjoints])
-        return total.T
-
-    def surface_density(self) -> FloatArray:
-        """G of each adjoint state at the nodes [outcome/m³], shape (n_adjoints, n_nodes); of use on the surface.
-
-        Gradients of the fields are averaged over the elements at a node, weighted by their volumes there.
-        """
-        fields = np.concatenate([self.displacement[None], self.adjoint])
-        gradients, constants = _nodal_means(self.mesh, fields, self.constants)
-        strains = 0.5 * (gradients + gradients.swapaxes(-1, -2))
-        lam, mu, density = constants
-        stress = 2.0 * mu[:, None, None] * strains[0]
-        stress += (lam * np.trace(strains[0], axis1=1, axis2=2))[:, None, None] * np.eye(3)
-        own = np.einsum("nij,anij->an", stress, strains[1:], optimize=True)
-        return np.asarray(density * (self.adjoint @ self.gravity) - own)
-
-
-def housing_fields(
-    point: OperatingPoint, adjoints: Sequence[Adjoint], mesh: Mesh, constants: FloatArray, modes: ModeSet
-) -> HousingFields:
-    """Return the displacements of a housing's nodes at an operating point and of adjoint states.
-
-    Parameters
-    ----------
-    point : OperatingPoint
-        With this housing.
-    adjoints : sequence of Adjoint
-    mesh : Mesh
-    constants : ndarray, shape (3, n_elements)
-        λ, μ [Pa] and ρ [kg/m³].
-    modes : ModeSet
-        With residual modes for the bearings.
-    """
-    assert point.housing is not None
-    every = np.arange(len(mesh.points))
-    moved = [modes.displacement(coordinates, every) for coordinates in (point.housing, *(a.housing for a in adjoints))]
-    gravity = point.shafts[0].gravity
-    return HousingFields(
-        mesh,
-        constants,
-        point,
-        adjoints,
-        moved[0],
-        np.array(moved[1:]).reshape(-1, *moved[0].shape),
-        np.zeros(3) if gravity is None else np.array(gravity),
-    )
-
-
-def _nodal_means(mesh: Mesh, fields: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Means over the elements at each node: ∂_j f_i, (n_fields, n_nodes, 3, 3), and constants, (3, n_nodes)."""
-    nodes = len(mesh.points)
-    gradients, means = np.zeros((len(fields), nodes, 3, 3)), np.zeros((3, nodes))
-    weights, first = np.zeros(nodes), 0
-    for block in mesh.blocks:
-        places = np.array(block.of.places, dtype=np.float64).T
-        reference = shape_functions(block.kind, places)[1]
-        jacobian = jacobians(mesh.points, block.nodes, reference)
-        determinant = determinants(jacobian)
-        inverse = inverses(jacobian, determinant)
-        own = constants[:, first : first + len(block)]
-        first += len(block)
-        slopes = np.einsum("kjeq,qak->eqja", inverse, reference, optimize=True)
-        at = block.nodes.ravel()
-        np.add.at(weights, at, determinant.ravel())
-        for mean, values in zip(means, own, strict=True):
-            np.add.at(mean, at, (determinant * values[:, None]).ravel())
-        for gradient, field in zip(gradients, fields, strict=True):
-            local = np.einsum("eqja,eai->eqij", slopes, field[block.nodes], optimize=True)
-            np.add.at(gradient, at, (local * determinant[..., None, None]).reshape(-1, 3, 3))
-    weights = np.where(weights > 0.0, weights, 1.0)
-    return gradients / weights[:, None, None], means / weights

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import OUTCOMES, HousingFields, PortRates, housing_fields, pair_adjoints
+from coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.box import FACES
 from gearwhine.case.units import kind_of
@@ -25,6 +25,7 @@ from housing.model.housing import bearing_port
 from housing.model.material import element_constants
 from housing.model.seats import seat_matrix
 from housing.updating import ModelSensitivity
+from housing.updating.static_sensitivity import PortRates, StaticSensitivity
 from meshes.box.morph import MorphError, with_middles
 
 FloatArray = npt.NDArray[np.float64]
@@ -113,9 +114,7 @@ def solve_load_sensitivity(
     density, note = None, None
     if adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
-        parted, material, materials = materials_of(case, housing.mesh)
-        constants = element_constants(parted, material, materials)
-        fields = housing_fields(point, adjoints, housing.mesh, constants, housing.modes)
+        fields = housing_fields(case, housing, point, adjoints)
         surface = fields.surface_density()
         density = surface[[n for n, (_, outcome) in enumerate(places) if outcome == 0]]
         parameters = housing_parameters(case)
@@ -138,6 +137,25 @@ def solve_load_sensitivity(
     return LoadSensitivity(tuple(found), density, note)
 
 
+def housing_fields(
+    case: Case, housing: SolvedHousing, point: OperatingPoint, adjoints: Sequence[Adjoint]
+) -> StaticSensitivity:
+    """Return the displacements of a housing's nodes at an operating point and of adjoint states, with their forces."""
+    assert point.housing is not None
+    parted, material, materials = materials_of(case, housing.mesh)
+    every = np.arange(len(housing.mesh.points))
+    gravity = point.shafts[0].gravity
+    return StaticSensitivity(
+        housing.mesh,
+        element_constants(parted, material, materials),
+        housing.modes.displacement(point.housing, every),
+        np.array([housing.modes.displacement(one.housing, every) for one in adjoints]),
+        {one.name: one.force for one in point.bearings},
+        {bearing.name: np.array([one.force(bearing.name) for one in adjoints]) for bearing in point.bearings},
+        np.zeros(3) if gravity is None else np.array(gravity),
+    )
+
+
 def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
     """Return the parameters of a case's ``[update]``, else a thickness for every wall of its box; none for others."""
     if case.update is not None:
@@ -155,7 +173,7 @@ def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
     return tuple(made)
 
 
-def by_case_parameters(case: Case, fields: HousingFields, parameters: Sequence[UpdateParameter]) -> FloatArray:
+def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequence[UpdateParameter]) -> FloatArray:
     """Differentiate outcomes by numbers of a case's housing, in SI, shape (n_adjoints, n_parameters).
 
     Raises
@@ -166,7 +184,7 @@ def by_case_parameters(case: Case, fields: HousingFields, parameters: Sequence[U
         Where the mesh of a box cannot follow.
     """
     if not parameters:
-        return np.zeros((len(fields.adjoints), 0))
+        return np.zeros((len(fields.adjoint), 0))
     fitted = fitted_case(case, parameters=parameters)
     meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
     rates = meshed.rates()
@@ -196,7 +214,7 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
     return {name: (port - ports[1][name]) / (2.0 * RATE_STEP) for name, port in ports[0].items()}
 
 
-def _faces(case: Case, fields: HousingFields) -> Iterator[tuple[str, FloatArray]]:
+def _faces(case: Case, fields: StaticSensitivity) -> Iterator[tuple[str, FloatArray]]:
     """Yield the large flat faces of a surface in words, with the derivatives by material added on them [outcome/m].
 
     The face moves along its normal with the layer of elements on it; seats and what is fastened stay.
@@ -218,4 +236,4 @@ def _faces(case: Case, fields: HousingFields) -> Iterator[tuple[str, FloatArray]
         axis = int(np.abs(face.normal).argmax())
         way = f"{'-+'[int(face.normal[axis] > 0.0)]}{'xyz'[axis]}"
         x, y, z = (1e3 * face.center).round().astype(int).tolist()
-        yield f"to {way} at ({x}, {y}, {z}) mm", derivatives
+        yield f"{way} at {x}, {y}, {z} mm", derivatives

@@ -1,18 +1,20 @@
 """Gradients of the operating point by adjoints, against central differences of equilibria that are solved anew."""
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from own_statics import one_stage
 
-from coupling import Machine
+from coupling import Machine, MountedBearing
+from coupling.machine import description
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
+from coupling.statics.static_model import ConnectorLaw, StaticBearing, static_bearing
 from rotors import Pedestal
+from rotors.rolling_bearings import BallRow, paired
 
 FloatArray = npt.NDArray[np.float64]
 GRAVITY = (1.0, -9.81, 0.3)
@@ -29,11 +31,17 @@ def on_pedestals() -> Machine:
     )
 
 
+def on_balls() -> Machine:
+    pair = paired(BallRow(13, 8.1e-3, 38.5e-3, np.radians(25.0)), "back to back", 15e-3, preload=150.0)
+    return one_stage(bearings=[replace(one, rolling=pair) for one in one_stage().bearings])
+
+
 MACHINES = {
     "full bearings": one_stage(),
     "spur, on the back flanks": one_stage(hand=0.0, torque=-150.0),
     "journal bearings": one_stage(stiffness=JOURNAL),
     "pedestals": on_pedestals(),
+    "preloaded angular-contact ball bearings": on_balls(),
 }
 
 
@@ -42,24 +50,43 @@ def outcomes(point: OperatingPoint, bearing: str) -> FloatArray:
     return np.array([pair.misalignment, pair.k_h_beta, np.ptp(pair.transmission_error), point.bearing(bearing).tilt])
 
 
-def difference(machine: Machine, number: int, change: Callable[[Any, float], Any], step: float) -> FloatArray:
+@dataclass(frozen=True)
+class Scaled:
+    """A law with its energy, force and tangent multiplied."""
+
+    law: ConnectorLaw
+    factor: float
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        energy, force, tangent = self.law.at(deflection)
+        return self.factor * energy, self.factor * force, self.factor * tangent
+
+
+def scaled(machine: Machine, number: int, size: float) -> OperatingPoint:
+    name = machine.bearings[number].bearing.name
+
+    def stiffer(mounted: MountedBearing, speed: float) -> StaticBearing:
+        made = static_bearing(mounted, speed)
+        return replace(made, law=Scaled(made.law, 1.0 + size)) if mounted.bearing.name == name else made
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(description, "static_bearing", stiffer)
+        return machine.operating_point(GRAVITY)
+
+
+def moved(machine: Machine, number: int, size: float) -> OperatingPoint:
+    held = list(machine.bearings)
+    own = held[number]
+    held[number] = replace(own, bearing=replace(own.bearing, at=own.bearing.at + size))
+    return replace(machine, bearings=held).operating_point(GRAVITY)
+
+
+def difference(machine: Machine, number: int, change: Callable[..., OperatingPoint], step: float) -> FloatArray:
     """Central difference, fourth order, of the outcomes by a change of a bearing."""
-    found = []
-    for size in (step, -step, 2.0 * step, -2.0 * step):
-        held = list(machine.bearings)
-        held[number] = replace(held[number], bearing=change(held[number].bearing, size))
-        point = replace(machine, bearings=held).operating_point(GRAVITY)
-        found.append(outcomes(point, held[0].bearing.name))
+    first = machine.bearings[0].bearing.name
+    found = [outcomes(change(machine, number, size), first) for size in (step, -step, 2.0 * step, -2.0 * step)]
     near, far = found[0] - found[1], found[2] - found[3]
     return np.asarray((8.0 * near - far) / (12.0 * step))
-
-
-def scaled(bearing: Any, size: float) -> Any:
-    return replace(bearing, stiffness=(1.0 + size) * np.asarray(bearing.stiffness))
-
-
-def moved(bearing: Any, size: float) -> Any:
-    return replace(bearing, at=bearing.at + size)
 
 
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)

@@ -1,0 +1,119 @@
+r"""Static sensitivity: gradients of an outcome of a loaded housing by its parameters, from two displacement fields.
+
+The housing carries forces f at ports that move by S u, K u = Sᵀ f + M g, as a part of a machine whose forces depend on
+those motions. u are the displacements; λ are the adjoint ones of an outcome y of the machine, its derivatives by forces
+on the nodes; f̄ are the adjoint forces at the ports, its derivatives by their motions. For any parameter
+
+    dy/dp = -λᵀ dK u + λᵀ dM g + f · dS λ + f̄ · dS u
+
+(Haug, Choi and Komkov, Design Sensitivity Analysis of Structural Systems, 1986, sections 1.2 and 3.3). Both fields are
+static responses to forces at the ports, which residual modes make exact, except that of the housing's own weight. For
+material added on the surface, by the thickness h along the outward normal where no tractions act,
+
+    dy = ∫ G h dA,      G = -σ(u) : ε(λ) + ρ g · λ.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.updating.sensitivities import ModelSensitivity, modal_sensitivities
+from meshes import Mesh
+from meshes.shape_functions import determinants, inverses, jacobians, shape_functions
+
+FloatArray = npt.NDArray[np.float64]
+
+PortRates = Mapping[str, sparse.csr_array]
+"""dS of each port that a parameter moves: its motions from the nodes', shape (r, 3 n_nodes)."""
+
+
+@dataclass(frozen=True, eq=False)
+class StaticSensitivity:
+    """Displacement fields of a loaded housing and of adjoint states, a of them, and their forces at the ports.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    constants : ndarray, shape (3, n_elements)
+        Lamé's λ, μ [Pa] and ρ [kg/m³].
+    displacement : ndarray, shape (n_nodes, 3)
+        u [m].
+    adjoint : ndarray, shape (a, n_nodes, 3)
+        λ of each adjoint state [outcome/N].
+    forces : mapping of str to ndarray, shape (r,)
+        f at each port [N, N m].
+    adjoint_forces : mapping of str to ndarray, shape (a, r)
+        f̄ at each port [outcome/m, outcome/rad].
+    gravity : ndarray, shape (3,)
+        g [m/s²].
+    """
+
+    mesh: Mesh
+    constants: FloatArray
+    displacement: FloatArray
+    adjoint: FloatArray
+    forces: Mapping[str, FloatArray]
+    adjoint_forces: Mapping[str, FloatArray]
+    gravity: FloatArray
+
+    def by_parameters(self, rates: Sequence[ModelSensitivity], ports: Sequence[PortRates]) -> FloatArray:
+        """Differentiate each outcome by parameters of the housing, shape (a, n_parameters).
+
+        Parameters
+        ----------
+        rates : sequence of ModelSensitivity
+            Derivatives of the housing's model by each parameter.
+        ports : sequence of PortRates
+            Those of the ports.
+        """
+        weight = np.broadcast_to(self.gravity, self.displacement.shape)
+        fields = np.concatenate([np.stack([self.displacement, weight]), self.adjoint])
+        found = modal_sensitivities(self.mesh, self.constants, fields, rates)
+        total = found.mass[:, 1, 2:] - found.stiffness[:, 0, 2:]
+        for row, changes in zip(total, ports, strict=True):
+            for name, change in changes.items():
+                row += self.forces[name] @ (change @ self.adjoint.reshape(len(self.adjoint), -1).T)
+                row += self.adjoint_forces[name] @ (change @ self.displacement.ravel())
+        return np.asarray(total.T)
+
+    def surface_density(self) -> FloatArray:
+        """G of each adjoint state at the nodes [outcome/m³], shape (a, n_nodes); of use on the surface.
+
+        Gradients of the fields are averaged over the elements at a node, weighted by their volumes there.
+        """
+        fields = np.concatenate([self.displacement[None], self.adjoint])
+        gradients, constants = _nodal_means(self.mesh, fields, self.constants)
+        strains = 0.5 * (gradients + gradients.swapaxes(-1, -2))
+        lam, mu, density = constants
+        stress = 2.0 * mu[:, None, None] * strains[0]
+        stress += (lam * np.trace(strains[0], axis1=1, axis2=2))[:, None, None] * np.eye(3)
+        own = np.einsum("nij,anij->an", stress, strains[1:], optimize=True)
+        return np.asarray(density * (self.adjoint @ self.gravity) - own)
+
+
+def _nodal_means(mesh: Mesh, fields: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Means over the elements at each node: ∂_j f_i, (n_fields, n_nodes, 3, 3), and constants, (3, n_nodes)."""
+    nodes = len(mesh.points)
+    gradients, means = np.zeros((len(fields), nodes, 3, 3)), np.zeros((3, nodes))
+    weights, first = np.zeros(nodes), 0
+    for block in mesh.blocks:
+        places = np.array(block.of.places, dtype=np.float64).T
+        reference = shape_functions(block.kind, places)[1]
+        jacobian = jacobians(mesh.points, block.nodes, reference)
+        determinant = determinants(jacobian)
+        inverse = inverses(jacobian, determinant)
+        own = constants[:, first : first + len(block)]
+        first += len(block)
+        slopes = np.einsum("kjeq,qak->eqja", inverse, reference, optimize=True)
+        at = block.nodes.ravel()
+        np.add.at(weights, at, determinant.ravel())
+        for mean, values in zip(means, own, strict=True):
+            np.add.at(mean, at, (determinant * values[:, None]).ravel())
+        for gradient, field in zip(gradients, fields, strict=True):
+            local = np.einsum("eqja,eai->eqij", slopes, field[block.nodes], optimize=True)
+            np.add.at(gradient, at, (local * determinant[..., None, None]).reshape(-1, 3, 3))
+    weights = np.where(weights > 0.0, weights, 1.0)
+    return gradients / weights[:, None, None], means / weights
