@@ -754,8 +754,8 @@ class _StaticModel:
         touched = approach - pair.clearance * contact.uniform
         force = contact.at(touched).force
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
-        # An idle pair is looked at under a force that bends nothing.
-        loading = max(force, least)
+        # An idle pair is solved under a small force, which moves nothing else.
+        loading = force if force > 0.0 else least
         mean = contact.under_force(loading, shape)
         fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)

@@ -123,8 +123,8 @@ def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
     """Stiffness of a rolling bearing under a trial load, alike in x and y, (5, 5)."""
     trial = _TRIAL_LOAD * min(static_rating(row) for row in rolling.rows)
     load = np.array([trial, 0.0, 0.0, 0.0, 0.0])
-    free_axially = {} if rolling.has_axial_stiffness else {"z": 0.0}
-    state = rolling_equilibrium(rolling, load, held={"rx": 0.0, "ry": 0.0, **free_axially})
+    # Held along its axis, a row that carries thrust one way only does not slide open.
+    state = rolling_equilibrium(rolling, load, held={"z": 0.0, "rx": 0.0, "ry": 0.0})
     own = np.diag(state.stiffness)
     radial, tilt = max(own[0], own[1]), max(own[3], own[4])
     return np.diag([radial, radial, own[2], tilt, tilt])

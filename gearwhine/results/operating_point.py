@@ -1,11 +1,11 @@
 """Operating point: quantities of bearings, gear pairs and shafts under the mean load, and how they are shown."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coupling.statics.operating_point import CAUSES
+from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, table_of
 
@@ -131,6 +131,13 @@ _BEARING_COLUMNS = (
 )
 
 _SLICE, _PHASE = ("face_slice",), ("load_phase",)
+
+
+def _of_loaded(value: Callable[[PairLoad], Any]) -> Callable[[PairLoad], Any]:
+    """Take a value of a pair that carries load; an idle one has none."""
+    return lambda one: value(one) if one.force > 0.0 else None
+
+
 PAIR = (
     Quantity("", lambda one: f"{one.pair.driver.name} -> {one.pair.driven.name}", "loaded_pair"),
     Quantity("driver", lambda one: one.pair.driver.name, heading="driver"),
@@ -172,17 +179,17 @@ PAIR = (
     ),
     Quantity(
         "k_h_beta",
-        lambda one: one.k_h_beta,
+        _of_loaded(lambda one: one.k_h_beta),
         "face_load_factor",
         (),
         "1",
-        "face load factor K_Hbeta of ISO 6336-1",
+        "face load factor K_Hbeta of ISO 6336-1 at the mean torque, without K_A, K_V, tolerances and running-in",
         heading="K_Hβ",
         shown=".3f",
     ),
     Quantity(
         "mean_stiffness_n_per_m",
-        lambda one: one.mean_stiffness,
+        _of_loaded(lambda one: one.mean_stiffness),
         "mesh_mean_stiffness",
         (),
         "N/m",
@@ -193,7 +200,7 @@ PAIR = (
     ),
     Part(
         "transmission_error_m",
-        lambda one: one.transmission_error,
+        _of_loaded(lambda one: one.transmission_error),
         (
             Quantity("mean", np.mean),
             Quantity("peak_to_peak", np.ptp),
@@ -201,15 +208,15 @@ PAIR = (
     ),
     Part(
         "line_load_n_per_m",
-        lambda one: one,
+        _of_loaded(lambda one: one),
         (
             Quantity("mean", lambda one: one.line_load.mean()),
             Quantity("max_of_mean", lambda one: one.line_load.max()),
             Quantity("max", lambda one: one.fine.peak_line_load),
         ),
     ),
-    Quantity("contact_pressure_max_pa", lambda one: one.peak_pressure),
-    Quantity("carrying_part", lambda one: one.carrying_part),
+    Quantity("contact_pressure_max_pa", _of_loaded(lambda one: one.peak_pressure)),
+    Quantity("carrying_part", _of_loaded(lambda one: one.carrying_part)),
     Quantity(
         "", lambda one: one.z, "face_slice_place", _SLICE, "m", "distance of the slice from the middle of the face"
     ),
@@ -226,7 +233,7 @@ PAIR = (
     ),
     Quantity(
         "",
-        lambda one: one.line_load,
+        _of_loaded(lambda one: one.line_load),
         "face_mean_line_load",
         _SLICE,
         "N/m",
@@ -234,7 +241,7 @@ PAIR = (
     ),
     Quantity(
         "",
-        lambda one: one.fine.line_load,
+        _of_loaded(lambda one: one.fine.line_load),
         "face_line_load",
         (*_PHASE, *_SLICE),
         "N/m",
@@ -243,11 +250,11 @@ PAIR = (
     Quantity("", lambda one: one.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
     Quantity(
         "",
-        lambda one: one.transmission_error,
+        _of_loaded(lambda one: one.transmission_error),
         "loaded_transmission_error",
         _PHASE,
         "m",
-        "static transmission error under the mean load: deflection of the teeth along the line of action",
+        "static transmission error under the mean load: of teeth and reliefs, along the line of action",
     ),
 )
 """Of a gear pair at the operating point."""

@@ -34,6 +34,7 @@ TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 _PLACES = 201  # along a shaft, where its deflection is told
 _HOUR = 3600.0
 _DIFFERENCE = 0.1  # part of the larger of two numbers by which they may differ without a word
+_ALIGNED = 1e-6  # difference of misalignments that is none [rad]
 _UNEVEN = 2.0  # K_Hβ beyond which a face is said to carry unevenly
 _SHORT_LIFE = 1000.0  # [h]
 _ARC_MINUTE = math.radians(1.0 / 60.0)
@@ -376,7 +377,7 @@ def _misalignment_warnings(case: Case, solved: SolvedLoad) -> Iterator[dict[str,
         if "misalignment" not in given.model_fields_set:
             continue
         typed, found = pair.misalignment, one.misalignment
-        if typed is None or abs(typed - found) <= _DIFFERENCE * max(abs(typed), abs(found)):
+        if typed is None or abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
             continue
         yield warning(
             "misalignment",

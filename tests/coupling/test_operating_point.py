@@ -20,7 +20,7 @@ from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.machine.components import HousingComponent
 from coupling.statics.operating_point import CAUSES
 from rotors import EquilibriumError, Rotor, Segment
-from rotors.rolling_bearings import BallRow, RollingBearing
+from rotors.rolling_bearings import BallRow, RollingBearing, TaperedRollerRow
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -218,6 +218,31 @@ def test_five_stations_over_the_face_are_enough(monkeypatch: pytest.MonkeyPatch)
     assert coarse.misalignment == pytest.approx(fine.misalignment, rel=2e-3)
     assert coarse.k_h_beta == pytest.approx(fine.k_h_beta, rel=5e-3)
     assert coarse.misalignment_by_cause["bodies"] == pytest.approx(fine.misalignment_by_cause["bodies"], rel=5e-3)
+
+
+def test_tapered_rollers_hold_a_shaft_between_them() -> None:
+    """One row at each end, each for one sense of thrust (X arrangement), pressed together by a small interference.
+
+    Every radial load of a tapered row makes a thrust of its own, so both rows carry; their difference is the gears'.
+    """
+    row = TaperedRollerRow(15, 8e-3, 12e-3, 55e-3, angle=0.25)
+    machine = one_stage()
+    held = [
+        MountedBearing(
+            linear_bearing(one.bearing.name, one.bearing.at, np.zeros((5, 5))),
+            one.rotor,
+            None,
+            rolling=RollingBearing([replace(row, direction=direction, axial_offset=10e-6)], name=one.bearing.name),
+        )
+        for one, direction in zip(machine.bearings, (1, -1, 1, -1), strict=True)
+    ]
+    point = replace(machine, bearings=held).operating_point()
+    assert point.residual <= 1e-9
+    thrust = abs(point.pairs[0].thrust)
+    for shaft in ("in", "out"):
+        left, right = (one.force[2] for one in point.bearings if one.mounted.rotor == shaft)
+        assert left > 0.0 > right
+        assert abs(left + right) == pytest.approx(thrust, rel=1e-6)
 
 
 def test_a_gear_with_a_rim_does_not_stiffen_its_shaft() -> None:
