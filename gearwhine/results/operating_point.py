@@ -446,7 +446,7 @@ _TORQUE_COLUMNS = (
     Column("TE p-p [µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
 )
 
-_MOST_INFLUENCES = 15  # rows of the table
+_MOST_INFLUENCES = 10  # parameters of a table
 _INFLUENCE_COLUMNS = (
     Column("parameter", "parameter"),
     Column("of", "kind"),
@@ -459,18 +459,19 @@ _INFLUENCE_COLUMNS = (
 
 
 def _influences(document: Document) -> Iterator[str | Table]:
-    """Yield the changes of the gear pairs by the strongest parameters."""
-    found = document.get("sensitivity", ())
-    rows = [
-        {key: one[key] for key in ("parameter", "kind", "step")}
-        | {"pair": f"{pair['driver']} → {pair['driven']}"}
-        | pair
-        for one in found[:_MOST_INFLUENCES]
-        for pair in one["gear_pairs"]
-    ]
-    yield from table_of(_INFLUENCE_COLUMNS, rows, "Change by a step of one parameter, to first order")
-    if rows and len(found) > _MOST_INFLUENCES:
-        yield f"{len(found) - _MOST_INFLUENCES} weaker parameters are in the files only"
+    """Yield the changes of the gear pairs by the strongest parameters, of the housing and of the bearings."""
+    for of_bearings, what in ((False, "the housing"), (True, "a bearing")):
+        found = [one for one in document.get("sensitivity", ()) if one["kind"].startswith("bearing") is of_bearings]
+        rows = [
+            {key: one[key] for key in ("parameter", "kind", "step")}
+            | {"pair": f"{pair['driver']} → {pair['driven']}"}
+            | pair
+            for one in found[:_MOST_INFLUENCES]
+            for pair in one["gear_pairs"]
+        ]
+        yield from table_of(_INFLUENCE_COLUMNS, rows, f"Change by a step of one parameter of {what}, to first order")
+        if rows and len(found) > _MOST_INFLUENCES:
+            yield f"{len(found) - _MOST_INFLUENCES} weaker parameters of {what} are in the files only"
 
 
 def _content(document: Document) -> Iterator[str | Table]:

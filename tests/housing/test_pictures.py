@@ -13,8 +13,8 @@ from PIL import Image
 from housing import HousingError, ModeSet, solve_modes
 from housing.errors import RendererUnavailableError
 from housing.fem.matrices import Matrices
-from housing.pictures.drawn_shapes import drawn_housing
-from housing.pictures.images import render_gallery, render_modes
+from housing.pictures.drawn_shapes import DrawnShape, drawn_housing
+from housing.pictures.images import render_gallery, render_modes, render_shapes
 from housing.pictures.scene import STRIP, VIEWS, find_renderer
 from meshes import Mesh
 from meshes.elements import facet_nodes
@@ -66,6 +66,21 @@ def test_views_differ_and_a_picture_is_repeatable(box: Mesh, modes: ModeSet, tmp
     }
     assert np.array_equal(images["once"], images["again"])
     assert not np.array_equal(images["once"], images["top"])
+
+
+@pytest.mark.usefixtures("renderer")
+def test_values_of_either_sign_have_their_own_colours(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
+    """Red at the greater x, where the values are positive and on the right of the picture from the front."""
+    surface = drawn_housing(box)
+    values = surface.rest[:, 0] - surface.rest[:, 0].mean()
+    shape = DrawnShape("signed", "", "", modes.shapes[6][surface.nodes], "x [m]", float(values.max()), values)
+    image = _pixels(render_shapes(surface, [shape], tmp_path, view="front", size=(320, 240))[0]).astype(int)
+    redder = image[..., 0] - image[..., 2]
+    right = np.arange(280) > 140
+    red, blue = redder[:, :280] > 60, redder[:, :280] < -60
+    assert np.count_nonzero(red[:, right]) > 500
+    assert np.count_nonzero(blue[:, ~right]) > 500
+    assert not red[60:180, :100].any()  # above the axes
 
 
 @pytest.mark.usefixtures("renderer")
