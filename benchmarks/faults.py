@@ -170,6 +170,8 @@ def main() -> None:
         for fault in faults
         if (not given.area or fault.area in given.area) and (not given.only or fault.number in given.only)
     ]
+    if not chosen:
+        parser.error("no fault has these numbers in these areas")
     waiting: SimpleQueue[Fault] = SimpleQueue()
     for fault in chosen:
         waiting.put(fault)
