@@ -290,7 +290,7 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
     pairs : sequence of PairLoad
     """
     height = _BAR * len(pairs) + 4.0
-    note = "parts with opposite signs stand on either side of zero; the flanks open towards +z where positive"
+    note = "positive where the flanks open towards +z"
     figure = sheet(HEAD + height + FOOT, title, note)
     axes = panel(figure, FOOT, height, left=_NAMES, width=SHEET_WIDTH - _NAMES - _SUMS)
     axes.grid(visible=False, axis="y")
