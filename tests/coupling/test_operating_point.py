@@ -221,7 +221,7 @@ def test_five_stations_over_the_face_are_enough(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_tapered_rollers_hold_a_shaft_between_them() -> None:
-    """One row at each end, each for one sense of thrust (X arrangement), pressed together by a small interference.
+    """One row at each end, each for one sense of thrust (O arrangement), pressed together by a small interference.
 
     Every radial load of a tapered row makes a thrust of its own, so both rows carry; their difference is the gears'.
     """
