@@ -48,6 +48,9 @@ def test_modes_are_the_command_s(study: gw.Study, tmp_path: Path, capsys: pytest
 def test_the_housing_is_solved_once(study: gw.Study) -> None:
     assert study.modes().solved is study.housing
     assert study.system().solved.machine.housing is not None
+    # The machine as an object stands in the same housing, not on the ground.
+    assert study.machine.housing_component is not None
+    assert all(mounted.seat in study.machine.housing_component.seats for mounted in study.machine.bearings)
     assert study.modes().solved is study.housing
 
 
@@ -138,6 +141,13 @@ def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
 
     found = coupled_modes(machine.assemble().system).frequencies_hz
     assert found == pytest.approx(study.system().dataset["system_frequency"].values, rel=1e-9)
+
+
+def test_sidebands_are_drawn_over_speed() -> None:
+    """Lines of sidebands stand in a Campbell diagram, so asking for them asks for one."""
+    study = gw.load("spur-pair")
+    assert study.system().solved.campbell is None
+    assert study.system(sidebands=2).solved.campbell is not None
 
 
 def test_wrong_input_is_a_value_error_and_a_failed_proof_a_runtime_error() -> None:
