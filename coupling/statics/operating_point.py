@@ -1,24 +1,25 @@
 r"""Operating point: static equilibrium of the whole machine under its torques, weight and preloads.
 
-Shafts are exact Timoshenko beams between the stations of bearings, gears and torques
-(:mod:`rotors.analyses.static_stiffness`), the housing is its modes with the residual ones, whose static compliance at
-the seats is exact, rolling bearings act by each of their elements, and gear pairs by slices of their faces, averaged
-over a mesh period (:mod:`coupling.gears.loaded.face_load`). With x the motions of all stations and the housing's
-coordinates, K their linear stiffness, f the loads, and connectors of deflections z = Eᵀ x and energies phi(z), the
-equilibrium is the minimum of
+Shafts are exact Timoshenko beams between the stations of bearings, gears and torques, within the face of a solid gear
+at least as thick as its root circle (:mod:`rotors.analyses.static_stiffness`). The housing is its modes with the
+residual ones, whose static compliance at the seats is exact. Rolling bearings act by each of their elements, gear
+pairs by slices of their faces, averaged over a mesh period (:mod:`coupling.gears.loaded.face_load`). With x the
+motions of all stations and the housing's coordinates, K their linear stiffness, f the loads, and connectors of
+deflections z = Eᵀ x and energies phi(z), the equilibrium is the minimum of
 
     Pi(x) = 1/2 xᵀ K x - fᵀ x + sum phi(Eᵀ x),
 
-which is convex. Each connector is given a nominal stiffness k0, so that K0 = K + E k0 Eᵀ holds every motion; then
-x = K0⁻¹ (f + E mu), and only the few components of mu are sought, by a trust region and, from there, Newton's method
-with the connectors' own, perhaps unsymmetric, tangents. With C = Eᵀ K0⁻¹ E = L Lᵀ and nu = Lᵀ mu,
+which is convex where the bearings' stiffness is symmetric. Each connector has a nominal stiffness k0, so that K0 = K
++ E k0 Eᵀ holds every motion; then x = K0⁻¹ (f + E mu), with mu = k0 z - dphi/dz at the equilibrium, and only the few
+components of mu are sought, by a trust region and, from there, Newton's method with the connectors' own, perhaps
+unsymmetric, tangents. With C = Eᵀ K0⁻¹ E = L Lᵀ and nu = Lᵀ mu,
 
     z = z_f + L nu,      Pi(nu) = 1/2 nuᵀ nu + sum (phi(z) - 1/2 zᵀ k0 z).
 
 Rigid motions that nothing holds, such as the rotation of the train, must carry no load; they stay at zero.
 
-From the equilibrium follow bearing loads and tangent stiffness, deflections, and for each gear pair the misalignment of
-its flanks with its causes, the load over the face and its factor K_Hβ (ISO 6336-1), and the transmission error.
+From the equilibrium follow bearing loads and tangent stiffness, deflections, and for each gear pair the misalignment
+of its flanks with its causes, the load over the face and its factor K_Hβ (ISO 6336-1), and the transmission error.
 Friction of the teeth and the change of the load with the mesh phase are left out: the means over a mesh period act.
 """
 
@@ -106,9 +107,9 @@ class BearingLoad:
     deflection : ndarray, shape (5,)
         Of the shaft against the seat [m, rad].
     seat_motion : ndarray, shape (5,)
-        Of the seat [m, rad]; zero on the ground.
+        Of the seat or pedestal [m, rad]; zero on rigid ground.
     stiffness : ndarray, shape (5, 5)
-        Tangent [N/m, N/rad, N m/rad].
+        Tangent: N/m among x, y, z; N/rad and N m/m between these and rotations; N m/rad among rotations.
     rolling : RollingState or None
         Of a rolling bearing: loads, angles and pressures of its elements.
     """
@@ -212,13 +213,16 @@ class PairLoad:
 
     @property
     def k_h_beta(self) -> float:
-        """Face load factor K_Hβ (ISO 6336-1): the largest mean load per width over its mean over the face."""
+        """Face load factor K_Hβ (ISO 6336-1): the largest mean load per width over its mean over the face.
+
+        At the mean torque, without application and dynamic factor, tolerances and running-in.
+        """
         load = self.line_load
         return float(load.max() / load.mean())
 
     @property
     def transmission_error(self) -> FloatArray:
-        """Static transmission error under load at ``fine.phases`` [m]: deflection of the teeth, without the shafts'."""
+        """Static transmission error under load at ``fine.phases`` [m]: of the teeth and their gaps, without shafts."""
         return self.fine.deflection
 
     @property
