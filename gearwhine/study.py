@@ -14,9 +14,11 @@ from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
     from coupling import Machine
+    from gearwhine.analyses.case import Format
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.mode_pictures import ModeFormat
+    from gearwhine.output.export import Signals
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.coupled_system import SolvedSystem
@@ -299,6 +301,24 @@ class Study:
         return machine.sweep(
             self.case, self._source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
         )
+
+    def export(
+        self,
+        folder: str | os.PathLike[str],
+        formats: Sequence[Format] = ("csv", "uff", "wav"),
+        *,
+        signals: Signals = "sensors",
+    ) -> list[str]:
+        """Write the results in a folder in formats of other programs; see :func:`gearwhine.analyses.case.export_case`.
+
+        Returns
+        -------
+        list of str
+            The files, relative to the folder.
+        """
+        from gearwhine.analyses.case import export_case
+
+        return list(export_case(self.case, Path(folder), formats, signals=signals)["files"])
 
 
 def _text(value: object) -> str:

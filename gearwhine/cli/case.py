@@ -1,4 +1,4 @@
-"""Commands on a case as a whole: run, check, examples, report."""
+"""Commands on a case as a whole: run, check, examples, report, export."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -75,3 +75,39 @@ def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
         lambda given, progress: report_case(given, results_folder(case, common)),
         shown_by(lambda document: ()),
     )
+
+
+def export(
+    case: CaseName,
+    *,
+    csv: Annotated[bool, Parameter(name=["--csv"], negative=(), help="The report's tables, one file each.")] = False,
+    uff: Annotated[
+        bool,
+        Parameter(
+            name=["--uff"], negative=(), help="Histories, spectra and transmissibilities as universal files (58)."
+        ),
+    ] = False,
+    wav: Annotated[
+        bool, Parameter(name=["--wav"], negative=(), help="The sensors' acceleration as sound, with its full scale.")
+    ] = False,
+    all_signals: Annotated[
+        bool,
+        Parameter(name=["--all-signals"], negative=(), help="With --uff: forces and motions of the machine, too."),
+    ] = False,
+    common: Common = NONE_GIVEN,
+) -> None:
+    """Write the results in OUT (default: ./<case>-results) in formats of other programs, into OUT/exports.
+
+    Without --csv, --uff or --wav all three are written.
+    """
+    from gearwhine.analyses.case import Format, export_case, export_sections
+    from gearwhine.output.terminal import shown_by
+
+    asked: dict[Format, bool] = {"csv": csv, "uff": uff, "wav": wav}
+    formats = [name for name, wanted in asked.items() if wanted] or list(asked)
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        folder = results_folder(case, common)
+        return export_case(given, folder, formats, signals="all" if all_signals else "sensors")
+
+    on_case(case, common, work, shown_by(export_sections))

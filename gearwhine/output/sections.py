@@ -41,18 +41,24 @@ class Column:
 
     def text(self, row: Row) -> str:
         """Return the cell of a row; empty where there is no value."""
+        value = self.value(row)
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        if isinstance(value, int | float):
+            return format(value, self.form)
+        if isinstance(value, list):
+            return ", ".join(format(entry, self.form) if isinstance(entry, float) else str(entry) for entry in value)
+        return NOTHING if value is None else str(value)
+
+    def value(self, row: Row) -> Any:
+        """Return the value of a row in the unit of the heading, with all its digits; None where there is none."""
         if not isinstance(self.of, str):
             return self.of(row)
         value: Any = row
         for step in self.of.split("."):
             value = value.get(step) if isinstance(value, Mapping) else None
-        if isinstance(value, bool):
-            return "yes" if value else "no"
-        if isinstance(value, int | float):
-            return format(value * self.scale if self.scale != 1.0 else value, self.form)
-        if isinstance(value, list):
-            return ", ".join(format(entry, self.form) if isinstance(entry, float) else str(entry) for entry in value)
-        return NOTHING if value is None else str(value)
+        is_scaled = self.scale != 1.0 and isinstance(value, int | float) and not isinstance(value, bool)
+        return value * self.scale if is_scaled else value
 
 
 @dataclass(frozen=True)

@@ -651,9 +651,9 @@ _SIGNATURE_COLUMNS = (
 def _signature_table(document: Document) -> tuple[Table, ...]:
     """Return the leading lines, and the housing modes and bearings that they come from."""
     rows = [
-        peak | {"sensor": sensor["name"] if number == 0 else ""}
+        peak | {"sensor": sensor["name"]}
         for sensor in document.get("sensors", ())
-        for number, peak in enumerate(sensor["peaks"][:3])
+        for peak in sensor["peaks"][:3]
         if "contributions" in peak
     ]
     return table_of(_SIGNATURE_COLUMNS, rows)
