@@ -105,6 +105,12 @@ class Case(Table):
         """Whether the load of a rolling bearing follows from the machine's operating point."""
         return bearing.lacks_load and bool(self.gear_pair) and self.operation is not None
 
+    @property
+    def needs_operating_point(self) -> bool:
+        """Whether the load of a bearing or the misalignment of a gear pair is left to the machine's operating point."""
+        unaligned = any(pair.misalignment == "found" for pair in self.gear_pair)
+        return unaligned or any(self.finds_load(bearing) for bearing in self.bearing)
+
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""
         name = gear.material
