@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require, swept_keys
-from gearwhine.from_case.machine import basis_error, require_machine, solve_machine, solve_pairs
+from gearwhine.from_case.machine import basis_error, point_of_pairs, require_machine, solve_machine, solve_pairs
 from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
@@ -89,9 +89,14 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         Where the case has no gear pairs, or one cannot be solved as it stands.
     """
     require(case, "gear_pair", command="gears")
-    loaded = solve_pairs(case, None, progress)
+    point = point_of_pairs(case, None, progress)
+    loaded = solve_pairs(case, None, progress, point=point)
     aims = relief_aims(case, loaded, progress, folder=folder)
-    pairs = solve_over_torques(analyse_pairs(case, loaded), progress, aims)
+    pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
+    document = gears_document(pairs)
+    if point is not None and case.housing is not None:
+        message = "the misalignment is that of bearings in rigid seats; load and run find it with the housing"
+        add_warnings(document, [warning("rigid seats", message)])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_gear_pairs
@@ -102,7 +107,7 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         "gears",
         case,
         pairs,
-        gears_document(pairs),
+        document,
         _arrays=lambda: labelled(case, (GEARS, pairs)),
         _figures=figures,
     )

@@ -112,7 +112,7 @@ def run(
     timed("load", begin)
     begin = time.perf_counter()
     pairs = solve_pairs(case, part, progress, point=point)
-    analysed = analyse_pairs(case, pairs)
+    analysed = analyse_pairs(case, pairs, point)
     timed("rotors_and_gears", begin - seconds["rotors_and_gears"])
     if rotors:
         document = joined(document, rotors_document(rotors))

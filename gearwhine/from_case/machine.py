@@ -170,7 +170,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
         shafts=[_shaft(case, given) for given in case.rotor],
         bearings=bearings,
         gears=[gear for given in case.rotor for gear in shaft_gears(case, given.name)],
-        gear_pairs=[build_pair(given, number) for number, given in enumerate(case.gear_pair)],
+        gear_pairs=[build_pair(case, given, number) for number, given in enumerate(case.gear_pair)],
         speed=operation.speed,
         torque=operation.torque,
         outputs=[output.build() for output in operation.output],
@@ -234,15 +234,30 @@ def solve_pairs(
     """
     if not case.gear_pair:
         return ()
-    if all(pair.misalignment != "found" for pair in case.gear_pair):
-        return solve_gears(case, progress)
-    if point is None:
-        progress("misalignment of the flanks at the operating point")
-        if isinstance(housing, SolvedHousing):
-            housing = reduce_housing(case, housing, progress)
-        component = None if housing is None else housing.component
-        point = describe_machine(case, component, grounded=component is None).operating_point(_gravity(case))
-    return solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
+    point = point or point_of_pairs(case, housing, progress)
+    gaps = {} if point is None else {one.names: one.station_gap for one in point.pairs}
+    return solve_gears(case, progress, gaps)
+
+
+def point_of_pairs(
+    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+) -> OperatingPoint | None:
+    """Solve the operating point that gives gear pairs their misalignment, on rigid seats where there is no housing.
+
+    None where no pair is left to it.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError
+        Where the machine has no operating point.
+    """
+    if not any(case.finds_misalignment(pair) for pair in case.gear_pair):
+        return None
+    progress("misalignment of the flanks at the operating point")
+    if isinstance(housing, SolvedHousing):
+        housing = reduce_housing(case, housing, progress)
+    component = None if housing is None else housing.component
+    return describe_machine(case, component, grounded=component is None).operating_point(_gravity(case))
 
 
 def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str, RollingState]]]:

@@ -272,13 +272,13 @@ PAIR = (
 TAKEN = (
     Quantity(
         "misalignment_taken_rad",
-        lambda one: one.taken,
+        lambda one: one.misalignment.taken,
         "misalignment_taken",
         (),
         "rad",
         "misalignment that mesh stiffness and motion take",
     ),
-    Quantity("misalignment_taken_from", lambda one: one.taken_from, "misalignment_taken_from"),
+    Quantity("misalignment_taken_from", lambda one: one.misalignment.origin, "misalignment_taken_from"),
 )
 """Of a gear pair at the operating point and in the case."""
 
@@ -468,13 +468,32 @@ def brief(load: Document) -> Iterator[str]:
 def _taken(load: Document) -> Iterator[str]:
     """Yield the misalignment that the motion takes of every pair, beside the one found."""
     for pair in load["gear_pairs"]:
-        found, name = f"{_MICRO * pair['misalignment_rad']:z.2f} µrad", f"{pair['driver']} → {pair['driven']}"
-        taken = f"{_MICRO * pair['misalignment_taken_rad']:z.4g} µrad"
-        yield {
-            "operating point": f"  {name}: misalignment of {found} found, and taken by the motion",
-            "case": f"  {name}: misalignment of {taken} taken as the case gives it (found: {found})",
-            "default": f"  {name}: misalignment taken as 0, as the case gives none (found: {found})",
-        }[pair["misalignment_taken_from"]]
+        if "misalignment_taken_from" not in pair:  # in summaries of earlier versions
+            continue
+        taken = misalignment_words(
+            pair["misalignment_taken_rad"], pair["misalignment_taken_from"], pair["misalignment_rad"]
+        )
+        yield f"  {pair['driver']} → {pair['driven']}: {taken}"
+
+
+def misalignment_words(taken: float | None, origin: str, found: float | None) -> str:
+    """Return the misalignment that is taken, its origin, and what the operating point has in its place.
+
+    Parameters
+    ----------
+    taken, found : float or None
+        [rad]; None where the operating point is not solved.
+    origin : str
+        See :class:`gearwhine.from_case.gear_pairs.TakenMisalignment`.
+    """
+    beside = "" if found is None else f" (found: {_MICRO * found:z.2f} µrad)"
+    if origin == "default":
+        return f"misalignment taken as 0, as the case gives none{beside}"
+    if origin == "case":
+        return f"misalignment of {_MICRO * (taken or 0.0):z.4g} µrad taken, as the case gives it{beside}"
+    if found is None:
+        return "misalignment left to the operating point"
+    return f"misalignment of {_MICRO * found:z.2f} µrad taken, as the operating point has it"
 
 
 def _seats(load: Document) -> str:

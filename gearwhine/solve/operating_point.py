@@ -19,6 +19,7 @@ from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears import GearError
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
+from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.from_case.machine import ReducedHousing, describe_machine, reduce_housing, require_machine
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
@@ -122,30 +123,10 @@ class LoadedBearing:
 
 @dataclass(frozen=True, eq=False)
 class LoadedPair:
-    """A gear pair at the operating point, and the misalignment that the motion takes.
-
-    Attributes
-    ----------
-    load : PairLoad
-    given : float or None
-        Misalignment of the case [rad]; None where the operating point gives it.
-    typed : bool
-        Whether the case says it, or it is 0 for want of a word.
-    """
+    """A gear pair at the operating point, and the misalignment that mesh stiffness and motion take."""
 
     load: PairLoad
-    given: float | None
-    typed: bool
-
-    @property
-    def taken(self) -> float:
-        """Misalignment that mesh stiffness and motion take [rad]."""
-        return self.load.misalignment if self.given is None else self.given
-
-    @property
-    def taken_from(self) -> str:
-        """Its origin: ``operating point``, ``case``, or ``default``."""
-        return "operating point" if self.given is None else "case" if self.typed else "default"
+    misalignment: TakenMisalignment
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,10 +246,7 @@ def solve_load(
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
         found[part * operation.torque] = loaded.operating_point(operation.gravity)
     bearings = tuple(_loaded_bearing(case, one, machine.speeds[one.mounted.rotor]) for one in point.bearings)
-    pairs = tuple(
-        LoadedPair(load, pair.misalignment, "misalignment" in given.model_fields_set)
-        for load, pair, given in zip(point.pairs, machine.gear_pairs, case.gear_pair, strict=True)
-    )
+    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(case, point)))
     gradients = None
     if sensitivity:
         assert not isinstance(housing, ReducedHousing), "gradients by the housing need its mesh"
@@ -284,14 +262,6 @@ def _loaded_bearing(case: Case, load: BearingLoad, speed: float) -> LoadedBearin
     rating = given.stiffness.rolling.dynamic_rating if isinstance(given.stiffness, RollingStiffness) else None
     force = None if given.load is None else np.array([given.load.x, given.load.y, given.load.z])
     return LoadedBearing(load, rating, speed, force)
-
-
-def is_loaded(case: Case) -> bool:
-    """Whether a case has a machine that a torque or its weight loads, so that it has an operating point."""
-    operation = case.operation
-    if operation is None or not case.rotor or not case.bearing:
-        return False
-    return operation.torque != 0.0 or (not case.gear_pair and operation.gravity is not None)
 
 
 def find_load(
@@ -312,7 +282,7 @@ def find_load(
     coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
         Where bearings or flanks are left to an operating point that is not found.
     """
-    if not is_loaded(case):
+    if not case.is_loaded:
         return None, []
     try:
         found = solve_load(case, housing, progress)
@@ -332,7 +302,7 @@ def require_load(case: Case) -> None:
         As :func:`solve_load`.
     """
     require(case, "rotor", "bearing", "operation", command="load")
-    if not is_loaded(case):
+    if not case.is_loaded:
         expected = (
             "a torque, which loads the flanks" if case.gear_pair else "a torque, or gravity, which loads the shafts"
         )
@@ -456,8 +426,8 @@ def _face_warnings(one: PairLoad) -> Iterator[dict[str, Any]]:
 def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
     for one in solved.pairs:
-        typed, found = one.given, one.load.misalignment
-        if not one.typed or typed is None:
+        typed, found = one.misalignment.taken, one.load.misalignment
+        if one.misalignment.origin != "case":
             continue
         if abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
             continue

@@ -14,6 +14,7 @@ from coupling.errors import EquilibriumNotFoundError
 from gearwhine.case import CaseError, dump_case, parse_case, swept_keys
 from gearwhine.cli import run_command
 from gearwhine.from_case.machine import describe_machine, rotor_bearings, solve_machine, solve_pairs
+from gearwhine.results.operating_point import sections
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
@@ -22,6 +23,9 @@ from gearwhine.sweep.solution import solve_point
 
 BALLS = {"catalogue": {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "72 mm", "width": "19 mm"}}
 ROLLERS = {"catalogue": {"type": "cylindrical-roller", "bore": "30 mm", "outer_diameter": "62 mm", "width": "16 mm"}}
+
+
+FORCE = {"x": "300 N", "y": "-900 N", "z": "200 N"}
 
 
 def document(misalignment: Any = "found", law: str = "linear") -> dict[str, Any]:
@@ -119,7 +123,7 @@ def test_nonlinear_bearings_start_at_their_load() -> None:
 def test_a_given_load_is_taken() -> None:
     """A load that the case gives stays the one that the stiffness is made for."""
     changed = document()
-    changed["bearing"][0]["load"] = {"x": "300 N", "y": "-900 N", "z": "200 N"}
+    changed["bearing"][0]["load"] = FORCE
     stiffness = rotor_bearings(parse_case(changed))["input"][0][0].stiffness
     assert np.abs(stiffness - rotor_bearings(parse_case(document()))["input"][0][0].stiffness).max() > 1e6
 
@@ -129,7 +133,7 @@ def test_a_run_has_the_operating_point_that_its_motion_starts_from(
 ) -> None:
     """As `load` finds it, in document, arrays, figures, report and terminal; what is typed is held against it."""
     changed = document(misalignment="0.2 mrad")
-    changed["bearing"][0]["load"] = {"x": "300 N", "y": "-900 N", "z": "200 N"}
+    changed["bearing"][0]["load"] = FORCE
     changed["transient"] = {"revolutions": 2, "discard": 1}
     file = tmp_path / "case.toml"
     file.write_text(dump_case(parse_case(changed)), encoding="utf-8")
@@ -146,7 +150,7 @@ def test_a_run_has_the_operating_point_that_its_motion_starts_from(
     names = [one["name"] for one in summary["warnings"]]
     assert (names.count("misalignment"), names.count("bearing load")) == (1, 1)
     assert f"the equilibrium finds {1e6 * pair['misalignment_rad']:.4g} µrad" in told.err
-    assert "misalignment of 200 µrad taken as the case gives it (found: " in told.out
+    assert "misalignment of 200 µrad taken, as the case gives it (found: " in told.out
     assert {"load-shaft-input.png", "load-misalignment.png", "load-face-pinion-wheel.png"} <= set(summary["files"])
     with xr.open_dataset(out / "results.nc") as data:
         assert data["misalignment"].values == pytest.approx([pair["misalignment_rad"]], rel=1e-12)
@@ -234,6 +238,44 @@ def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
         del bare[key]
     with pytest.raises(CaseError, match=r"bearing\[0\]\.load.*the force of the shaft on it"):
         parse_case(bare)
+
+
+def test_a_misalignment_left_out_is_found_where_bearing_loads_are() -> None:
+    """Where the case gives every load it is 0, and the commands say what the equilibrium finds in its place."""
+    bare = document()
+    del bare["gear_pair"][0]["misalignment"]
+    (pair,), (found,) = solve_pairs(parse_case(bare), None), solve_pairs(parse_case(document()), None)
+    assert pair.pair.face_gap == found.pair.face_gap != ()
+    for bearing in bare["bearing"]:
+        bearing["load"] = FORCE if bearing["name"].endswith("left") else FORCE | {"z": "0 N"}
+    study = gw.build(**bare)
+    (pair,) = solve_pairs(study.case, None)
+    assert (pair.pair.misalignment, pair.pair.face_gap) == (0.0, ())
+    load = study.operating_point()
+    (told,) = load.document["gear_pairs"]
+    assert (told["misalignment_taken_rad"], told["misalignment_taken_from"]) == (0.0, "default")
+    found_text = f"{1e6 * told['misalignment_rad']:.2f} µrad"
+    sentence = f"  pinion → wheel: misalignment taken as 0, as the case gives none (found: {found_text})"
+    assert sentence in [text for section in sections(load.document) for text in section.sentences]
+    assert not [one for one in load.document["warnings"] if one["name"] == "misalignment"]
+
+
+def test_check_and_gears_say_which_misalignment_they_take(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`check` solves nothing; `gears` finds it in rigid seats where it is left to the operating point."""
+    file = tmp_path / "case.toml"
+    bare = document()
+    for angle, command, expected in (
+        ("found", "check", "misalignment left to the operating point; `gearwhine load` finds it"),
+        ("0.2 mrad", "check", "misalignment of 200 µrad taken, as the case gives it\n"),
+        ("found", "gears", "µrad taken, as the operating point has it"),
+        ("0.2 mrad", "gears", "Misalignment of 200 µrad taken, as the case gives it\n"),
+    ):
+        bare["gear_pair"][0]["misalignment"] = angle
+        file.write_text(dump_case(parse_case(bare)), encoding="utf-8")
+        assert run_command([command, str(file), "-q"]) == 0
+        assert expected in capsys.readouterr().out
+    assert run_command(["check", "spur-pair", "-q"]) == 0
+    assert "misalignment taken as 0, as the case gives none; `gearwhine load` finds it" in capsys.readouterr().out
 
 
 def test_a_misalignment_is_an_angle_or_found() -> None:
