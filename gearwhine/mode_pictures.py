@@ -10,6 +10,7 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.output import file_stems
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 
@@ -146,6 +147,26 @@ def draw_lines(
     shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
     draw_in_process(surface, shapes, place, mode_format, view, progress)
     return lines_document(lines, housing, surface)
+
+
+def draw_load_pictures(
+    housing: SolvedHousing | None, solved: "SolvedLoad", place: Path, progress: Progress
+) -> list[dict[str, Any]]:
+    """Draw a housing at an operating point, and its sensitivity where that is known; return warnings.
+
+    Without a renderer numbers and figures are there, and a warning says so.
+    """
+    from housing.errors import RendererUnavailableError
+
+    if housing is None or solved.point.housing is None:
+        return []
+    try:
+        draw_deflection(housing, solved.point.housing, "iso", place, progress)
+        if solved.sensitivity is not None:
+            draw_sensitivity(housing, solved, "iso", place, progress)
+    except RendererUnavailableError as error:
+        return [warning("pictures", f"no picture of the housing: {error}")]
+    return []
 
 
 def draw_deflection(

@@ -460,7 +460,7 @@ class GearPair(Table):
     `damping` [N s/m] stands in place of `damping_ratio`. `corner_contact`: whether teeth touch beyond their path of
     contact, where a load closes the gap to a corner; None: where the stiffness model is one of pairs of teeth.
     `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z; "found": that of the
-    machine's operating point, by its shafts, bearings and housing.
+    machine's operating point, by its shafts, bearings and housing; None: see :meth:`Case.finds_misalignment`.
     `backlash` [m] is measured along the line of action; None: that of thicknesses and distance, and where these leave
     none the back flanks never touch. `centre_distance`
     [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
@@ -474,7 +474,7 @@ class GearPair(Table):
     damping_ratio: DampingRatio = 0.05
     damping: DampingFromZero | None = None
     corner_contact: StrictBool | None = None
-    misalignment: Misalignment = 0.0
+    misalignment: Misalignment | None = None
     backlash: LengthFromZero | None = None
     centre_distance: PositiveLength | None = None
     friction: FrictionCoefficient = 0.0

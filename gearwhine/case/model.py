@@ -105,6 +105,29 @@ class Case(Table):
         """Whether the load of a rolling bearing follows from the machine's operating point."""
         return bearing.lacks_load and bool(self.gear_pair) and self.operation is not None
 
+    @property
+    def needs_operating_point(self) -> bool:
+        """Whether the load of a bearing or the misalignment of a gear pair is left to the machine's operating point."""
+        unaligned = any(pair.misalignment == "found" for pair in self.gear_pair)
+        return unaligned or any(self.finds_load(bearing) for bearing in self.bearing)
+
+    def finds_misalignment(self, pair: GearPair) -> bool:
+        """Whether the misalignment of a gear pair follows from the machine's operating point.
+
+        Where the case says nothing it does if the load of a bearing does, too; else it is 0.
+        """
+        if pair.misalignment is None:
+            return any(self.finds_load(bearing) for bearing in self.bearing)
+        return pair.misalignment == "found"
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether the case has a machine that a torque or its weight loads, so that it has an operating point."""
+        operation = self.operation
+        if operation is None or not self.rotor or not self.bearing:
+            return False
+        return operation.torque != 0.0 or (not self.gear_pair and operation.gravity is not None)
+
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""
         name = gear.material

@@ -14,6 +14,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEOMETRY
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, kinds_of_elements
+from gearwhine.results.operating_point import misalignment_words
 from gearwhine.solve.case_summary import check_case
 
 if TYPE_CHECKING:
@@ -183,6 +184,8 @@ PAIR = (
     ),
     Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
     Quantity("mean_force_n", lambda pair: pair.mean_force),
+    Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
+    Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
     Quantity("stiffness_model", lambda pair: pair.given.stiffness.model),
     Part("geometry", lambda pair: pair.geometry, GEOMETRY),
 )
@@ -476,6 +479,10 @@ def _pair_lines(pair: Document) -> list[str]:
     lines += [_tooth_line(gear) for gear in pair["geometry"]["gears"]]
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
+    origin = pair.get("misalignment_from", "default")
+    if origin != "default" or pair["mean_force_n"]:
+        words = misalignment_words(pair.get("misalignment_rad"), origin, None)
+        lines.append(words + ("" if origin == "case" else "; `gearwhine load` finds it"))
     return lines
 
 

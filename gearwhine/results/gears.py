@@ -14,6 +14,7 @@ from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls
 from gearwhine.from_case.gear_pairs import geometry_warnings
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
+from gearwhine.results.operating_point import misalignment_words
 
 if TYPE_CHECKING:
     from gearwhine.solve.gear_pairs import PairAnalysis
@@ -370,6 +371,9 @@ PAIR = (
     Quantity("backlash_m", lambda pair: pair.solved.backlash),
     Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
     Quantity("torque_n_m", lambda pair: pair.solved.torque),
+    Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
+    Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
+    Quantity("misalignment_found_rad", lambda pair: pair.misalignment.found),
     Quantity("mean_force_n", lambda pair: pair.solved.static.force),
     Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
     Quantity("path_of_contact", lambda pair: _points(path_of_contact(pair.solved.geometry))),
@@ -524,6 +528,10 @@ def _mesh(pair: Document) -> list[str]:
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"Mesh frequency {pair['mesh_frequency_hz']:.2f} Hz")
         lines[-1] += f", torque on the driver {pair['torque_n_m']:.5g} N·m, mesh force {pair['mean_force_n']:.1f} N"
+    origin = pair.get("misalignment_from", "default")
+    if origin != "default" or pair["mean_force_n"]:
+        words = misalignment_words(pair.get("misalignment_rad"), origin, pair.get("misalignment_found_rad"))
+        lines.append(words[0].upper() + words[1:])
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     lines.append(
         f"Mesh stiffness {_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "

@@ -1,5 +1,6 @@
 """Operating point: quantities of bearings, gear pairs and shafts under the mean load, and how they are shown."""
 
+import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6
-_DIRECTION, _ROTATION, _MOTION = ("direction",), ("rotation",), ("motion", "other_motion")
+_DIRECTION, _ROTATION, _MOTION = ("direction",), ("rotation",), ("bearing_motion", "other_bearing_motion")
 _MOTIONS = (*_AXES, *_TILTS)
 
 
@@ -51,6 +52,15 @@ BEARING = (
     Quantity("shaft", lambda one: one.load.mounted.rotor),
     Quantity("seat", lambda one: one.load.mounted.seat or "ground"),
     _of_bearing("force_n", "force", "bearing_mean_force", "N", "force of the shaft on the bearing"),
+    Quantity(
+        "given_load_n",
+        lambda one: ABSENT if one.given_load is None else _along(one.given_load),
+        "bearing_given_load",
+        _DIRECTION,
+        "N",
+        "force on the bearing for which the case has its stiffness made",
+        document=_list,
+    ),
     _turns_of_bearing("moment_n_m", "force", "bearing_mean_moment", "N m", "moment of the shaft on the bearing"),
     _of_bearing("displacement_m", "deflection", "bearing_displacement", "m", "displacement of the shaft in its seat"),
     _turns_of_bearing("rotation_rad", "deflection", "bearing_rotation", "rad", "rotation of the shaft in its seat"),
@@ -259,6 +269,19 @@ PAIR = (
 )
 """Of a gear pair at the operating point."""
 
+TAKEN = (
+    Quantity(
+        "misalignment_taken_rad",
+        lambda one: one.misalignment.taken,
+        "misalignment_taken",
+        (),
+        "rad",
+        "misalignment that mesh stiffness and motion take",
+    ),
+    Quantity("misalignment_taken_from", lambda one: one.misalignment.origin, "misalignment_taken_from"),
+)
+"""Of a gear pair at the operating point and in the case."""
+
 _PAIR_COLUMNS = (
     *columns_of(PAIR),
     Column("TE p-p [µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
@@ -369,15 +392,15 @@ LOAD = (
     Quantity("speed_rpm", lambda solved: solved.machine.speed * 30.0 / np.pi),
     Quantity("torque_n_m", lambda solved: solved.machine.torque),
     Quantity("gravity_m_per_s2", lambda solved: ABSENT if solved.gravity is None else solved.gravity),
-    Quantity("seats", lambda solved: "rigid" if solved.housing is None else "housing"),
+    Quantity("seats", lambda solved: "housing" if solved.on_housing else "rigid"),
     Quantity("residual", lambda solved: solved.point.residual),
     Quantity("iterations", lambda solved: solved.point.iterations),
     Quantity("free_motions", lambda solved: solved.point.free),
-    Quantity("", lambda solved: list(_MOTIONS), "motion", ("motion",)),
-    Quantity("", lambda solved: list(_MOTIONS), "other_motion", ("other_motion",)),
+    Quantity("", lambda solved: list(_MOTIONS), _MOTION[0], _MOTION[:1]),
+    Quantity("", lambda solved: list(_MOTIONS), _MOTION[1], _MOTION[1:]),
     Rows("shafts", lambda solved: solved.shafts, SHAFT, "deflected_shaft"),
     Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
-    Rows("gear_pairs", lambda solved: solved.point.pairs, PAIR, "loaded_pair"),
+    Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda one: one.load, PAIR), *TAKEN), "loaded_pair"),
     Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
     Rows(
         "sensitivity",
@@ -427,6 +450,56 @@ def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
     return {"title": title} | document_of(LOAD, solved)
 
 
+def load_part(solved: "SolvedLoad") -> dict[str, Any]:
+    """Return the operating point as the key ``load`` of another analysis's JSON."""
+    return document_of(LOAD, solved)
+
+
+def brief(load: Document) -> Iterator[str]:
+    """Yield the operating point in sentences, for the terminal of another analysis."""
+    forces = ", ".join(
+        f"{one['name']} {math.hypot(*one['force_n']):.4g} N" for one in load["bearings"][:_MOST_BEARINGS]
+    )
+    more = len(load["bearings"]) - _MOST_BEARINGS
+    yield f"Operating point {_seats(load)}: loads of {forces}" + (f" and of {more} more bearings" if more > 0 else "")
+    yield from _taken(load)
+
+
+def _taken(load: Document) -> Iterator[str]:
+    """Yield the misalignment that the motion takes of every pair, beside the one found."""
+    for pair in load["gear_pairs"]:
+        if "misalignment_taken_from" not in pair:  # in summaries of earlier versions
+            continue
+        taken = misalignment_words(
+            pair["misalignment_taken_rad"], pair["misalignment_taken_from"], pair["misalignment_rad"]
+        )
+        yield f"  {pair['driver']} → {pair['driven']}: {taken}"
+
+
+def misalignment_words(taken: float | None, origin: str, found: float | None) -> str:
+    """Return the misalignment that is taken, its origin, and what the operating point has in its place.
+
+    Parameters
+    ----------
+    taken, found : float or None
+        [rad]; None where the operating point is not solved.
+    origin : str
+        See :class:`gearwhine.from_case.gear_pairs.TakenMisalignment`.
+    """
+    beside = "" if found is None else f" (found: {_MICRO * found:z.2f} µrad)"
+    if origin == "default":
+        return f"misalignment taken as 0, as the case gives none{beside}"
+    if origin == "case":
+        return f"misalignment of {_MICRO * (taken or 0.0):z.4g} µrad taken, as the case gives it{beside}"
+    if found is None:
+        return "misalignment left to the operating point"
+    return f"misalignment of {_MICRO * found:z.2f} µrad taken, as the operating point has it"
+
+
+def _seats(load: Document) -> str:
+    return "on its housing" if load["seats"] == "housing" else "in rigid seats (no housing)"
+
+
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the loads of bearings and gear pairs, and the proof of equilibrium."""
     return (Section("", tuple(_content(document))),)
@@ -447,6 +520,7 @@ _TORQUE_COLUMNS = (
 )
 
 _MOST_INFLUENCES = 10  # parameters of a table
+_MOST_BEARINGS = 8  # of a sentence
 _INFLUENCE_COLUMNS = (
     Column("parameter", "parameter"),
     Column("of", "kind"),
@@ -475,11 +549,13 @@ def _influences(document: Document) -> Iterator[str | Table]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
-    seats = "on its housing" if document["seats"] == "housing" else "in rigid seats (no housing)"
-    yield f"Static equilibrium at {document['torque_n_m']:.5g} N m, {seats}; friction of the teeth is left out"
+    yield (
+        f"Static equilibrium at {document['torque_n_m']:.5g} N m, {_seats(document)}; friction of the teeth is left out"
+    )
     yield from table_of(_BEARING_COLUMNS, document["bearings"], "Force of the shafts on their bearings")
     yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period")
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
+    yield from _taken(document)
     rows = [
         {"torque_n_m": point["torque_n_m"], "pair": f"{pair['driver']} → {pair['driven']}"} | pair
         for point in document.get("over_torque", ())

@@ -12,7 +12,7 @@ import numpy as np
 from coupling.signals.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
-from gearwhine.results import comparison
+from gearwhine.results import comparison, operating_point
 from gearwhine.results.housing import modes_sentence
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
 from housing.storage.netcdf import Variables
@@ -611,6 +611,8 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    if "load" in document:
+        yield from operating_point.brief(document["load"])
     for pair in document.get("gear_pairs", ()):
         yield mesh_sentence(pair)
         if pair.get("friction"):

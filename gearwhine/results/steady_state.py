@@ -8,6 +8,7 @@ import numpy as np
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
+from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
     from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
@@ -316,6 +317,8 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    if "load" in document:
+        yield from brief(document["load"])
     motions = document["motions"]
     what = "steady motion" if document.get("method") == "superposed" else "periodic motion"
     yield (

@@ -7,7 +7,13 @@ from typing import Any
 from coupling.gears import GearPairGeometry
 from gearwhine.case import Case, GearPair, Rotor, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.from_case import mesh_health
-from gearwhine.from_case.gear_pairs import build_pair, geometry_warnings, pair_geometries
+from gearwhine.from_case.gear_pairs import (
+    TakenMisalignment,
+    build_pair,
+    geometry_warnings,
+    pair_geometries,
+    taken_misalignments,
+)
 from gearwhine.from_case.machine import require_machine
 from gearwhine.from_case.mesh import material_of
 from gearwhine.from_case.mesh_health import MeshPreview
@@ -44,6 +50,7 @@ class CheckedPair:
     ----------
     given : GearPair
     geometry : coupling.gears.GearPairGeometry
+    misalignment : TakenMisalignment
     mesh_frequency : float or None
         [Hz]; None without an operation.
     torque : float or None
@@ -52,6 +59,7 @@ class CheckedPair:
 
     given: GearPair
     geometry: GearPairGeometry
+    misalignment: TakenMisalignment
     mesh_frequency: float | None
     torque: float | None
 
@@ -107,7 +115,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     rotors = tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
     pairs = tuple(_checked_pairs(case))
     for pair in pairs:
-        warnings += geometry_warnings(build_pair(pair.given), pair.geometry)
+        warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     return CheckedCase(case, mesh, rotors, pairs, warnings)
@@ -117,7 +125,8 @@ def _checked_pairs(case: Case) -> Iterator[CheckedPair]:
     number = len(case.gear_pair)
     frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
     torques = pair_torques(case) if case.operation is not None else (None,) * number
-    for row in zip(case.gear_pair, pair_geometries(case), frequencies, torques, strict=True):
+    misalignments = taken_misalignments(case, None)
+    for row in zip(case.gear_pair, pair_geometries(case), misalignments, frequencies, torques, strict=True):
         pair = CheckedPair(*row)
-        build_pair(pair.given).require_sound_faults(pair.geometry)
+        build_pair(case, pair.given).require_sound_faults(pair.geometry)
         yield pair

@@ -15,14 +15,18 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import Machine
+from coupling.errors import CouplingError, EquilibriumNotFoundError
+from coupling.gears import GearError
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
-from gearwhine.from_case.machine import describe_machine, reduce_housing, require_machine
+from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
+from gearwhine.from_case.machine import ReducedHousing, describe_machine, reduce_housing, require_machine
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.load_sensitivity import LoadSensitivity, solve_load_sensitivity
 from gearwhine.solve.plausibility import bearing_load_warnings
+from rotors import EquilibriumError, RotorError
 from rotors.rolling_bearings import BallRow, RollerRow, RollingState, Row, dynamic_rating
 from rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
 
@@ -55,11 +59,14 @@ class LoadedBearing:
         Dynamic rating C that the case gives [N].
     speed : float
         Of its shaft [rad/s].
+    given_load : ndarray, shape (3,), or None
+        Force of the shaft along x, y, z for which the case has the stiffness made [N].
     """
 
     load: BearingLoad
     given_rating: float | None
     speed: float
+    given_load: FloatArray | None = None
 
     @property
     def rating(self) -> float | None:
@@ -115,6 +122,14 @@ class LoadedBearing:
 
 
 @dataclass(frozen=True, eq=False)
+class LoadedPair:
+    """A gear pair at the operating point, and the misalignment that mesh stiffness and motion take."""
+
+    load: PairLoad
+    misalignment: TakenMisalignment
+
+
+@dataclass(frozen=True, eq=False)
 class SolvedLoad:
     """The operating point of a case.
 
@@ -123,8 +138,9 @@ class SolvedLoad:
     machine : Machine
     point : OperatingPoint
     bearings : tuple of LoadedBearing
-    housing : SolvedHousing or None
-        Whose compliance acts; seats are rigid without.
+    pairs : tuple of LoadedPair
+    on_housing : bool
+        Whether the compliance of the housing acts; seats are rigid without.
     gravity : tuple of float or None
         [m/s²].
     over_torque : dict of float to OperatingPoint
@@ -136,7 +152,8 @@ class SolvedLoad:
     machine: Machine
     point: OperatingPoint
     bearings: tuple[LoadedBearing, ...]
-    housing: SolvedHousing | None
+    pairs: tuple[LoadedPair, ...]
+    on_housing: bool
     gravity: tuple[float, ...] | None
     over_torque: dict[float, OperatingPoint]
     sensitivity: LoadSensitivity | None = None
@@ -187,7 +204,7 @@ def _deflected(one: ShaftDeflection, machine: Machine) -> DeflectedShaft:
 
 def solve_load(
     case: Case,
-    housing: SolvedHousing | None,
+    housing: SolvedHousing | ReducedHousing | None,
     progress: Progress = silent,
     *,
     over_torque: bool = False,
@@ -198,8 +215,8 @@ def solve_load(
     Parameters
     ----------
     case : Case
-    housing : SolvedHousing or None
-        Of the case; without it seats are rigid.
+    housing : SolvedHousing, ReducedHousing or None
+        Of the case; without it seats are rigid. For the gradients a solved one.
     progress : callable
     over_torque : bool
         Whether to find it at `TORQUES` as well.
@@ -218,7 +235,8 @@ def solve_load(
     require_load(case)
     operation = case.operation
     assert operation is not None
-    machine = describe_machine(case, None if housing is None else reduce_housing(case, housing, progress).component)
+    part = reduce_housing(case, housing, progress) if isinstance(housing, SolvedHousing) else housing
+    machine = describe_machine(case, None if part is None else part.component)
     progress("static equilibrium of the machine")
     point = machine.operating_point(operation.gravity)
     found: dict[float, OperatingPoint] = {}
@@ -227,16 +245,52 @@ def solve_load(
         outputs = [one if one.torque is None else replace(one, torque=part * one.torque) for one in machine.outputs]
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
         found[part * operation.torque] = loaded.operating_point(operation.gravity)
-    ratings = {
-        given.name: given.stiffness.rolling.dynamic_rating
-        for given in case.bearing
-        if isinstance(given.stiffness, RollingStiffness)
-    }
-    bearings = tuple(
-        LoadedBearing(one, ratings.get(one.name), machine.speeds[one.mounted.rotor]) for one in point.bearings
-    )
-    gradients = solve_load_sensitivity(case, point, housing, progress) if sensitivity else None
-    return SolvedLoad(machine, point, bearings, housing, operation.gravity, found, gradients)
+    bearings = tuple(_loaded_bearing(case, one, machine.speeds[one.mounted.rotor]) for one in point.bearings)
+    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(case, point)))
+    gradients = None
+    if sensitivity:
+        assert not isinstance(housing, ReducedHousing), "gradients by the housing need its mesh"
+        gradients = solve_load_sensitivity(case, point, housing, progress)
+    return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, found, gradients)
+
+
+def _loaded_bearing(case: Case, load: BearingLoad, speed: float) -> LoadedBearing:
+    """Return a bearing's load beside what the case gives; bearings of a rotor's own file give neither."""
+    given = next((one for one in case.bearing if one.name == load.name), None)
+    if given is None or not isinstance(given.stiffness, RollingStiffness | StopStiffness):
+        return LoadedBearing(load, None, speed)
+    rating = given.stiffness.rolling.dynamic_rating if isinstance(given.stiffness, RollingStiffness) else None
+    force = None if given.load is None else np.array([given.load.x, given.load.y, given.load.z])
+    return LoadedBearing(load, rating, speed, force)
+
+
+def find_load(
+    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+) -> tuple[SolvedLoad | None, list[dict[str, Any]]]:
+    """Find the operating point of a case beside another analysis, and its warnings.
+
+    Where nothing loads the machine there is none. Where none is found and nothing of the case is left to it, a warning
+    says why, and the analysis goes on.
+
+    Parameters
+    ----------
+    case, housing, progress
+        As :func:`solve_load`.
+
+    Raises
+    ------
+    coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
+        Where bearings or flanks are left to an operating point that is not found.
+    """
+    if not case.is_loaded:
+        return None, []
+    try:
+        found = solve_load(case, housing, progress)
+    except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError) as error:
+        if case.needs_operating_point:
+            raise
+        return None, [warning("operating point", f"no operating point beside it: {error}")]
+    return found, load_warnings(case, found)
 
 
 def require_load(case: Case) -> None:
@@ -248,9 +302,7 @@ def require_load(case: Case) -> None:
         As :func:`solve_load`.
     """
     require(case, "rotor", "bearing", "operation", command="load")
-    assert case.operation is not None
-    operation = case.operation
-    if operation.torque == 0.0 and (case.gear_pair or operation.gravity is None):
+    if not case.is_loaded:
         expected = (
             "a torque, which loads the flanks" if case.gear_pair else "a torque, or gravity, which loads the shafts"
         )
@@ -269,7 +321,7 @@ def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
         *(found for one in solved.bearings for found in _bearing_warnings(one)),
         *_stiffness_warnings(case, solved, loads),
         *(found for one in solved.point.pairs for found in _face_warnings(one)),
-        *_misalignment_warnings(case, solved),
+        *_misalignment_warnings(solved),
         *_free_motion_warnings(solved),
     ]
 
@@ -371,20 +423,21 @@ def _face_warnings(one: PairLoad) -> Iterator[dict[str, Any]]:
         )
 
 
-def _misalignment_warnings(case: Case, solved: SolvedLoad) -> Iterator[dict[str, Any]]:
+def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
-    for given, pair, one in zip(case.gear_pair, solved.machine.gear_pairs, solved.point.pairs, strict=True):
-        if "misalignment" not in given.model_fields_set:
+    for one in solved.pairs:
+        typed, found = one.misalignment.taken, one.load.misalignment
+        if one.misalignment.origin != "case":
             continue
-        typed, found = pair.misalignment, one.misalignment
-        if typed is None or abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
+        if abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
             continue
+        driver, driven = one.load.names
         yield warning(
             "misalignment",
-            f"{one.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, the equilibrium finds "
-            f"{1e6 * found:.4g} µrad and takes that",
-            driver=given.driver,
-            driven=given.driven,
+            f"{one.load.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, which the motion takes; "
+            f"the equilibrium finds {1e6 * found:.4g} µrad",
+            driver=driver,
+            driven=driven,
             given_rad=typed,
             found_rad=found,
         )

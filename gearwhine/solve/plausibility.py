@@ -5,7 +5,7 @@ negative damping or negative stiffness are warned of. The modal truncation error
 by line and by bands.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,10 @@ _ROUNDING = 1e-6  # part of the load below which a component is none
 
 
 def bearing_load_warnings(
-    case: Case, mean_force: Mapping[str, FloatArray], found_by: str = "the run"
+    case: Case,
+    mean_force: Mapping[str, FloatArray],
+    found_by: str = "the run",
+    known: Sequence[Mapping[str, Any]] = (),
 ) -> list[dict[str, Any]]:
     """Warn of bearings whose stiffness was made for another load than the mean force of the shaft on them.
 
@@ -40,11 +43,14 @@ def bearing_load_warnings(
         x, y, z of the mean force on each bearing [N], shape (3,) each.
     found_by
         What found it, for the message.
+    known
+        Warnings there are already; bearings that they name are passed over.
     """
     found = []
+    named = {entry["bearing"] for entry in known if entry["name"] == "bearing load"}
     for given in case.bearing:
         depends = isinstance(given.stiffness, RollingStiffness | StopStiffness) and not case.finds_load(given)
-        if not depends or given.name not in mean_force:
+        if not depends or given.name not in mean_force or given.name in named:
             continue
         load = given.load
         assumed = np.zeros(3) if load is None else np.array([load.x, load.y, load.z])

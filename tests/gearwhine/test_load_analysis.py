@@ -119,7 +119,7 @@ def test_arrays_have_axes_and_units(helical: Result[SolvedLoad]) -> None:
     for name, (axes, unit) in expected.items():
         assert (data[name].dims, data[name].attrs["units"]) == (axes, unit), name
         assert data[name].attrs["long_name"]
-    assert data["bearing_tangent_stiffness"].dims == ("loaded_bearing", "motion", "other_motion")
+    assert data["bearing_tangent_stiffness"].dims == ("loaded_bearing", "bearing_motion", "other_bearing_motion")
     (pair,) = helical.document["gear_pairs"]
     force = data["face_line_load"].values[0].mean(axis=0).sum() * 25e-3 / data.sizes["face_slice"]
     assert force == pytest.approx(pair["force_n"], rel=1e-9)
