@@ -23,12 +23,14 @@ from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
 from housing.fem.surface import flat_faces
 from housing.model.housing import bearing_port
 from housing.model.material import element_constants
-from housing.model.seats import seat_matrix
+from housing.model.seats import seat_matrix, sensor_port
 from housing.updating import ModelSensitivity
 from housing.updating.static_sensitivity import PortRates, StaticSensitivity
+from meshes import Mesh
 from meshes.box.morph import MorphError, with_middles
 
 FloatArray = npt.NDArray[np.float64]
+Ports = dict[str, sparse.csr_array]
 
 _LENGTH, _PART = 1e-3, 0.1  # steps of the table: of lengths [m], and relative ones
 _LEAST_FACE = 0.01  # part of the whole surface from which a flat face is told
@@ -173,8 +175,44 @@ def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
     return tuple(made)
 
 
+@dataclass(frozen=True, eq=False)
+class HousingChanges:
+    """Changes of a housing by some parameters, in SI.
+
+    Attributes
+    ----------
+    names : tuple of str
+    rates : tuple of ModelSensitivity
+        Per unit of the coordinate that a parameter has.
+    bearings, sensors : tuple of mapping
+        Change of the ports of bearings and of sensors; empty where they stay.
+    slopes : ndarray, shape (n_parameters,)
+        Change of each parameter by a unit of its coordinate.
+    """
+
+    names: tuple[str, ...]
+    rates: tuple[ModelSensitivity, ...]
+    bearings: tuple[PortRates, ...]
+    sensors: tuple[PortRates, ...]
+    slopes: FloatArray
+
+
 def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequence[UpdateParameter]) -> FloatArray:
     """Differentiate outcomes by numbers of a case's housing, in SI, shape (n_adjoints, n_parameters).
+
+    Raises
+    ------
+    CaseError, meshes.box.morph.MorphError
+        As :func:`case_changes`.
+    """
+    if not parameters:
+        return np.zeros((len(fields.adjoint), 0))
+    changes = case_changes(case, fields.mesh, parameters)
+    return np.asarray(fields.by_parameters(changes.rates, changes.bearings) / changes.slopes)
+
+
+def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) -> HousingChanges:
+    """Differentiate the model of a case's housing, its bearings' and its sensors' ports by numbers of the case.
 
     Raises
     ------
@@ -183,24 +221,29 @@ def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequen
     meshes.box.morph.MorphError
         Where the mesh of a box cannot follow.
     """
-    if not parameters:
-        return np.zeros((len(fields.adjoint), 0))
     fitted = fitted_case(case, parameters=parameters)
-    meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
+    meshed = MeshedParameters(fitted, fitted.start, case, mesh)
     rates = meshed.rates()
     ports = [_port_rates(meshed, number, rate) for number, rate in enumerate(rates)]
     slopes = [one.deviation(z, 1.0) for one, z in zip(fitted.parameters, fitted.start.tolist(), strict=True)]
-    return np.asarray(fields.by_parameters(rates, ports) / np.array(slopes))
+    return HousingChanges(
+        tuple(one.name for one in fitted.parameters),
+        tuple(rates),
+        tuple(bearings for bearings, _ in ports),
+        tuple(sensors for _, sensors in ports),
+        np.array(slopes),
+    )
 
 
-def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> PortRates:
-    """Differentiate the ports of all bearings by a coordinate; empty where their seats stay."""
+def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> tuple[PortRates, PortRates]:
+    """Differentiate the ports of all bearings and sensors by a coordinate; empty where they stay."""
     above, below = meshed.beside(number)
     assert above.housing is not None
     assert below.housing is not None
-    if rate.velocity is None and above.housing.seat == below.housing.seat:
-        return {}
-    ports: list[dict[str, sparse.csr_array]] = []
+    still = rate.velocity is None
+    if still and above.housing.seat == below.housing.seat and above.housing.sensor == below.housing.sensor:
+        return {}, {}
+    ports: list[tuple[Ports, Ports]] = []
     for case, way in ((above, 1.0), (below, -1.0)):
         assert case.housing is not None
         mesh = (
@@ -210,8 +253,17 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
         )
         seats = {seat.name: seat.build() for seat in case.housing.seat}
         places = bearing_places(case)
-        ports.append({name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()})
-    return {name: (port - ports[1][name]) / (2.0 * RATE_STEP) for name, port in ports[0].items()}
+        ports.append(
+            (
+                {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
+                {one.name: sensor_port(mesh, one.build()).matrix for one in case.housing.sensor},
+            )
+        )
+    bearings, sensors = (
+        {name: (port - after[name]) / (2.0 * RATE_STEP) for name, port in before.items()}
+        for before, after in zip(*ports, strict=True)
+    )
+    return bearings, sensors
 
 
 def _faces(case: Case, fields: StaticSensitivity) -> Iterator[tuple[str, FloatArray]]:
