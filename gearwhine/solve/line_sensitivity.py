@@ -52,6 +52,22 @@ class SolvedLines:
     lines: tuple[SensorLine, ...]
     housing: SolvedHousing
 
+    def cause(self, line: SensorLine) -> str:
+        """Return the mesh harmonics that drive a line, in words."""
+        contacts = self.model.machine.system.contacts
+        return " and ".join(f"{harmonic}× {contacts[number].name}" for number, harmonic in line.causes)
+
+    @property
+    def held(self) -> str | None:
+        """Parts that the case fixes, so that they do not follow the operating point, in words."""
+        pairs = [one.geometry.label for one, found in zip(self.model.pairs, self.model.found, strict=True) if not found]
+        bearings = [
+            one.name for one in self.model.point.bearings if one.rolling is not None and not one.mounted.needs_load
+        ]
+        parts = [f"the flanks of {', '.join(pairs)} (misalignment)"] if pairs else []
+        parts += [f"the stiffness of bearings {', '.join(bearings)}"] if bearings else []
+        return " and ".join(parts) or None
+
     def field(self, coordinates: ComplexArray) -> ComplexArray:
         """Displacement of the housing's nodes by the coordinates of the machine, shape (n_nodes, 3)."""
         assert self.model.machine.housing is not None

@@ -192,6 +192,7 @@ def solve_load(
     *,
     over_torque: bool = False,
     sensitivity: bool = False,
+    line: str | None = None,
 ) -> SolvedLoad:
     """Find the static equilibrium of a case's machine under its torques and its weight.
 
@@ -205,6 +206,8 @@ def solve_load(
         Whether to find it at `TORQUES` as well.
     sensitivity : bool
         Whether to compute its gradients, see :func:`gearwhine.solve.load_sensitivity.solve_load_sensitivity`.
+    line : str, optional
+        The sensor's line that these are ranked by, such as ``roof@1377``; by default the highest.
 
     Raises
     ------
@@ -235,7 +238,7 @@ def solve_load(
     bearings = tuple(
         LoadedBearing(one, ratings.get(one.name), machine.speeds[one.mounted.rotor]) for one in point.bearings
     )
-    gradients = solve_load_sensitivity(case, point, housing, progress) if sensitivity else None
+    gradients = solve_load_sensitivity(case, machine, point, housing, progress, line=line) if sensitivity else None
     return SolvedLoad(machine, point, bearings, housing, operation.gravity, found, gradients)
 
 
