@@ -15,9 +15,11 @@ from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
+    from gearwhine.solve.load_sensitivity import LoadSensitivity
     from gearwhine.solve.operating_point import SolvedLoad
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
+    from housing.pictures.drawn_shapes import DrawnShape
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
@@ -27,6 +29,7 @@ _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
 _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
+_DB = 20.0 / np.log(10.0)  # of a level, in one relative change of an amplitude
 _MOST_MODES = 5000
 _DOMINANT = 8
 
@@ -207,7 +210,9 @@ def draw_deflection(
 def draw_sensitivity(
     housing: SolvedHousing, solved: "SolvedLoad", view: str, place: Path, progress: Progress
 ) -> list[str]:
-    """Draw where material on the housing changes the misalignment of each gear pair, as ``load-sensitivity-PAIR.png``.
+    """Draw where material on the housing changes the misalignment of each gear pair, and the level of a sensor's line.
+
+    They are ``load-sensitivity-PAIR.png`` and ``load-sensitivity-line.png``.
 
     Parameters
     ----------
@@ -250,7 +255,31 @@ def draw_sensitivity(
         )
         quantity = "Change [µrad/(mm·dm²)]"
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
+    shapes += _line_shapes(solved.sensitivity, surface.nodes)
     return draw_in_process(surface, shapes, place, "png", view, progress) if shapes else []
+
+
+def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -> "list[DrawnShape]":
+    """Change of the ranked line's level by material on the surface, on the housing's motion at the line."""
+    from gearwhine.figures.style import shortened
+    from housing.pictures.drawn_shapes import DrawnShape
+
+    if sensitivity.lines is None or sensitivity.line_density is None:
+        return []
+    line = sensitivity.sensor_lines[sensitivity.line]
+    motion = sensitivity.lines.field(line.motion)[nodes]
+    values = _PER_MM_DM2 * 1e-6 * _DB / line.amplitude * sensitivity.line_density[nodes]
+    largest = float(np.quantile(np.abs(values), _SHOWN_PART))
+    if largest == 0.0:
+        return []
+    # At the instant of the largest motion.
+    turned = motion * np.exp(-0.5j * np.angle(np.sum(motion**2)))
+    title = f"{shortened(line.sensor, 20)} at {line.frequency / _TWO_PI:.0f} Hz: level by added material"
+    note = (
+        f"{line.amplitude:.3g} m/s² now; blue lowers, red raises it by each mm on a dm² of surface. "
+        f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
+    )
+    return [DrawnShape("load-sensitivity-line", title, note, turned.real, "Change [dB/(mm·dm²)]", largest, values)]
 
 
 def draw_measured(

@@ -212,7 +212,9 @@ class Study:
 
         return machine.gears(self.case, progress=self.progress)
 
-    def operating_point(self, *, over_torque: bool = False, sensitivity: bool = False) -> Result[SolvedLoad]:
+    def operating_point(
+        self, *, over_torque: bool = False, sensitivity: bool = False, line: str | None = None
+    ) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.machine.operating_point`."""
         from gearwhine.analyses import machine
 
@@ -220,6 +222,7 @@ class Study:
             self.case,
             over_torque=over_torque,
             sensitivity=sensitivity,
+            line=line,
             housing=self.housing,
             progress=self.progress,
         )

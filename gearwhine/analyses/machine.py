@@ -118,6 +118,7 @@ def operating_point(
     *,
     over_torque: bool = False,
     sensitivity: bool = False,
+    line: str | None = None,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -132,7 +133,10 @@ def operating_point(
     over_torque : bool
         Whether to find it from 10 to 150 % of the torque as well.
     sensitivity : bool
-        Whether to rank walls, bearing stiffness and positions by their influence on the gear pairs.
+        Whether to rank walls, bearing stiffness and positions by their influence on gear pairs and sensors' lines.
+    line : str, optional
+        The line that is ranked and drawn, a sensor's name or with its frequency, ``roof@1377``; by default the highest.
+        It asks for the sensitivity too.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -146,7 +150,8 @@ def operating_point(
     require_load(case)
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=sensitivity)
+    ranked = sensitivity or line is not None
+    solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=ranked, line=line)
     document = load_document(case.title, solved)
     add_warnings(document, load_warnings(case, solved))
 

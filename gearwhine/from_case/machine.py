@@ -326,15 +326,26 @@ def basis_error(
     return BasisError(machine, build_machine(case, other, pairs, point=point, limit_factor=_MORE_MODES))
 
 
+def full_housing_component(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
+    """Return the housing with all its residual modes."""
+    participation = _participation(case, solved, progress)
+    return _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
+
+
+def _participation(case: Case, solved: SolvedHousing, progress: Progress) -> FloatArray | None:
+    """Participation in the motions of the ground, where its motion or weight asks for it."""
+    assert case.operation is not None
+    if case.operation.base is None and case.operation.gravity is None:
+        return None
+    progress("taking the housing's mass for the motion of its base and its weight")
+    return base_participation(case, solved.mesh, solved.modes)
+
+
 def _housing_components(
     case: Case, solved: SolvedHousing, progress: Progress
 ) -> tuple[HousingComponent, HousingComponent | None]:
     """Return the housing with all its attachments, and with those of one order of response less."""
-    assert case.operation is not None
-    participation = None
-    if case.operation.base is not None or case.operation.gravity is not None:
-        progress("taking the housing's mass for the motion of its base and its weight")
-        participation = base_participation(case, solved.mesh, solved.modes)
+    participation = _participation(case, solved, progress)
     component = _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
     attached = solved.modes.residual_modes
     if attached is None or not solved.loaded:

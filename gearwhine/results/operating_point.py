@@ -342,10 +342,49 @@ TORQUE = (
 )
 """Of a torque and the operating point under it."""
 
+_HZ = 0.5 / np.pi
+
+SENSOR_LINE = (
+    Quantity("sensor", lambda one: one[0].sensor, "line_sensor", heading="sensor"),
+    Quantity("excitation", lambda one: one[1], "line_excitation", heading="excitation"),
+    Quantity(
+        "frequency_hz",
+        lambda one: one[0].frequency * _HZ,
+        "line_frequency",
+        (),
+        "Hz",
+        "frequency of the line",
+        heading="[Hz]",
+        shown=".1f",
+    ),
+    Quantity(
+        "amplitude_m_per_s2",
+        lambda one: one[0].amplitude,
+        "line_amplitude",
+        (),
+        "m/s2",
+        "amplitude of acceleration of the line, linear about the operating point",
+        heading="[m/s²]",
+        shown=".3g",
+    ),
+    Quantity("ranked", lambda one: one[2]),
+)
+"""Of a sensor's line, the mesh harmonics that drive it, and whether parameters are ranked by it."""
+
 INFLUENCE = (
     Quantity("parameter", lambda row: row[0].parameter),
     Quantity("kind", lambda row: row[0].kind),
     Quantity("step", lambda row: row[0].step_text),
+    Rows(
+        "lines",
+        lambda row: row[2].line_changes(row[0]) if row[2].sensor_lines else ABSENT,
+        (
+            Quantity("sensor", lambda one: one.line.sensor),
+            Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
+            Quantity("amplitude_m_per_s2", lambda one: one.change),
+            Quantity("level_db", lambda one: one.level),
+        ),
+    ),
     Rows(
         "gear_pairs",
         lambda row: zip(row[1], row[0].changes.tolist(), strict=True),
@@ -358,7 +397,7 @@ INFLUENCE = (
         ),
     ),
 )
-"""Of a parameter's influence, and the gear pairs: their change by a step of it, to first order."""
+"""Of a parameter's influence, the gear pairs and the sensitivity: their changes by a step of it, to first order."""
 
 
 def _unless_idle(value: float) -> Any:
@@ -375,6 +414,21 @@ def _influence(name: str, unit: str, what: str, column: int) -> Quantity:
 
     what = f"change of the {what} by a step of the parameter, to first order"
     return Quantity("", taken, f"{name}_change", ("influence", "loaded_pair"), unit, what)
+
+
+def _line_changes(solved: "SolvedLoad") -> Any:
+    """Changes of every line's amplitude by every parameter's step, for the file."""
+    if solved.sensitivity is None or not solved.sensitivity.sensor_lines:
+        return None
+    return np.array([one.lines for one in solved.sensitivity.influences])
+
+
+def _sensor_lines(solved: "SolvedLoad") -> Any:
+    """Lines of the sensors with their causes, where there are any."""
+    found = solved.sensitivity
+    if found is None or found.lines is None:
+        return ABSENT
+    return [(one, found.lines.cause(one), n == found.line) for n, one in enumerate(found.sensor_lines)]
 
 
 def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
@@ -402,12 +456,17 @@ LOAD = (
     Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
     Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda one: one.load, PAIR), *TAKEN), "loaded_pair"),
     Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
+    Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
+    Quantity(
+        "lines_without",
+        lambda solved: ABSENT if not _sensor_lines(solved) else solved.sensitivity.lines.held,
+    ),
     Rows(
         "sensitivity",
         lambda solved: (
             ABSENT
             if solved.sensitivity is None
-            else [(one, solved.point.pairs) for one in solved.sensitivity.influences]
+            else [(one, solved.point.pairs, solved.sensitivity) for one in solved.sensitivity.influences]
         ),
         INFLUENCE,
     ),
@@ -424,6 +483,14 @@ LOAD = (
     _influence("misalignment", "rad", "angle between the flanks", 0),
     _influence("face_load_factor", "1", "face load factor K_Hbeta", 1),
     _influence("transmission_error_peak_to_peak", "m", "peak-to-peak static transmission error", 2),
+    Quantity(
+        "",
+        _line_changes,
+        "line_amplitude_change",
+        ("influence", "sensor_line"),
+        "m/s2",
+        "change of the line's amplitude of acceleration by a step of the parameter, to first order",
+    ),
     Quantity(
         "",
         lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
@@ -548,6 +615,36 @@ def _influences(document: Document) -> Iterator[str | Table]:
             yield f"{len(found) - _MOST_INFLUENCES} weaker parameters of {what} are in the files only"
 
 
+_LINE_COLUMNS = (
+    Column("parameter", "parameter"),
+    Column("of", "kind"),
+    Column("step", "step"),
+    Column("level [dB]", "level_db", "+.2f"),
+    Column("amplitude [m/s²]", "amplitude_m_per_s2", "+.3g"),
+)
+
+
+def _lines(document: Document) -> Iterator[str | Table]:
+    """Yield the sensors' lines, and the strongest parameters of the line that is ranked."""
+    lines = document.get("sensor_lines", ())
+    if not lines:
+        return
+    yield from table_of(columns_of(SENSOR_LINE), lines, "Sensors' lines at mesh harmonics, linear about the mean load")
+    number = next(n for n, one in enumerate(lines) if one["ranked"])
+    chosen = f"{lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
+    rows = [
+        {key: one[key] for key in ("parameter", "kind", "step")} | one["lines"][number]
+        for one in document["sensitivity"]
+    ]
+    rows.sort(key=lambda row: -abs(row["level_db"]))
+    yield from table_of(
+        _LINE_COLUMNS, rows[:_MOST_INFLUENCES], f"Change of the line of {chosen} by a step of one parameter"
+    )
+    held = document.get("lines_without")
+    fixed = "" if held is None else f"; the case fixes {held}, which do not follow the walls"
+    yield f"To first order; damping ratios, friction of the teeth and mean mesh forces are kept{fixed}"
+
+
 def _content(document: Document) -> Iterator[str | Table]:
     yield (
         f"Static equilibrium at {document['torque_n_m']:.5g} N m, {_seats(document)}; friction of the teeth is left out"
@@ -563,6 +660,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     ]
     yield from table_of(_TORQUE_COLUMNS, rows, "Over torque")
     yield from _influences(document)
+    yield from _lines(document)
     yield from table_of(columns_of(SHAFT), document["shafts"], "Deflection of the shafts")
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:

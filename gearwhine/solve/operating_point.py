@@ -209,6 +209,7 @@ def solve_load(
     *,
     over_torque: bool = False,
     sensitivity: bool = False,
+    line: str | None = None,
 ) -> SolvedLoad:
     """Find the static equilibrium of a case's machine under its torques and its weight.
 
@@ -222,6 +223,8 @@ def solve_load(
         Whether to find it at `TORQUES` as well.
     sensitivity : bool
         Whether to compute its gradients, see :func:`gearwhine.solve.load_sensitivity.solve_load_sensitivity`.
+    line : str, optional
+        The sensor's line that these are ranked by, such as ``roof@1377``; by default the highest.
 
     Raises
     ------
@@ -250,7 +253,7 @@ def solve_load(
     gradients = None
     if sensitivity:
         assert not isinstance(housing, ReducedHousing), "gradients by the housing need its mesh"
-        gradients = solve_load_sensitivity(case, point, housing, progress)
+        gradients = solve_load_sensitivity(case, machine, point, housing, progress, line=line)
     return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, found, gradients)
 
 
@@ -427,7 +430,7 @@ def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
     for one in solved.pairs:
         typed, found = one.misalignment.taken, one.load.misalignment
-        if one.misalignment.origin != "case":
+        if typed is None or one.misalignment.origin != "case":
             continue
         if abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
             continue

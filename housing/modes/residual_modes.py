@@ -249,6 +249,34 @@ def residual_attachment_modes(
     return ResidualModes(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof), vectors
 
 
+def joined_residual_modes(
+    stiffness: Operator, mass: Operator, first: ResidualModes, second: ResidualModes, vectors: FloatArray, free: IntArray
+) -> ResidualModes:
+    """Join two sets of residual modes of the same kept modes into one that spans both.
+
+    Parameters
+    ----------
+    stiffness, mass : matrix or operator, shape (n, n)
+        On the free degrees of freedom.
+    first, second : ResidualModes
+    vectors : ndarray, shape (n, p)
+        Kept modes, orthonormal in M.
+    free : ndarray of int, shape (n,)
+        Where the free degrees of freedom stand among all.
+
+    Returns
+    -------
+    ResidualModes
+        With the proof of the first set, whose static compliance at its ports it keeps.
+    """
+    columns = [one.shapes.reshape(len(one.shapes), -1).T[free] for one in (first, second)]
+    span = _extended(stiffness, columns[0] / first.frequencies, columns[1])
+    squared, shapes = _orthonormal(stiffness, mass, span, vectors, np.asarray(mass @ vectors))
+    full = np.zeros((len(squared), first.shapes[0].size))
+    full[:, free] = shapes.T
+    return ResidualModes(np.sqrt(squared), full.reshape(len(squared), *first.shapes.shape[1:]), first.proof)
+
+
 def _static_response(
     stiffness: Operator,
     solve: Solve,
