@@ -231,8 +231,8 @@ def solve_pairs(
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
     component = None if housing is None else housing.component
-    point = describe_machine(case, component, grounded=component is None).operating_point(_gravity(case))
-    return solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
+    machine = describe_machine(case, component, grounded=component is None)
+    return solve_gears(case, progress, machine.flank_gaps(machine.operating_point(_gravity(case))))
 
 
 def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str, RollingState]]]:

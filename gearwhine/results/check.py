@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coupling.machine.axial_location import ARRANGEMENTS
 from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
 from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
@@ -165,6 +166,17 @@ BEARING = (
 )
 """Of a bearing of the case."""
 
+LOCATION = (
+    Quantity("rotor", lambda one: one.shaft),
+    Quantity("arrangement", lambda one: one.arrangement),
+    Quantity("thrust_plus_z", lambda one: one.carrying(1)),
+    Quantity("thrust_minus_z", lambda one: one.carrying(-1)),
+    Quantity(
+        "rows", lambda one: {bearing.name: bearing.arrangement for bearing in one.bearings if bearing.arrangement}
+    ),
+)
+"""Of a rotor: the bearings that take its thrust towards +z and -z, and how rows stand to each other (O or X)."""
+
 PAIR = (
     Quantity("driver", lambda pair: pair.given.driver),
     Quantity("driven", lambda pair: pair.given.driven),
@@ -291,6 +303,7 @@ CHECK = (
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
     Rows("rotor_analysis", lambda checked: [(checked.case, one) for one in checked.case.rotor] or ABSENT, ANALYSIS),
     _given("bearings", lambda checked: _bearings(checked.case) or None),
+    Rows("axial_location", lambda checked: [one for one in checked.locations if one.bearings] or ABSENT, LOCATION),
     Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
     _part("operation", lambda checked: None if checked.case.operation is None else checked.case, OPERATION),
     _part("transient", lambda checked: checked.case.transient, TRANSIENT),
@@ -339,6 +352,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
+        "location": [_location_line(one) for one in document.get("axial_location", ())],
         "analysis": [line for one in document.get("rotor_analysis", ()) for line in _analysis_lines(one)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair)],
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
@@ -454,6 +468,27 @@ def _bearing_line(bearing: Document) -> str:
     if bearing["table_rpm"] is not None:
         line += ", tables over {:.6g} to {:.6g} rpm".format(*bearing["table_rpm"])
     return line
+
+
+def _location_line(location: Document) -> str:
+    """Return a rotor's arrangement of bearings, and which of them takes its thrust in which sense."""
+    plus, minus = (
+        [
+            f"{name} ({one}, {ARRANGEMENTS[one]})" if (one := location["rows"].get(name)) else name
+            for name in location[key]
+        ]
+        for key in ("thrust_plus_z", "thrust_minus_z")
+    )
+    line = f"{location['rotor']}: "
+    if not plus and not minus:
+        return f"{line}no bearing holds it along its axis"
+    if plus == minus:
+        return f"{line}thrust both ways on {', '.join(plus)}"
+    if arrangement := location["arrangement"]:
+        line += f"{arrangement} arrangement, {ARRANGEMENTS[arrangement]}; "
+    sides = [f"{way} on {', '.join(names)}" for way, names in (("+z", plus), ("-z", minus)) if names]
+    missing = "" if plus and minus else f"; nothing holds it towards {'-z' if plus else '+z'}"
+    return f"{line}thrust towards {', towards '.join(sides)}{missing}"
 
 
 def _analysis_lines(analysis: Document) -> Iterator[str]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, table_of
+from gearwhine.output.sections import Column, Document, Row, Section, Table, columns_of, table_of
 
 if TYPE_CHECKING:
     from gearwhine.solve.operating_point import SolvedLoad
@@ -44,6 +44,10 @@ def _turns_of_bearing(key: str, of: str, name: str, unit: str, what: str) -> Qua
 
 def _force(axis: int) -> Column:
     return Column(f"{_AXES[axis]} [N]", lambda row: f"{row['force_n'][axis]:z.0f}")
+
+
+def _moment(axis: int) -> Column:
+    return Column(f"{_TILTS[axis]} [N m]", lambda row: f"{row['moment_n_m'][axis]:z.1f}")
 
 
 BEARING = (
@@ -86,6 +90,16 @@ BEARING = (
         shown=".3g",
         scale=1e-9,
     ),
+    Quantity(
+        "preload_n",
+        lambda one: one.preload,
+        "bearing_preload",
+        (),
+        "N",
+        "axial force with which the rows are pressed without torque and weight",
+        heading="preload [N]",
+        shown=".0f",
+    ),
     Quantity("most_loaded_element", lambda one: one.most_loaded),
     Quantity(
         "",
@@ -124,11 +138,21 @@ BEARING = (
 )
 """Of a bearing at the operating point."""
 
+
+def _stiffness(row: Row) -> str:
+    """Tangent stiffness along x, y and z of a rolling bearing [N/µm]."""
+    diagonal = [_MEGA * row["stiffness"][axis][axis] for axis in range(3)]
+    return "" if row["peak_pressure_pa"] is None else ", ".join(f"{value:.4g}" for value in diagonal)
+
+
+_NAME, _TILT, *_OF_ELEMENTS = columns_of(BEARING)
 _BEARING_COLUMNS = (
-    columns_of(BEARING)[0],
+    _NAME,
     *(_force(axis) for axis in range(3)),
-    *columns_of(BEARING)[1:],
+    *(_moment(axis) for axis in range(2)),
+    _TILT,
 )
+_ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness))
 
 _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 
@@ -476,8 +500,15 @@ def _influences(document: Document) -> Iterator[str | Table]:
 
 def _content(document: Document) -> Iterator[str | Table]:
     seats = "on its housing" if document["seats"] == "housing" else "in rigid seats (no housing)"
-    yield f"Static equilibrium at {document['torque_n_m']:.5g} N m, {seats}; friction of the teeth is left out"
-    yield from table_of(_BEARING_COLUMNS, document["bearings"], "Force of the shafts on their bearings")
+    torque, loads = document["torque_n_m"], "preload and weight" if "gravity_m_per_s2" in document else "preload"
+    if torque == 0.0 and not document["gear_pairs"]:
+        yield f"Static equilibrium without torque, under {loads} alone, {seats}; no flanks carry"
+    else:
+        yield f"Static equilibrium at {torque:.5g} N m, {seats}; friction of the teeth is left out"
+    caption = "Force and tilting moment of the shafts on their bearings"
+    yield from table_of(_BEARING_COLUMNS, document["bearings"], caption)
+    rolling = [row for row in document["bearings"] if row["peak_pressure_pa"] is not None]
+    yield from table_of(_ROLLING_COLUMNS, rolling, "Rolling bearings: elements, life, tangent stiffness along x, y, z")
     yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period")
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     rows = [

@@ -55,11 +55,15 @@ class LoadedBearing:
         Dynamic rating C that the case gives [N].
     speed : float
         Of its shaft [rad/s].
+    preload : float or None
+        Axial force with which its rows are pressed without torque and weight [N], the larger of two; None where no
+        bearing of the shaft has an axial offset or a spring.
     """
 
     load: BearingLoad
     given_rating: float | None
     speed: float
+    preload: float | None = None
 
     @property
     def rating(self) -> float | None:
@@ -232,11 +236,28 @@ def solve_load(
         for given in case.bearing
         if isinstance(given.stiffness, RollingStiffness)
     }
+    preloads = _preloads(machine, progress)
     bearings = tuple(
-        LoadedBearing(one, ratings.get(one.name), machine.speeds[one.mounted.rotor]) for one in point.bearings
+        LoadedBearing(one, ratings.get(one.name), machine.speeds[one.mounted.rotor], preloads.get(one.name))
+        for one in point.bearings
     )
     gradients = solve_load_sensitivity(case, point, housing, progress) if sensitivity else None
     return SolvedLoad(machine, point, bearings, housing, operation.gravity, found, gradients)
+
+
+def _preloads(machine: Machine, progress: Progress) -> dict[str, float]:
+    """Axial force of each rolling bearing's rows without torque and weight [N], on shafts with a preloaded bearing."""
+    elements = {one.bearing.name: one.elements for one in machine.bearings}
+    preloaded = {one.rotor for one in machine.bearings if one.elements is not None and one.elements.is_preloaded}
+    if not preloaded:
+        return {}
+    progress("preload of the bearings")
+    found = {}
+    for one in machine.preload_point().bearings:
+        rolling = elements[one.name]
+        if one.rolling is not None and rolling is not None and rolling.thrust_senses and one.mounted.rotor in preloaded:
+            found[one.name] = max(map(abs, one.rolling.row_thrusts)) + 0.0
+    return found
 
 
 def require_load(case: Case) -> None:
@@ -250,10 +271,13 @@ def require_load(case: Case) -> None:
     require(case, "rotor", "bearing", "operation", command="load")
     assert case.operation is not None
     operation = case.operation
-    if operation.torque == 0.0 and (case.gear_pair or operation.gravity is None):
-        expected = (
-            "a torque, which loads the flanks" if case.gear_pair else "a torque, or gravity, which loads the shafts"
-        )
+    rolling = [one.stiffness.rolling for one in case.bearing if isinstance(one.stiffness, RollingStiffness)]
+    if (
+        operation.torque == 0.0
+        and operation.gravity is None
+        and not any(one.pressed or one.mounting is not None for one in rolling)
+    ):
+        expected = "a torque, or gravity, which load the shafts, or a preload of rolling bearings"
         raise CaseError([Problem("operation.torque", 0.0, expected)])
     require_machine(case)
 
@@ -373,7 +397,9 @@ def _face_warnings(one: PairLoad) -> Iterator[dict[str, Any]]:
 
 def _misalignment_warnings(case: Case, solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
-    for given, pair, one in zip(case.gear_pair, solved.machine.gear_pairs, solved.point.pairs, strict=True):
+    # Without a torque the point has no pairs.
+    pairs = zip(case.gear_pair, solved.machine.gear_pairs, strict=True) if solved.point.pairs else ()
+    for (given, pair), one in zip(pairs, solved.point.pairs, strict=True):
         if "misalignment" not in given.model_fields_set:
             continue
         typed, found = pair.misalignment, one.misalignment
