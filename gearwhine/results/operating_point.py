@@ -10,7 +10,8 @@ from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Row, Section, Table, columns_of, table_of
 
 if TYPE_CHECKING:
-    from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.bearing_lives import BearingLife
+    from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6
@@ -48,6 +49,11 @@ def _force(axis: int) -> Column:
 
 def _moment(axis: int) -> Column:
     return Column(f"{_TILTS[axis]} [N m]", lambda row: f"{row['moment_n_m'][axis]:z.1f}")
+
+
+def _rated(of: "Callable[[BearingLife], Any]") -> "Callable[[LoadedBearing], Any]":
+    """Take a value of a rolling bearing's ratings; other bearings have none."""
+    return lambda one: None if one.rated is None else of(one.rated)
 
 
 BEARING = (
@@ -109,15 +115,12 @@ BEARING = (
         "N",
         "load of the rolling element on the outer ring, row after row",
     ),
-    Quantity("equivalent_load_n", lambda one: one.equivalent_load),
-    Quantity("dynamic_rating_n", lambda one: one.rating),
-    Quantity(
-        "dynamic_rating_from",
-        lambda one: None if one.rating is None else "geometry" if one.given_rating is None else "case",
-    ),
+    Quantity("equivalent_load_n", _rated(lambda rated: rated.equivalent_load)),
+    Quantity("dynamic_rating_n", _rated(lambda rated: rated.rating)),
+    Quantity("dynamic_rating_from", _rated(lambda rated: rated.rating_from)),
     Quantity(
         "life_h",
-        lambda one: one.life,
+        _rated(lambda rated: rated.life),
         "bearing_life",
         (),
         "h",
@@ -127,7 +130,7 @@ BEARING = (
     ),
     Quantity(
         "reference_life_h",
-        lambda one: one.reference_life,
+        _rated(lambda rated: rated.reference_life),
         "bearing_reference_life",
         (),
         "h",

@@ -301,3 +301,13 @@ def test_report_has_the_tables_of_the_terminal(helical: Result[SolvedLoad]) -> N
     assert chapter.content == section.content
     tables: Any = {table.caption: table for table in chapter.tables}
     assert "Over torque" in tables
+
+
+def test_lives_of_rotors_and_load_are_those_of_one_rating() -> None:
+    """Under the load that the equilibrium finds, and without a C in the case: of its geometry in both."""
+    bare = {"rolling": {key: value for key, value in ROLLING["rolling"].items() if key != "dynamic_rating"}}
+    study = gw.load("spur-pair", {"bearing.0.stiffness": bare})
+    (loaded,) = [one for one in study.operating_point().document["bearings"] if one["life_h"] is not None]
+    (turning,) = [one for rotor in study.rotors().document["rotors"] for one in rotor["rolling_bearings"]]
+    for key in ("dynamic_rating_n", "dynamic_rating_from", "life_h", "reference_life_h"):
+        assert turning[key] == (loaded[key] if isinstance(loaded[key], str) else pytest.approx(loaded[key], rel=1e-9))
