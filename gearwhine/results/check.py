@@ -12,7 +12,7 @@ from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
 from gearwhine.progress import Progress, silent
-from gearwhine.results.gears import GEOMETRY
+from gearwhine.results.gears import GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, kinds_of_elements
 from gearwhine.solve.case_summary import check_case
@@ -191,6 +191,7 @@ PAIR = (
         lambda pair: {
             "circumferential": pair.geometry.circumferential_backlash,
             "normal": pair.geometry.normal_backlash,
+            "along_line_of_action": pair.geometry.backlash,
         },
     ),
     Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
@@ -506,8 +507,11 @@ def _pair_lines(pair: Document) -> list[str]:
         f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, {_contact_ratios(pair)}, "
         f"stiffness {pair['stiffness_model']}",
         f"shafts {1e3 * pair['centre_distance_m']:.6g} mm apart, working pressure angle "
-        f"{pair['working_pressure_angle_deg']:.4g}°{_backlash(pair['backlash_m'])}",
+        f"{pair['working_pressure_angle_deg']:.4g}°",
     ]
+    # By centre distance and thickness, where there is any that could be measured.
+    if abs(pair["backlash_m"]["circumferential"]) >= 1e-9:
+        lines.append(f"backlash {backlash_words(pair['backlash_m'])}")
     lines += [_tooth_line(gear) for gear in pair["geometry"]["gears"]]
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
@@ -531,9 +535,3 @@ def _tooth_line(gear: Document) -> str:
     measured = "" if span is None else f"; span of {span['teeth']}: {1e3 * span['length_m']:.6g} mm"
     cut = " (undercut)" if gear["undercut"] else ""
     return f"{gear['name']}: {gear['teeth']} teeth{helix}, diameters {circles} mm{cut}{measured}"
-
-
-def _backlash(backlash: dict[str, float]) -> str:
-    """Return the backlash by centre distance and thickness, where there is any that could be measured."""
-    clearance = 1e3 * backlash["circumferential"]
-    return "" if abs(clearance) < 1e-6 else f", backlash of the teeth {clearance:.4g} mm"

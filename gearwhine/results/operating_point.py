@@ -165,6 +165,11 @@ def _of_loaded(value: Callable[[PairLoad], Any]) -> Callable[[PairLoad], Any]:
     return lambda one: value(one) if one.force > 0.0 else None
 
 
+def _line_load(key: str, name: str, of: Callable[[PairLoad], float], what: str) -> Quantity:
+    """Declare a line load of a pair: transverse load, along the line of action, per face width."""
+    return Quantity(key, of, name, (), "N/m", what)
+
+
 PAIR = (
     Quantity("", lambda one: f"{one.pair.driver.name} -> {one.pair.driven.name}", "loaded_pair"),
     Quantity("driver", lambda one: one.pair.driver.name, heading="driver"),
@@ -237,9 +242,25 @@ PAIR = (
         "line_load_n_per_m",
         _of_loaded(lambda one: one),
         (
-            Quantity("mean", lambda one: one.line_load.mean()),
-            Quantity("max_of_mean", lambda one: one.line_load.max()),
-            Quantity("max", lambda one: one.fine.peak_line_load),
+            _line_load("mean", "mean_line_load", lambda one: one.line_load.mean(), "mean line load F / b"),
+            _line_load(
+                "maximum",
+                "maximum_line_load",
+                lambda one: one.line_load.max(),
+                "maximum line load: largest over the face of the mean over the mesh period, K_Hbeta times the mean",
+            ),
+            _line_load(
+                "peak",
+                "peak_line_load",
+                lambda one: one.fine.line_load.max(),
+                "peak line load: largest over face and mesh period, all tooth pairs together",
+            ),
+            _line_load(
+                "peak_of_tooth_pair",
+                "peak_line_load_of_tooth_pair",
+                lambda one: one.fine.peak_line_load,
+                "peak line load of one tooth pair over its face and the mesh period",
+            ),
         ),
     ),
     Quantity("contact_pressure_max_pa", _of_loaded(lambda one: one.peak_pressure)),
@@ -264,7 +285,7 @@ PAIR = (
         "face_mean_line_load",
         _SLICE,
         "N/m",
-        "transverse load per face width, all tooth pairs together, mean over the mesh period",
+        "line load: transverse load per face width, all tooth pairs together, mean over the mesh period",
     ),
     Quantity(
         "",
@@ -272,7 +293,7 @@ PAIR = (
         "face_line_load",
         (*_PHASE, *_SLICE),
         "N/m",
-        "transverse load per face width, all tooth pairs together",
+        "line load: transverse load per face width, all tooth pairs together",
     ),
     Quantity("", lambda one: one.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
     Quantity(
