@@ -316,6 +316,26 @@ class OperatingPoint:
         """Return the load of the bearing of this name."""
         return next(one for one in self.bearings if one.name == name)
 
+    def flank_gaps(self, unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
+        """Gap of the flanks over the face [m], by the names of driver and driven gear.
+
+        Parameters
+        ----------
+        unaligned : sequence of str
+            Labels of the pairs whose misalignment has to follow from this point.
+
+        Raises
+        ------
+        CouplingError
+            Where there are such pairs and no torque loads the flanks.
+        """
+        if unaligned and not self.pairs:
+            raise CouplingError(
+                f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
+                "expected a torque, or the misalignment"
+            )
+        return {one.names: one.station_gap for one in self.pairs}
+
 
 def solve_operating_point(
     shafts: Sequence[StaticShaftPart],
@@ -637,9 +657,12 @@ class _StaticModel:
         # Elastic forces are differences of large ones where a part is short and stiff: their rounding is no imbalance,
         # on whatever node it is left.
         terms = np.abs(self.stiffness + extra) @ np.abs(x)
+        # Without loads the preloads are the scale, also of rows that press each other within a bearing.
+        laws = [] if np.any(self.load) else zip(self.laws, deflections, strict=True)
+        pressing = max((law.elements.at(z).force for law, z in laws if isinstance(law, RollingElementLaw)), default=0.0)
         rounding = _ROUNDINGS * np.finfo(np.float64).eps * float(terms[: self.housing_first].max())
-        beyond, _ = self._relative(np.maximum(np.abs(residual) - rounding, 0.0), forces)
-        relative, where = self._relative(residual, forces)
+        beyond, _ = self._relative(np.maximum(np.abs(residual) - rounding, 0.0), forces, pressing)
+        relative, where = self._relative(residual, forces, pressing)
         if not (beyond <= RESIDUAL_BAR and relative <= _LARGEST_ROUNDING):
             raise EquilibriumNotFoundError(
                 f"no static equilibrium of the machine: {relative:.3g} of the largest load is out of balance on "
@@ -686,10 +709,13 @@ class _StaticModel:
         housing = None if self.housing is None else x[own]
         return OperatingPoint(shafts, bearings, pairs, housing, relative, iterations, free, tangent)
 
-    def _relative(self, residual: FloatArray, forces: Sequence[FloatArray]) -> tuple[float, str]:
-        """Largest force out of balance over the largest load, moments over that load times the longest shaft; where."""
+    def _relative(self, residual: FloatArray, forces: Sequence[FloatArray], least: float) -> tuple[float, str]:
+        """Largest force out of balance over the largest load, moments over that load times the longest shaft; where.
+
+        The largest load is at least ``least`` [N].
+        """
         longest = max(float(np.ptp(part.shaft.places)) for part in self.shafts) or 1.0
-        largest = 1e-300
+        largest = max(least, 1e-300)
         for part in self.shafts:
             load = self.load[self._own(part.name)].reshape(-1, 6)
             largest = max(largest, float(np.abs(load[:, :3]).max()), float(np.abs(load[:, 3:]).max()) / longest)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 import tomli_w
 from pydantic import Field, ValidationError
 
-from gearwhine.case.bearings import Bearing
+from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.box import Box
 from gearwhine.case.errors import NOTHING, CaseError, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table
@@ -114,19 +114,23 @@ class Case(Table):
     def finds_misalignment(self, pair: GearPair) -> bool:
         """Whether the misalignment of a gear pair follows from the machine's operating point.
 
-        Where the case says nothing it does if the load of a bearing does, too; else it is 0.
+        Where the case says nothing it does if a torque loads the flanks and the load of a bearing follows, too; else
+        it is 0.
         """
         if pair.misalignment is None:
-            return any(self.finds_load(bearing) for bearing in self.bearing)
+            loaded = self.operation is not None and self.operation.torque != 0.0
+            return loaded and any(self.finds_load(bearing) for bearing in self.bearing)
         return pair.misalignment == "found"
 
     @property
     def is_loaded(self) -> bool:
-        """Whether the case has a machine that a torque or its weight loads, so that it has an operating point."""
+        """Whether a torque, weight or a preload loads the machine of the case, so that it has an operating point."""
         operation = self.operation
         if operation is None or not self.rotor or not self.bearing:
             return False
-        return operation.torque != 0.0 or (not self.gear_pair and operation.gravity is not None)
+        rolling = [one.stiffness.rolling for one in self.bearing if isinstance(one.stiffness, RollingStiffness)]
+        preloaded = any(one.pressed or one.mounting is not None for one in rolling)
+        return operation.torque != 0.0 or operation.gravity is not None or preloaded
 
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""

@@ -73,7 +73,7 @@ def taken_misalignments(case: Case, point: OperatingPoint | None) -> tuple[Taken
     """Misalignment of every gear pair of the case, beside that of its operating point where it is solved."""
     taken = []
     for number, given in enumerate(case.gear_pair):
-        found = None if point is None else point.pairs[number].misalignment
+        found = None if point is None or not point.pairs else point.pairs[number].misalignment
         if case.finds_misalignment(given):
             taken.append(TakenMisalignment(found, "operating point", found))
         elif isinstance(given.misalignment, float | int):

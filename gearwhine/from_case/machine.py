@@ -235,8 +235,10 @@ def solve_pairs(
     if not case.gear_pair:
         return ()
     point = point or point_of_pairs(case, housing, progress)
-    gaps = {} if point is None else {one.names: one.station_gap for one in point.pairs}
-    return solve_gears(case, progress, gaps)
+    unaligned = [
+        f"gear pair {pair.driver!r} -> {pair.driven!r}" for pair in case.gear_pair if case.finds_misalignment(pair)
+    ]
+    return solve_gears(case, progress, {} if point is None else point.flank_gaps(unaligned))
 
 
 def point_of_pairs(

@@ -235,7 +235,7 @@ CURVES = (
         "line_load",
         (*_TOOTH, "slice"),
         "N/m",
-        "transverse load per face width",
+        "line load of the tooth pair: transverse load per face width",
     ),
 )
 """Of a pair at even phases of the mesh period."""
@@ -316,6 +316,18 @@ PRESSURE = (
 )
 
 
+BACKLASH = (
+    Quantity("along_line_of_action", lambda pair: pair.solved.backlash),
+    Quantity(
+        "circumferential",
+        lambda pair: pair.solved.backlash / math.cos(pair.solved.geometry.working_pressure_angle),
+    ),
+    Quantity("normal", lambda pair: pair.solved.backlash * math.cos(pair.solved.geometry.driver.base_helix_angle)),
+)
+"""Backlash that acts (ISO 21771): gap of the back flanks along their line of action in the transverse plane; j_wt on
+the working pitch circles; j_bn, the shortest distance of the flanks."""
+
+
 def _aim(pair: "PairAnalysis") -> dict[str, Any]:
     """Return the aim of the relief search."""
     given, optimum = pair.given.relief_aim, pair.optimum
@@ -368,7 +380,7 @@ PAIR = (
     Quantity("total_contact_ratio", lambda pair: pair.solved.geometry.total_contact_ratio),
     Quantity("centre_distance_m", lambda pair: pair.solved.geometry.working_centre_distance),
     Quantity("working_pressure_angle_rad", lambda pair: pair.solved.geometry.working_pressure_angle),
-    Quantity("backlash_m", lambda pair: pair.solved.backlash),
+    Part("backlash_m", lambda pair: _where(pair.solved.backlash, pair), BACKLASH),
     Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
     Quantity("torque_n_m", lambda pair: pair.solved.torque),
     Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
@@ -524,7 +536,7 @@ def _mesh(pair: Document) -> list[str]:
     ratio += f", working pressure angle {_degrees(pair['working_pressure_angle_rad'], '.6g')}"
     lines = [ratio]
     if pair["backlash_m"] is not None:
-        lines[0] += f", backlash {_MM * pair['backlash_m']:.4g} mm"
+        lines.append(f"Backlash {backlash_words(pair['backlash_m'])}")
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"Mesh frequency {pair['mesh_frequency_hz']:.2f} Hz")
         lines[-1] += f", torque on the driver {pair['torque_n_m']:.5g} N·m, mesh force {pair['mean_force_n']:.1f} N"
@@ -548,6 +560,15 @@ def _mesh(pair: Document) -> list[str]:
         named = ", ".join(f"{_MICRO * amplitude:.3f}" for amplitude in error["harmonics"][:_HARMONICS])
         lines.append(f"  at the mesh frequency and its multiples: {named} µm")
     return lines
+
+
+def backlash_words(backlash: Document) -> str:
+    """Return a backlash by its names (ISO 21771)."""
+    around, normal, along = (
+        f"{_MM * backlash[key]:.4g} mm" for key in ("circumferential", "normal", "along_line_of_action")
+    )
+    places = ("on the working pitch circle", "normal to the flanks", "along the line of action")
+    return f"j_wt {around} {places[0]}, j_bn {normal} {places[1]}, {along} {places[2]}"
 
 
 def _error(error: Document) -> str:

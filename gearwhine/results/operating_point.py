@@ -8,10 +8,11 @@ import numpy as np
 
 from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, table_of
+from gearwhine.output.sections import Column, Document, Row, Section, Table, columns_of, table_of
 
 if TYPE_CHECKING:
-    from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.bearing_lives import BearingLife
+    from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6
@@ -45,6 +46,15 @@ def _turns_of_bearing(key: str, of: str, name: str, unit: str, what: str) -> Qua
 
 def _force(axis: int) -> Column:
     return Column(f"{_AXES[axis]} [N]", lambda row: f"{row['force_n'][axis]:z.0f}")
+
+
+def _moment(axis: int) -> Column:
+    return Column(f"{_TILTS[axis]} [N m]", lambda row: f"{row['moment_n_m'][axis]:z.1f}")
+
+
+def _rated(of: "Callable[[BearingLife], Any]") -> "Callable[[LoadedBearing], Any]":
+    """Take a value of a rolling bearing's ratings; other bearings have none."""
+    return lambda one: None if one.rated is None else of(one.rated)
 
 
 BEARING = (
@@ -96,6 +106,16 @@ BEARING = (
         shown=".3g",
         scale=1e-9,
     ),
+    Quantity(
+        "preload_n",
+        lambda one: one.preload,
+        "bearing_preload",
+        (),
+        "N",
+        "axial force with which the rows are pressed without torque and weight",
+        heading="preload [N]",
+        shown=".0f",
+    ),
     Quantity("most_loaded_element", lambda one: one.most_loaded),
     Quantity(
         "",
@@ -105,15 +125,12 @@ BEARING = (
         "N",
         "load of the rolling element on the outer ring, row after row",
     ),
-    Quantity("equivalent_load_n", lambda one: one.equivalent_load),
-    Quantity("dynamic_rating_n", lambda one: one.rating),
-    Quantity(
-        "dynamic_rating_from",
-        lambda one: None if one.rating is None else "geometry" if one.given_rating is None else "case",
-    ),
+    Quantity("equivalent_load_n", _rated(lambda rated: rated.equivalent_load)),
+    Quantity("dynamic_rating_n", _rated(lambda rated: rated.rating)),
+    Quantity("dynamic_rating_from", _rated(lambda rated: rated.rating_from)),
     Quantity(
         "life_h",
-        lambda one: one.life,
+        _rated(lambda rated: rated.life),
         "bearing_life",
         (),
         "h",
@@ -123,7 +140,7 @@ BEARING = (
     ),
     Quantity(
         "reference_life_h",
-        lambda one: one.reference_life,
+        _rated(lambda rated: rated.reference_life),
         "bearing_reference_life",
         (),
         "h",
@@ -134,11 +151,21 @@ BEARING = (
 )
 """Of a bearing at the operating point."""
 
+
+def _stiffness(row: Row) -> str:
+    """Tangent stiffness along x, y and z of a rolling bearing [N/µm]."""
+    diagonal = [_MEGA * row["stiffness"][axis][axis] for axis in range(3)]
+    return "" if row["peak_pressure_pa"] is None else ", ".join(f"{value:.4g}" for value in diagonal)
+
+
+_NAME, _TILT, *_OF_ELEMENTS = columns_of(BEARING)
 _BEARING_COLUMNS = (
-    columns_of(BEARING)[0],
+    _NAME,
     *(_force(axis) for axis in range(3)),
-    *columns_of(BEARING)[1:],
+    *(_moment(axis) for axis in range(2)),
+    _TILT,
 )
+_ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness))
 
 _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 
@@ -146,6 +173,11 @@ _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 def _of_loaded(value: Callable[[PairLoad], Any]) -> Callable[[PairLoad], Any]:
     """Take a value of a pair that carries load; an idle one has none."""
     return lambda one: value(one) if one.force > 0.0 else None
+
+
+def _line_load(key: str, name: str, of: Callable[[PairLoad], float], what: str) -> Quantity:
+    """Declare a line load of a pair: transverse load, along the line of action, per face width."""
+    return Quantity(key, of, name, (), "N/m", what)
 
 
 PAIR = (
@@ -220,9 +252,25 @@ PAIR = (
         "line_load_n_per_m",
         _of_loaded(lambda one: one),
         (
-            Quantity("mean", lambda one: one.line_load.mean()),
-            Quantity("max_of_mean", lambda one: one.line_load.max()),
-            Quantity("max", lambda one: one.fine.peak_line_load),
+            _line_load("mean", "mean_line_load", lambda one: one.line_load.mean(), "mean line load F / b"),
+            _line_load(
+                "maximum",
+                "maximum_line_load",
+                lambda one: one.line_load.max(),
+                "maximum line load: largest over the face of the mean over the mesh period, K_Hbeta times the mean",
+            ),
+            _line_load(
+                "peak",
+                "peak_line_load",
+                lambda one: one.fine.line_load.max(),
+                "peak line load: largest over face and mesh period, all tooth pairs together",
+            ),
+            _line_load(
+                "peak_of_tooth_pair",
+                "peak_line_load_of_tooth_pair",
+                lambda one: one.fine.peak_line_load,
+                "peak line load of one tooth pair over its face and the mesh period",
+            ),
         ),
     ),
     Quantity("contact_pressure_max_pa", _of_loaded(lambda one: one.peak_pressure)),
@@ -247,7 +295,7 @@ PAIR = (
         "face_mean_line_load",
         _SLICE,
         "N/m",
-        "transverse load per face width, all tooth pairs together, mean over the mesh period",
+        "line load: transverse load per face width, all tooth pairs together, mean over the mesh period",
     ),
     Quantity(
         "",
@@ -255,7 +303,7 @@ PAIR = (
         "face_line_load",
         (*_PHASE, *_SLICE),
         "N/m",
-        "transverse load per face width, all tooth pairs together",
+        "line load: transverse load per face width, all tooth pairs together",
     ),
     Quantity("", lambda one: one.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
     Quantity(
@@ -646,10 +694,15 @@ def _lines(document: Document) -> Iterator[str | Table]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
-    yield (
-        f"Static equilibrium at {document['torque_n_m']:.5g} N m, {_seats(document)}; friction of the teeth is left out"
-    )
-    yield from table_of(_BEARING_COLUMNS, document["bearings"], "Force of the shafts on their bearings")
+    torque, loads = document["torque_n_m"], "preload and weight" if "gravity_m_per_s2" in document else "preload"
+    if torque == 0.0 and not document["gear_pairs"]:
+        yield f"Static equilibrium without torque, under {loads} alone, {_seats(document)}; no flanks carry"
+    else:
+        yield f"Static equilibrium at {torque:.5g} N m, {_seats(document)}; friction of the teeth is left out"
+    caption = "Force and tilting moment of the shafts on their bearings"
+    yield from table_of(_BEARING_COLUMNS, document["bearings"], caption)
+    rolling = [row for row in document["bearings"] if row["peak_pressure_pa"] is not None]
+    yield from table_of(_ROLLING_COLUMNS, rolling, "Rolling bearings: elements, life, tangent stiffness along x, y, z")
     yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period")
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     yield from _taken(document)

@@ -12,6 +12,7 @@ from gearwhine.output.sections import Column, Document, Section, Table, columns_
 from gearwhine.results.housing import COUNT_CERTIFICATE
 
 if TYPE_CHECKING:
+    from gearwhine.solve.bearing_lives import BearingLife
     from gearwhine.solve.rotors import Crossings, SolvedRotor
     from rotors.rolling_bearings import RollingState
 
@@ -124,17 +125,9 @@ def _loaded(row: tuple["SolvedRotor", str]) -> "RollingState":
     return row[0].rolling[row[1]]
 
 
-def _life(row: tuple["SolvedRotor", str]) -> float | None:
-    """Hours at the speed of operation that 90 % of like bearings reach."""
-    one, name = row
-    return one.lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in one.lives else None
-
-
-def _reference_life(row: tuple["SolvedRotor", str]) -> float | None:
-    """Hours at the speed of operation by the loads of the elements."""
-    one, name = row
-    lives = one.reference_lives
-    return lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in lives else None
+def _rated(row: tuple["SolvedRotor", str]) -> "BearingLife":
+    """Ratings and lives at the speed of operation."""
+    return row[0].lives[row[1]]
 
 
 def _frequencies(row: tuple["SolvedRotor", str]) -> dict[str, float] | None:
@@ -171,9 +164,11 @@ ROLLING = (
         heading="stiffness [N/m]",
         shown=lambda row: ", ".join(f"{row['stiffness'][motion][motion]:.3g}" for motion in range(3)),
     ),
+    Quantity("dynamic_rating_n", lambda row: _rated(row).rating),
+    Quantity("dynamic_rating_from", lambda row: _rated(row).rating_from),
     Quantity(
         "life_h",
-        _life,
+        lambda row: _rated(row).life,
         "rolling_bearing_life",
         (),
         "h",
@@ -183,7 +178,7 @@ ROLLING = (
     ),
     Quantity(
         "reference_life_h",
-        _reference_life,
+        lambda row: _rated(row).reference_life,
         "rolling_bearing_reference_life",
         (),
         "h",

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from coupling.gears import GearPairGeometry
+from coupling.machine.axial_location import AxialLocation
 from gearwhine.case import Case, GearPair, Rotor, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.case.checks import axial_locations
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.gear_pairs import (
     TakenMisalignment,
@@ -80,6 +82,8 @@ class CheckedCase:
         Of the housing.
     rotors : tuple of CheckedRotor
     pairs : tuple of CheckedPair
+    locations : tuple of coupling.machine.axial_location.AxialLocation
+        Of each rotor along its axis.
     warnings : list of dict
         As the documents have them.
     """
@@ -88,6 +92,7 @@ class CheckedCase:
     mesh: MeshPreview | None
     rotors: tuple[CheckedRotor, ...]
     pairs: tuple[CheckedPair, ...]
+    locations: tuple[AxialLocation, ...]
     warnings: list[dict[str, Any]]
 
 
@@ -118,7 +123,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
-    return CheckedCase(case, mesh, rotors, pairs, warnings)
+    return CheckedCase(case, mesh, rotors, pairs, axial_locations(case), warnings)
 
 
 def _checked_pairs(case: Case) -> Iterator[CheckedPair]:

@@ -211,7 +211,9 @@ def solve_load_sensitivity(
             rates = solved.rates(fields.constants, changes.rates, changes.bearings, changes.sensors)
             own = np.array([solved.model.by_housing(one, rates) for one in lines]) / changes.slopes
         for name, column, direct, size in zip(changes.names, derivatives.T, own.T, changes.sizes, strict=True):
-            one = influence(name, kind, column, direct, _LENGTH if size is None else _PART * size, is_length=size is None)
+            one = influence(
+                name, kind, column, direct, _LENGTH if size is None else _PART * size, is_length=size is None
+            )
             found.append(one if size is None else replace(one, step=_PART))
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     found.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))

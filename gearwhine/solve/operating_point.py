@@ -6,7 +6,7 @@ equilibrium finds.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -23,12 +23,12 @@ from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignment
 from gearwhine.from_case.machine import ReducedHousing, describe_machine, reduce_housing, require_machine
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.load_sensitivity import LoadSensitivity, solve_load_sensitivity
 from gearwhine.solve.plausibility import bearing_load_warnings
 from rotors import EquilibriumError, RotorError
-from rotors.rolling_bearings import BallRow, RollerRow, RollingState, Row, dynamic_rating
-from rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
+from rotors.rolling_bearings import BallRow, RollerRow, Row
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,7 +36,6 @@ TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 """Parts of the torque of operation at which the equilibrium is found over torque."""
 
 _PLACES = 201  # along a shaft, where its deflection is told
-_HOUR = 3600.0
 _DIFFERENCE = 0.1  # part of the larger of two numbers by which they may differ without a word
 _ALIGNED = 1e-6  # difference of misalignments that is none [rad]
 _UNEVEN = 2.0  # K_Hβ beyond which a face is said to carry unevenly
@@ -55,53 +54,24 @@ class LoadedBearing:
     Attributes
     ----------
     load : BearingLoad
-    given_rating : float or None
-        Dynamic rating C that the case gives [N].
-    speed : float
-        Of its shaft [rad/s].
+    rated : BearingLife or None
+        Of a rolling bearing.
+    preload : float or None
+        Axial force with which its rows are pressed without torque and weight [N], the larger of two; None where no
+        bearing of the shaft has an axial offset or a spring.
     given_load : ndarray, shape (3,), or None
         Force of the shaft along x, y, z for which the case has the stiffness made [N].
     """
 
     load: BearingLoad
-    given_rating: float | None
-    speed: float
+    rated: BearingLife | None = None
+    preload: float | None = None
     given_load: FloatArray | None = None
-
-    @property
-    def rating(self) -> float | None:
-        """Dynamic rating C of a rolling bearing [N]: as given, else of the geometry by ISO 281."""
-        if self.given_rating is not None or self.load.rolling is None:
-            return self.given_rating
-        rows = self.load.rolling.bearing.rows
-        return dynamic_rating(rows[0], len(rows))
 
     @property
     def peak_pressure(self) -> float | None:
         """Greatest pressure of the rolling elements [Pa]; None for other bearings."""
         return None if self.load.rolling is None else self.load.rolling.peak_pressure
-
-    @property
-    def equivalent_load(self) -> float | None:
-        """Equivalent dynamic load P by ISO 281 [N]; None where it is not defined."""
-        return None if self.load.rolling is None else equivalent_load(self.load.rolling)
-
-    @property
-    def life(self) -> float | None:
-        """Basic rating life L10 by ISO 281 at the speed of operation [h]; None where it is not defined."""
-        return self._hours(rated_revolutions)
-
-    @property
-    def reference_life(self) -> float | None:
-        """Basic reference rating life L10r by ISO/TS 16281 of the elements' loads [h]; None for other bearings."""
-        return self._hours(reference_revolutions)
-
-    def _hours(self, life: Callable[[RollingState, float], float | None]) -> float | None:
-        state, rating = self.load.rolling, self.rating
-        if state is None or rating is None or self.speed == 0.0:
-            return None
-        revolutions = life(state, rating)
-        return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
 
     @property
     def most_loaded(self) -> dict[str, float] | None:
@@ -248,7 +218,18 @@ def solve_load(
         outputs = [one if one.torque is None else replace(one, torque=part * one.torque) for one in machine.outputs]
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
         found[part * operation.torque] = loaded.operating_point(operation.gravity)
-    bearings = tuple(_loaded_bearing(case, one, machine.speeds[one.mounted.rotor]) for one in point.bearings)
+    ratings, loads, preloads = given_ratings(case), _given_loads(case), _preloads(machine, progress)
+    bearings = tuple(
+        LoadedBearing(
+            one,
+            None
+            if one.rolling is None
+            else BearingLife(one.rolling, ratings.get(one.name), machine.speeds[one.mounted.rotor]),
+            preloads.get(one.name),
+            loads.get(one.name),
+        )
+        for one in point.bearings
+    )
     pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(case, point)))
     gradients = None
     if sensitivity:
@@ -257,14 +238,13 @@ def solve_load(
     return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, found, gradients)
 
 
-def _loaded_bearing(case: Case, load: BearingLoad, speed: float) -> LoadedBearing:
-    """Return a bearing's load beside what the case gives; bearings of a rotor's own file give neither."""
-    given = next((one for one in case.bearing if one.name == load.name), None)
-    if given is None or not isinstance(given.stiffness, RollingStiffness | StopStiffness):
-        return LoadedBearing(load, None, speed)
-    rating = given.stiffness.rolling.dynamic_rating if isinstance(given.stiffness, RollingStiffness) else None
-    force = None if given.load is None else np.array([given.load.x, given.load.y, given.load.z])
-    return LoadedBearing(load, rating, speed, force)
+def _given_loads(case: Case) -> dict[str, FloatArray]:
+    """Force along x, y, z for which the case has the stiffness of a bearing made [N], by the bearings' names."""
+    return {
+        one.name: np.array([one.load.x, one.load.y, one.load.z])
+        for one in case.bearing
+        if isinstance(one.stiffness, RollingStiffness | StopStiffness) and one.load is not None
+    }
 
 
 def find_load(
@@ -296,6 +276,21 @@ def find_load(
     return found, load_warnings(case, found)
 
 
+def _preloads(machine: Machine, progress: Progress) -> dict[str, float]:
+    """Axial force of each rolling bearing's rows without torque and weight [N], on shafts with a preloaded bearing."""
+    elements = {one.bearing.name: one.elements for one in machine.bearings}
+    preloaded = {one.rotor for one in machine.bearings if one.elements is not None and one.elements.is_preloaded}
+    if not preloaded:
+        return {}
+    progress("preload of the bearings")
+    found = {}
+    for one in machine.preload_point().bearings:
+        rolling = elements[one.name]
+        if one.rolling is not None and rolling is not None and rolling.thrust_senses and one.mounted.rotor in preloaded:
+            found[one.name] = max(map(abs, one.rolling.row_thrusts)) + 0.0
+    return found
+
+
 def require_load(case: Case) -> None:
     """Refuse a case whose machine nothing loads, before anything is solved.
 
@@ -306,9 +301,7 @@ def require_load(case: Case) -> None:
     """
     require(case, "rotor", "bearing", "operation", command="load")
     if not case.is_loaded:
-        expected = (
-            "a torque, which loads the flanks" if case.gear_pair else "a torque, or gravity, which loads the shafts"
-        )
+        expected = "a torque, or gravity, which load the shafts, or a preload of rolling bearings"
         raise CaseError([Problem("operation.torque", 0.0, expected)])
     require_machine(case)
 
@@ -356,13 +349,15 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
             bearing=name,
             tilt_rad=one.load.tilt,
         )
-    if one.life is not None and one.life < _SHORT_LIFE:
+    rated = one.rated
+    if rated is not None and rated.life is not None and rated.life < _SHORT_LIFE:
+        source = "the case gives" if rated.rating_from == "case" else "its geometry has"
         yield warning(
             "bearing life",
-            f'bearing "{name}": a rated life L10 of {one.life:.3g} h, below {_SHORT_LIFE:.0f} h, by the dynamic rating '
-            f"of {one.rating:.4g} N that " + ("its geometry has" if one.given_rating is None else "the case gives"),
+            f'bearing "{name}": a rated life L10 of {rated.life:.3g} h, below {_SHORT_LIFE:.0f} h, by the dynamic '
+            f"rating of {rated.rating:.4g} N that {source}",
             bearing=name,
-            life_h=one.life,
+            life_h=rated.life,
         )
 
 
@@ -385,7 +380,7 @@ def _stiffness_warnings(case: Case, solved: SolvedLoad, told: set[str]) -> Itera
         mounted, name = one.load.mounted, one.load.name
         if name not in depend - told or mounted.needs_load:
             continue
-        taken = np.diag(mounted.bearing.at_speed(one.speed).spatial_stiffness)[:3]
+        taken = np.diag(mounted.bearing.at_speed(solved.machine.speeds[mounted.rotor]).spatial_stiffness)[:3]
         found = np.diag(one.load.stiffness)[:3]
         apart = np.abs(taken - found) > _DIFFERENCE * np.maximum(taken, found)
         # A direction in which the bearing is soft beside the others holds nothing there.
