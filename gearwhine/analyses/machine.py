@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, require, swept_keys
+from gearwhine.case import Case, dump_case, require, swept_keys
 from gearwhine.from_case.machine import basis_error, point_of_pairs, require_machine, solve_machine, solve_pairs
 from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.output.dataset import labelled
@@ -14,7 +14,7 @@ from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
-from gearwhine.results.operating_point import LOAD, load_document, load_part
+from gearwhine.results.operating_point import LOAD, kept_options, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.steady_state import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
@@ -173,6 +173,7 @@ def operating_point(
         _figures=figures,
         _files=files,
         _housing=housing,
+        _kept=lambda place, earlier: kept_options(dump_case(case), result.document, place, earlier),
     )
     return result
 
