@@ -15,6 +15,7 @@ from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
     from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.operating_shapes import RunLine
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
 
@@ -137,15 +138,30 @@ def draw_lines(
     CaseError
         As :func:`gearwhine.solve.operating_shapes.read_spectrum_lines`.
     """
-    from gearwhine.drawing_process import draw_in_process
-    from gearwhine.solve.operating_shapes import lines_document, operating_shape_of_line, read_spectrum_lines
+    from gearwhine.solve.operating_shapes import lines_document, read_spectrum_lines
     from housing.pictures.drawn_shapes import drawn_housing
 
     lines = read_spectrum_lines(folder, frequencies, housing)
+    draw_operating_shapes(housing, lines, view, mode_format, place, progress)
+    return lines_document(lines, housing, drawn_housing(housing.mesh))
+
+
+def draw_operating_shapes(
+    housing: SolvedHousing,
+    lines: "Sequence[RunLine]",
+    view: str,
+    mode_format: ModeFormat,
+    place: Path,
+    progress: Progress,
+) -> list[str]:
+    """Draw the housing at lines of a run into ``place``, and name the files: ``line-1283.3Hz.png`` and so on."""
+    from gearwhine.drawing_process import draw_in_process
+    from gearwhine.solve.operating_shapes import operating_shape_of_line
+    from housing.pictures.drawn_shapes import drawn_housing
+
     surface = drawn_housing(housing.mesh)
     shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
-    draw_in_process(surface, shapes, place, mode_format, view, progress)
-    return lines_document(lines, housing, surface)
+    return draw_in_process(surface, shapes, place, mode_format, view, progress)
 
 
 def draw_deflection(

@@ -68,10 +68,11 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
 
 def report_case(case: Case, folder: Path) -> dict[str, Any]:
     """Write the results in a folder as one HTML page, which marks those that no longer fit the case."""
-    from gearwhine.output.html import report_page
+    from gearwhine.output.report import Contents, report_page
     from gearwhine.results import chapters_of
+    from gearwhine.results.first_page import first_page
 
-    page = report_page(folder, chapters_of, case)
+    page = report_page(folder, Contents(chapters_of, first_page), case)
     with staging(folder) as place:
         (place / "report.html").write_text(page, encoding="utf-8")
     return {"folder": str(folder), "files": ["report.html"]}

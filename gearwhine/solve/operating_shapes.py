@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from gearwhine.solve.housing_modes import SolvedHousing
 from housing import HousingError
 from housing.modes.receptance import OperatingShape
 from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
+
+if TYPE_CHECKING:
+    from gearwhine.solve.signature import SolvedSignature
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -81,6 +84,35 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
             OperatingShape(_TWO_PI * float(lines[place]), spectrum[:, place, 0] + 1j * spectrum[:, place, 1]),
             _name(content, float(lines[place]), spacing),
         )
+        for place in sorted(chosen)
+    ]
+
+
+def highest_lines(signature: "SolvedSignature", limit: float, most: int) -> list[RunLine]:
+    """Return the lines of a run at which its sensors move most, ascending.
+
+    Parameters
+    ----------
+    signature : SolvedSignature
+        Of the run, whose lines are traced.
+    limit : float
+        Frequency up to which the modes are complete [Hz].
+    most : int
+        Number of lines: the highest of each sensor come first, then the second ones, each frequency once.
+    """
+    found = signature.housing_lines(limit)
+    if found is None or len(found[0]) < _TOLD:
+        return []
+    frequencies, spectrum, _ = found
+    chosen: dict[int, str] = {}
+    for rank in range(max(map(len, signature.lines.values()), default=0)):
+        for lines in signature.lines.values():
+            if rank < len(lines) and len(chosen) < most:
+                place = int(np.argmin(np.abs(frequencies - lines[rank].frequency)))
+                if spectrum[:, place].any():
+                    chosen.setdefault(place, lines[rank].named.name)
+    return [
+        RunLine(OperatingShape(_TWO_PI * float(frequencies[place]), spectrum[:, place]), chosen[place])
         for place in sorted(chosen)
     ]
 

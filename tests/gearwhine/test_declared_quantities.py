@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from gearwhine.output.html import report_page
 
 import gearwhine as gw
 from gearwhine.output.dataset import arrays_of, labelled
-from gearwhine.output.html import report_page
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Section, Table, columns_of, percent
 
