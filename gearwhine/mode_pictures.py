@@ -10,8 +10,9 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.output import file_stems
+from gearwhine.output.report import MovingShape
 from gearwhine.progress import Progress
-from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
+from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
     from gearwhine.solve.operating_point import SolvedLoad
@@ -29,6 +30,9 @@ _PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
 _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
 _MOST_MODES = 5000
 _DOMINANT = 8
+_MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
+_BYTES, _BYTES_OF_TRIANGLE = 4.5e6, 20.0  # of all their models, compressed and in base64
+_TRIANGLES = 1500, 10000  # of each, at least and at most
 
 
 def check_request(
@@ -160,8 +164,33 @@ def draw_operating_shapes(
     from housing.pictures.drawn_shapes import drawn_housing
 
     surface = drawn_housing(housing.mesh)
-    shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
+    shapes = [operating_shape_of_line(line, housing.modes, surface) for line in lines]
     return draw_in_process(surface, shapes, place, mode_format, view, progress)
+
+
+def moving_shapes(folder: Path) -> list[MovingShape]:
+    """Return all modes stored in a results folder, and the operating shapes at a run's highest lines, as 3D models.
+
+    Parameters
+    ----------
+    folder : path
+        Empty is the list where it holds no modes of a housing that can be read.
+    """
+    from gearwhine.solve.operating_shapes import operating_shape_of_line, stored_lines
+    from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
+    from housing.pictures.gltf import light_model
+    from housing.storage.mode_file import ModeFileError, read_modes
+
+    try:
+        record = read_modes(folder / MODE_CACHE_FILE)
+    except (OSError, ModeFileError):
+        return []
+    surface = drawn_housing(record.mesh)
+    lines = stored_lines(folder, record, _MOVING_LINES)
+    shapes = [operating_shape_of_line(line, record.modes, surface) for line in lines]
+    shapes += drawn_modes(surface, record.modes, range(1, min(len(record.modes.shapes), _MOVING_MODES) + 1))
+    triangles = int(np.clip(_BYTES / (_BYTES_OF_TRIANGLE * len(shapes)), *_TRIANGLES))
+    return [MovingShape(one.name, one.title, one.note, light_model(surface, one, triangles)) for one in shapes]
 
 
 def draw_deflection(

@@ -181,7 +181,7 @@ def test_a_sheet_of_modes_is_left_out_where_each_has_a_picture(tmp_path: Path) -
 
 def test_pictures_are_packed_and_look_the_same(tmp_path: Path) -> None:
     y, x = np.mgrid[0:300, 0:400]
-    flat = np.where(((x // 40 + y // 40) % 2)[..., None], [31, 90, 150], [255, 255, 255]).astype(np.uint8)
+    flat = np.where(((x // 8 + y // 8) % 2)[..., None], [31, 90, 150], [255, 255, 255]).astype(np.uint8)
     shaded = np.stack([255 * x // 399, 255 * y // 299, (x + y) // 3], axis=-1).astype(np.uint8)
     write(tmp_path, {"command": "run"}, 'title = "x"')
     for name, pixels in (("flat", flat), ("shaded", shaded)):

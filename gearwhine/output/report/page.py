@@ -17,12 +17,13 @@ from gearwhine.case import Case, CaseError, Problem, dump_case
 from gearwhine.output.files import SUMMARY
 from gearwhine.output.report.elements import Places, Writer
 from gearwhine.output.report.freshness import mismatches, moment, stored_case
+from gearwhine.output.report.interactive import MovingShape, Scripts, live_parts
 from gearwhine.output.report.pictures import Shown, distribute, figure, pictures_in
 from gearwhine.output.sections import Document, Section
 from gearwhine.output.store import stored_results
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
-_SUMMARY = "summary"
+_SUMMARY, _SHAPES = "summary", "shapes"
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,9 @@ class _Result:
         return distribute(self.chapters, pictures_in(self.place))
 
 
-def report_page(folder: Path, contents: Contents, case: Case | None = None) -> str:
+def report_page(
+    folder: Path, contents: Contents, case: Case | None = None, *, shapes: Sequence[MovingShape] | None = None
+) -> str:
     """Return all results in a folder as HTML, the newest first, each with its time and whether it fits the case.
 
     Parameters
@@ -82,6 +85,8 @@ def report_page(folder: Path, contents: Contents, case: Case | None = None) -> s
         Makes the first page, and the chapters of a command's document.
     case
         Against which the case of each result is held; without it the newest result's.
+    shapes
+        Of the interactive form, which also draws curves and sorts tables; None makes the static one.
 
     Raises
     ------
@@ -102,19 +107,26 @@ def report_page(folder: Path, contents: Contents, case: Case | None = None) -> s
         places.add_sections(result.name, result.chapters, result.pictures[0])
         for path in result.pictures[1]:
             places.add(result.name, Shown(path, "").place)
+    scripts = None if shapes is None else Scripts(shapes)
+    for shape in shapes or ():
+        places.add(_SHAPES, shape.place)
     body = (
         f"<h1>{escape(title)}</h1>\n"
         f'<p class="note">Report of gearwhine {escape(__version__)}; amplitudes are peaks unless they say rms.</p>\n'
         + _first_page(first, results, places)
-        + "".join(_chapters(result, places) for result in results)
+        + ("" if scripts is None else _moving(scripts, places))
+        + "".join(_chapters(result, places, scripts) for result in results)
     )
-    listed = _contents(titled, results, places)
+    listed = _contents(titled, results, places, moving=bool(shapes))
+    policy = _POLICY if scripts is None else scripts.policy()
+    at_the_end = "" if scripts is None else scripts.written()
     folded = f'<nav class="contents" aria-label="Contents"><details><summary>Contents</summary>{listed}</details></nav>'
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}"><style>\n{_style()}</style></head><body>\n'
-        f'<nav class="side" aria-label="Contents">{listed}</nav>\n<main>{folded}\n{body}</main></body></html>\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}"><style>\n{_style()}</style></head><body>\n'
+        f'<nav class="side" aria-label="Contents">{listed}</nav>\n<main>{folded}\n{body}</main>\n'
+        f"{at_the_end}</body></html>\n"
     )
 
 
@@ -175,10 +187,16 @@ def _first_page(first: Sequence[Section], results: Sequence[_Result], places: Pl
     return f'<div class="first" id="{places.identifier(_SUMMARY, _SUMMARY)}">{"".join(parts)}</div>\n'
 
 
-def _chapters(result: _Result, places: Places) -> str:
+def _moving(scripts: Scripts, places: Places) -> str:
+    """Return the viewer of the shapes that move."""
+    viewer = scripts.viewer([places.identifier(_SHAPES, shape.place) for shape in scripts.shapes])
+    return f'<section id="{_SHAPES}"><h2>Shapes that move</h2>\n{viewer}</section>\n' if viewer else ""
+
+
+def _chapters(result: _Result, places: Places, scripts: Scripts | None) -> str:
     """Return one command's results."""
     given, others = result.pictures
-    writer = Writer(result.name, places, given, {})
+    writer = Writer(result.name, places, given, live_parts(scripts, result.place, result.chapters))
     parts = [writer.chapter(section) if section.title else writer.content(section) for section in result.chapters]
     if others:
         shown = [Shown(path, "") for path in others]
@@ -210,7 +228,7 @@ def _case(place: Path) -> str:
     return f'<details class="level3"><summary>{heading}</summary><pre>{escape(text)}</pre></details>\n'
 
 
-def _contents(first: Sequence[Section], results: Sequence[_Result], places: Places) -> str:
+def _contents(first: Sequence[Section], results: Sequence[_Result], places: Places, *, moving: bool) -> str:
     """Return the contents: the first page's sections, and each command with its chapters."""
 
     def entry(result: str, name: str, title: str, inner: str = "") -> str:
@@ -221,6 +239,7 @@ def _contents(first: Sequence[Section], results: Sequence[_Result], places: Plac
         return f"<ul>{listed}</ul>" if listed else ""
 
     parts = [entry(_SUMMARY, _SUMMARY, "Summary", chapters(_SUMMARY, first))] if first else []
+    parts += [f'<li><a href="#{_SHAPES}">Shapes that move</a></li>\n'] if moving else []
     parts += [
         entry(result.name, result.heading, result.heading, chapters(result.name, result.chapters)) for result in results
     ]

@@ -15,7 +15,7 @@ from PIL import Image
 from gearwhine.output.sections import Picture, Section
 
 _LARGEST = 8 << 20  # bytes: a larger file is no picture of ours
-_LIGHT = 2 << 10  # bytes: not worth packing
+_LIGHT = 512  # bytes: not worth packing
 _COLOURS, _QUALITY = 256, 85  # of a palette, and of WebP
 _SMALL, _WIDE = 720, 1400  # pixels across, of a small picture and of any
 
@@ -73,16 +73,17 @@ def _repeated(declared: Picture, files: Sequence[Path]) -> bool:
     return bool(declared.sheet_of) and any(path.stem.startswith(declared.sheet_of) for path in files)
 
 
-def figure(shown: Shown, identifier: str, beside: str = "") -> str:
-    """Return a picture with its caption as HTML; ``beside`` is HTML behind the caption."""
+def figure(shown: Shown, identifier: str) -> str:
+    """Return a picture with its caption as HTML."""
     caption = escape(shown.caption or f"File {shown.path.name}.")
     packed = _packed(shown.path, _SMALL if shown.small else _WIDE)
     if packed is None:
         return f'<figure id="{identifier}"><figcaption>{caption} The file cannot be read.</figcaption></figure>\n'
+    name = escape(shown.path.stem)
     kind, data, (width, height) = packed
     encoded = base64.b64encode(data).decode("ascii")
     image = f'<img alt="{caption}" width="{width}" height="{height}" src="data:{kind};base64,{encoded}">'
-    return f'<figure id="{identifier}">{image}<figcaption>{caption}{beside}</figcaption></figure>\n'
+    return f'<figure id="{identifier}" data-picture="{name}">{image}<figcaption>{caption}</figcaption></figure>\n'
 
 
 def _packed(path: Path, widest: int) -> tuple[str, bytes, tuple[int, int]] | None:
