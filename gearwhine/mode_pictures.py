@@ -31,7 +31,7 @@ _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density end
 _MOST_MODES = 5000
 _DOMINANT = 8
 _MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
-_BYTES, _BYTES_OF_TRIANGLE = 4.5e6, 20.0  # of all their models, compressed and in base64
+_BYTES, _BYTES_OF_TRIANGLE = 5e6, 20.0  # of all their models, compressed and in base64
 _TRIANGLES = 1500, 10000  # of each, at least and at most
 
 

@@ -11,7 +11,7 @@ from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, is_number
 
 _LONGEST = 60  # of an identifier [characters]
-_WRAPPED = 30  # characters of a cell from which on its column may wrap
+_WRAPPED = 20  # characters of a cell from which on its column may wrap
 
 
 class Places:
@@ -167,7 +167,8 @@ class Writer:
     def _cells(self, columns: Sequence[Column], row: Row, texts: Sequence[str], classes: Sequence[str]) -> str:
         parts = []
         for column, text, kind in zip(columns, texts, classes, strict=True):
-            told = escape(text) if text != NOTHING else "–"
+            # No line ends before a per cent sign.
+            told = escape(text).replace(" %", "\N{NO-BREAK SPACE}%") if text != NOTHING else "–"
             target = self._places.find(self._result, column.link(row)) if column.link and text != NOTHING else None
             parts.append(f"<td{kind}>" + (f'<a href="#{target}">{told}</a>' if target else told) + "</td>")
         return "".join(parts)

@@ -27,7 +27,7 @@
 
   async function copy(table, button) {
     const rows = [...table.tHead.rows, ...table.tBodies[0].rows];
-    const text = rows.map((row) => texts(row).join("\t")).join("\n");
+    const text = rows.map((row) => texts(row).join("\t")).join("\n").replaceAll("\u00a0", " ");
     try {
       await navigator.clipboard.writeText(text);
     } catch {
@@ -142,9 +142,10 @@
     const layout = {
       font: { family: "system-ui, sans-serif", size: 13, color: ink },
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      margin: { l: 76, r: 16, t: 36, b: 52 }, hovermode: "closest",
+      margin: { l: 84, r: 16, t: 36, b: 52 }, hovermode: "closest",
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: "#8a9097", activecolor: ink },
       xaxis: { ...axis, title: { text: axes[0] } },
-      yaxis: { ...axis, title: { text: curves ? value : axes[1] }, type: curves && logarithmic ? "log" : "linear" },
+      yaxis: { ...axis, title: { text: lines(curves ? value : axes[1]) }, type: curves && logarithmic ? "log" : "linear" },
       legend: { orientation: "h", y: 1.14, x: 0 },
     };
     let traces;
@@ -163,6 +164,8 @@
     }
     Plotly.react(frame, traces, layout, { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] });
   }
+  // Names of axes on lines of some thirty letters.
+  const lines = (text) => escaped(text).replace(/(.{18,30}) /g, "$1<br>");
   // Plotly reads some tags in names.
   const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 

@@ -106,8 +106,8 @@ class Scripts:
         )
         return (
             # The viewer of shapes has a decoder in WebAssembly.
-            f"default-src 'none'; script-src {digests} 'wasm-unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:; "
-            "connect-src blob: data:; base-uri 'none'; form-action 'none'"
+            f"default-src 'none'; script-src {digests} 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
+            "img-src data: blob:; connect-src blob: data:; base-uri 'none'; form-action 'none'"
         )
 
     def written(self) -> str:
@@ -144,8 +144,14 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
         array = array.isel({declared.along[0]: dataset[declared.along[0]].values <= limit})
     others = [str(name) for name in array.dims if name not in declared.along]
     stacked = array.stack(signal=others).transpose("signal", *declared.along[::-1])
-    names = [_label(label) for label in stacked["signal"].values]
+    told = [place for place, name in enumerate(others) if array.sizes[name] > 1]
+    labels = [label if isinstance(label, tuple) else (label,) for label in stacked["signal"].values]
+    names = [", ".join(str(label[place]) for place in told or range(len(label))) for label in labels]
     values = np.asarray(stacked.values, dtype=np.float64)
+    live = np.nanmax(np.abs(values), axis=tuple(range(1, values.ndim)), initial=0.0) > 0.0
+    names, values = [name for name, moves in zip(names, live, strict=True) if moves], values[live]
+    if not names:
+        return []
     axes = [np.asarray(dataset[name].values, dtype=np.float64)[: array.sizes[name]] for name in declared.along]
     common = {
         "caption": declared.caption,
@@ -165,14 +171,10 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
     return found
 
 
-def _label(label: object) -> str:
-    parts = label if isinstance(label, tuple) else (label,)
-    return ", ".join(str(part) for part in parts)
-
-
 def _named(array: Any, otherwise: str) -> str:
     unit = array.attrs.get("units", "")
-    return f"{array.attrs.get('long_name', otherwise)}" + (f" [{unit}]" if unit and unit != "1" else "")
+    name = str(array.attrs.get("long_name", otherwise)).rstrip(".")
+    return f"{name} [{unit}]" if unit and unit != "1" else name
 
 
 def _listed(values: npt.NDArray[np.float64]) -> list[float | None]:
