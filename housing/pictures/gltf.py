@@ -119,8 +119,8 @@ def _decimated(surface: DrawnHousing, shape: DrawnShape, most: int) -> tuple[Dra
 def _model(surface: DrawnHousing, shape: DrawnShape, extras: Mapping[str, Any], *, light: bool) -> bytes:
     """Return the whole GLB file of one motion.
 
-    A real motion has one target, Re U, that swings as a sine. A complex one has two, Re U and -Im U at its widest phase:
-    u = Re U cos - Im U sin.
+    A real motion has one target, Re U, that swings as a sine. A complex one has two, Re U and -Im U, from its widest
+    phase: u = Re U cos - Im U sin.
     """
     rest, skin = surface.rest, Skin(surface.nodes, surface.triangles)
     scale = DRAWN_SCALE * surface.diagonal
