@@ -11,12 +11,14 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.output import file_stems
 from gearwhine.output.quantity import warning
+from gearwhine.output.report import MovingShape
 from gearwhine.progress import Progress
-from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
+from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
     from gearwhine.solve.load_sensitivity import LoadSensitivity
     from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.operating_shapes import RunLine
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
     from housing.pictures.drawn_shapes import DrawnShape
@@ -32,6 +34,9 @@ _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density end
 _DB = 20.0 / np.log(10.0)  # of a level, in one relative change of an amplitude
 _MOST_MODES = 5000
 _DOMINANT = 8
+_MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
+_BYTES, _BYTES_OF_TRIANGLE = 5e6, 20.0  # of all their models, compressed and in base64
+_TRIANGLES = 1500, 10000  # of each, at least and at most
 
 
 def check_request(
@@ -141,15 +146,56 @@ def draw_lines(
     CaseError
         As :func:`gearwhine.solve.operating_shapes.read_spectrum_lines`.
     """
-    from gearwhine.drawing_process import draw_in_process
-    from gearwhine.solve.operating_shapes import lines_document, operating_shape_of_line, read_spectrum_lines
+    from gearwhine.solve.operating_shapes import lines_document, read_spectrum_lines
     from housing.pictures.drawn_shapes import drawn_housing
 
     lines = read_spectrum_lines(folder, frequencies, housing)
+    draw_operating_shapes(housing, lines, view, mode_format, place, progress)
+    return lines_document(lines, housing, drawn_housing(housing.mesh))
+
+
+def draw_operating_shapes(
+    housing: SolvedHousing,
+    lines: "Sequence[RunLine]",
+    view: str,
+    mode_format: ModeFormat,
+    place: Path,
+    progress: Progress,
+) -> list[str]:
+    """Draw the housing at lines of a run into ``place``, and name the files: ``line-1283.3Hz.png`` and so on."""
+    from gearwhine.drawing_process import draw_in_process
+    from gearwhine.solve.operating_shapes import operating_shape_of_line
+    from housing.pictures.drawn_shapes import drawn_housing
+
     surface = drawn_housing(housing.mesh)
-    shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
-    draw_in_process(surface, shapes, place, mode_format, view, progress)
-    return lines_document(lines, housing, surface)
+    shapes = [operating_shape_of_line(line, housing.modes, surface) for line in lines]
+    return draw_in_process(surface, shapes, place, mode_format, view, progress)
+
+
+def moving_shapes(folder: Path) -> list[MovingShape]:
+    """Return all modes stored in a results folder, and the operating shapes at a run's highest lines, as 3D models.
+
+    Parameters
+    ----------
+    folder : path
+        Empty is the list where it holds no modes of a housing that can be read.
+    """
+    from gearwhine.solve.operating_shapes import operating_shape_of_line, stored_lines
+    from housing.errors import ModeFileError
+    from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
+    from housing.pictures.gltf import light_model
+    from housing.storage.mode_file import read_modes
+
+    try:
+        record = read_modes(folder / MODE_CACHE_FILE)
+    except (OSError, ModeFileError):
+        return []
+    surface = drawn_housing(record.mesh)
+    lines = stored_lines(folder, record, _MOVING_LINES)
+    shapes = [operating_shape_of_line(line, record.modes, surface) for line in lines]
+    shapes += drawn_modes(surface, record.modes, range(1, min(len(record.modes.shapes), _MOVING_MODES) + 1))
+    triangles = int(np.clip(_BYTES / (_BYTES_OF_TRIANGLE * len(shapes)), *_TRIANGLES))
+    return [MovingShape(one.name, one.title, one.note, light_model(surface, one, triangles)) for one in shapes]
 
 
 def draw_load_pictures(

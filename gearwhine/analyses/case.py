@@ -70,15 +70,38 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     return {"folder": str(folder), "files": [source.name for source in sources]}
 
 
-def report_case(case: Case, folder: Path) -> dict[str, Any]:
-    """Write the results in a folder as one HTML page, which marks those that no longer fit the case."""
-    from gearwhine.output.html import report_page
-    from gearwhine.results import chapters_of
+def report_case(case: Case, folder: Path, *, interactive: bool = False, progress: Progress = silent) -> dict[str, Any]:
+    """Write the results in a folder as one HTML page, which marks those that no longer fit the case.
 
-    page = report_page(folder, chapters_of, case)
+    Parameters
+    ----------
+    case : Case
+    folder : path
+        With results of one command or several.
+    interactive : bool
+        Whether shapes move, curves can be zoomed and tables be sorted: ``report-interactive.html`` in place of
+        ``report.html``, which has no script.
+    progress : callable
+
+    Raises
+    ------
+    CaseError
+        Where the folder holds no results, or a summary cannot be read.
+    """
+    from gearwhine.output.report import Contents, report_page
+    from gearwhine.results import chapters_of
+    from gearwhine.results.first_page import first_page
+
+    name, shapes = "report.html", None
+    if interactive:
+        from gearwhine.mode_pictures import moving_shapes
+
+        progress("modelling the shapes that move")
+        name, shapes = "report-interactive.html", moving_shapes(folder)
+    page = report_page(folder, Contents(chapters_of, first_page), case, shapes=shapes)
     with staging(folder) as place:
-        (place / "report.html").write_text(page, encoding="utf-8")
-    return {"folder": str(folder), "files": ["report.html"]}
+        (place / name).write_text(page, encoding="utf-8")
+    return {"folder": str(folder), "files": [name]}
 
 
 _EXPORTS = "exports"

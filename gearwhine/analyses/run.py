@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine, solve_pairs
-from gearwhine.mode_pictures import draw_load_pictures, draw_modes
+from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.output.quantity import add_warnings, joined
@@ -30,6 +30,7 @@ from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import MODE_CACHE_FILE, solve_housing, write_mode_cache
 from gearwhine.solve.operating_point import find_load
+from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, unstable_modes_warnings
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
@@ -49,6 +50,8 @@ if TYPE_CHECKING:
     from gearwhine.solve.signature import SolvedSignature
     from gearwhine.solve.transient import SolvedTransient
     from housing.correlation import Comparison
+
+_DRAWN_LINES = 6  # operating shapes of a run
 
 
 def run(
@@ -177,6 +180,10 @@ def run(
             draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress)
             if load is not None:
                 draw_load_pictures(solved.housing, load, place, progress)
+            if solved.transient is not None and solved.signature is not None:
+                lines = highest_lines(solved.signature, solved.transient.trusted_limit, _DRAWN_LINES)
+                if lines:
+                    draw_operating_shapes(solved.housing, lines, "iso", "png", place, progress)
 
     return Result(
         "run",

@@ -64,15 +64,29 @@ def examples(
         hand_over(copy_example(name, common.output or Path()), common, show_files)
 
 
-def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
-    """Write the results in OUT (default: ./<case>-results) as one HTML page, report.html."""
+def report(
+    case: CaseName,
+    *,
+    interactive: Annotated[
+        bool,
+        Parameter(
+            name="--interactive",
+            negative=(),
+            help="Write report-interactive.html: shapes move, curves can be zoomed and tables sorted.",
+        ),
+    ] = False,
+    common: Common = NONE_GIVEN,
+) -> None:
+    """Write the results in OUT (default: ./<case>-results) as one HTML page without scripts, report.html."""
     from gearwhine.analyses.case import report_case
     from gearwhine.output.terminal import shown_by
 
     on_case(
         case,
         common,
-        lambda given, progress: report_case(given, results_folder(case, common)),
+        lambda given, progress: report_case(
+            given, results_folder(case, common), interactive=interactive, progress=progress
+        ),
         shown_by(lambda document: ()),
     )
 

@@ -113,7 +113,8 @@ PRESENTATION = (
     "gearwhine.drawing_process",
     "gearwhine.figures",
     "gearwhine.mode_pictures",
-    "gearwhine.output.html",
+    "gearwhine.output.export",
+    "gearwhine.output.report",
     "gearwhine.output.terminal",
     "housing.pictures",
 )

@@ -28,6 +28,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (system.report, document.get("system", document if "stability" in document else {})),
         (run.report, document if "steps" in document else {}),
         (sweep.report, document if "points" in document and "axes" in document else {}),
+        (housing.render_report, document if document.get("command") == "render" else {}),
         (steady.report, document if "motions" in document else {}),
     )
     return tuple(make(given) for make, given in makers if given)

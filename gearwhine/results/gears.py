@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,9 @@ from coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of
 from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
 from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
 from gearwhine.from_case.gear_pairs import geometry_warnings
+from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, percent, table_of
 from gearwhine.results.operating_point import misalignment_words
 
 if TYPE_CHECKING:
@@ -474,7 +476,25 @@ def report(document: Document) -> Section:
     """Chapter of the report: all pairs beside each other, then each as the terminal shows it."""
     overview = table_of(OVERVIEW, document["pairs"])
     inner = sections(document) if all("path_of_contact" in pair for pair in document["pairs"]) else ()
-    return Section("Gears", overview, pictures=("gears-",), inner=inner)
+    stems = file_stems([f"{pair['driver']}-{pair['driven']}" for pair in document["pairs"]], "gears-")
+    inner = tuple(
+        replace(section, pictures=tuple(Picture(f"{stem}-{kind}", caption) for kind, caption in _PICTURES.items()))
+        for section, stem in zip(inner, stems, strict=False)
+    )
+    return Section("Gears", overview, pictures=(Picture("gears-", "Gear pair."),), inner=inner)
+
+
+_PICTURES = {
+    "teeth": "Teeth in mesh, to scale: circles, line of action and the points where contact begins and ends.",
+    "stiffness": "Mesh stiffness over a mesh period: it drops where a pair of teeth leaves, which excites the machine.",
+    "transmission-error": "Transmission error over a mesh period without load and under it, and its harmonics: the "
+    "less it varies, the quieter the pair.",
+    "path": "Share of the load, contact pressure and sliding along the path of contact.",
+    "pattern": "Contact pattern over the face and the path of contact.",
+    "flanks": "Flanks against the perfect involute, from the form circle to the tip, and errors of pitch by tooth.",
+    "harris-map": "Harris map: transmission error over a mesh period by torque: least where the pair is quiet.",
+}
+"""Captions of a pair's figures, by the last part of their names."""
 
 
 def sections(document: Document) -> tuple[Section, ...]:

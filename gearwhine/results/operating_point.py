@@ -11,7 +11,7 @@ import numpy as np
 from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.output.files import finite, json_text
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Row, Section, Table, columns_of, table_of
+from gearwhine.output.sections import Column, Document, Picture, Row, Section, Table, columns_of, table_of
 from gearwhine.output.store import Kept
 from housing.storage.netcdf import read_netcdf
 
@@ -667,7 +667,20 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def report(document: Document) -> Section:
     """Chapter of the report: as on the terminal, with the pictures."""
-    return Section("Operating point", tuple(_content(document)), pictures=("load",))
+    return Section("Operating point", tuple(_content(document)), pictures=_PICTURES)
+
+
+_PICTURES = (
+    Picture("load-misalignment", "Misalignment of the flanks by its causes, which may cancel; black: their sum."),
+    Picture("load-face", "Gap of the flanks before the load, and the load over the face: the more even, the better."),
+    Picture("load-pattern", "Contact pattern over the face and the path of contact: loaded edges shorten life."),
+    Picture("load-shaft", "Deflected shaft in both planes, enlarged; arrows: forces on it."),
+    Picture("load-housing", "Housing under the mean load, enlarged; colour: displacement."),
+    Picture(
+        "load-sensitivity", "Material added on blue places lowers the misalignment of the pair, on red ones raises it."
+    ),
+    Picture("load-over-torque", "Misalignment, K_Hβ, mesh stiffness and transmission error over the torque."),
+)
 
 
 _TORQUE_COLUMNS = (

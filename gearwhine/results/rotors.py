@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of, warning
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results.housing import COUNT_CERTIFICATE
 
 if TYPE_CHECKING:
@@ -492,8 +494,26 @@ _SAME = 1e-9  # two frequencies nearer than this part of them are one that both 
 def report(document: Document) -> Section:
     """Chapter of the report: all rotors beside each other, then each as the terminal shows it."""
     overview = table_of(columns_of(ROTOR), document["rotors"])
-    pictures = ("rotor", "shaft", "campbell-rotor", "critical", "unbalance")
-    return Section("Rotors", overview, pictures=pictures, inner=sections(document))
+    stems = file_stems([rotor["name"] for rotor in document["rotors"]], "rotor-")
+    inner = tuple(
+        replace(section, pictures=tuple(Picture(f"{stem}-{kind}", caption) for kind, caption in _PICTURES.items()))
+        for section, stem in zip(sections(document), stems, strict=True)
+    )
+    return Section("Rotors", overview, pictures=(Picture("rotor-", "Rotor."),), inner=inner)
+
+
+_PICTURES = {
+    "shaft": "Shaft to scale with its gears, discs and bearings.",
+    "modes": "Bending modes at rest, each to a scale of its own; triangles: bearings.",
+    "torsional-response": "Response to torques that vary, over their frequency: peaks are torsional resonances.",
+    "torsion": "Torsional modes: angle of twist along the shaft.",
+    "whirl": "Whirl at the speed of operation: orbits along the shaft, forward or backward.",
+    "campbell": "Campbell diagram: whirl frequencies over speed; a critical speed stands where an order meets one.",
+    "critical-map": "Undamped critical speeds over the stiffness of the bearings: flat branches do not depend on it.",
+    "unbalance": "Response to unbalance and bow over speed: peaks stand at critical speeds.",
+    "static": "Deflection of the rotor under its weight, and the forces that hold it.",
+}
+"""Captions of a rotor's figures, by the last part of their names."""
 
 
 def sections(document: Document) -> tuple[Section, ...]:

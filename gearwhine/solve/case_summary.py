@@ -116,9 +116,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
             material_of(case, name)
         mesh, warnings = mesh_health.preview_mesh(case, progress)
-    speeds = rotor_speeds(case) if case.operation is not None else {}
-    rotors = tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
-    pairs = tuple(_checked_pairs(case))
+    rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
     if case.measured is not None and case.measured.survey is not None:
@@ -126,7 +124,14 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     return CheckedCase(case, mesh, rotors, pairs, axial_locations(case), warnings)
 
 
-def _checked_pairs(case: Case) -> Iterator[CheckedPair]:
+def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:
+    """Build the rotors of a case, each with its speed."""
+    speeds = rotor_speeds(case) if case.operation is not None else {}
+    return tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
+
+
+def checked_pairs(case: Case) -> Iterator[CheckedPair]:
+    """Build the gear pairs of a case one by one, each with its mesh frequency and torque."""
     number = len(case.gear_pair)
     frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
     torques = pair_torques(case) if case.operation is not None else (None,) * number
