@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from coupling import MountedBearing as MountedBearing
     from coupling import Output as Output
     from coupling import Shaft as Shaft
+    from coupling import ShaftForce as ShaftForce
     from coupling import ShaftGear as ShaftGear
     from coupling.gears import Gear as Gear
     from coupling.gears import GearError as GearError
@@ -66,7 +67,7 @@ except PackageNotFoundError:  # run from a checkout that is not installed
     __version__ = "0+unknown"
 
 _HOMES = {
-    "coupling": ("CouplingError", "Machine", "MountedBearing", "Output", "Shaft", "ShaftGear"),
+    "coupling": ("CouplingError", "Machine", "MountedBearing", "Output", "Shaft", "ShaftForce", "ShaftGear"),
     "coupling.gears": ("Gear", "GearError"),
     "coupling.gears.loaded.gear_pair": ("GearPair",),
     "gearwhine.analyses.result": ("Result",),

@@ -47,6 +47,7 @@ from coupling.machine.loads import (
     Drive,
     Loads,
     MachineCoordinates,
+    ShaftForce,
     Unbalance,
     base_loads,
     constant_torques,
@@ -80,7 +81,7 @@ class CoupledMachine:
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
         couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
-    unbalances, bows, torques, drives, base, gravity
+    unbalances, bows, torques, drives, base, gravity, forces
         The loads in the system.
     dashpots : tuple of ShaftDashpots
         In the rotors' couplings.
@@ -98,6 +99,7 @@ class CoupledMachine:
     base: BaseMotion | None = None
     gravity: tuple[float, ...] | None = None
     dashpots: tuple[ShaftDashpots, ...] = ()
+    forces: tuple[ShaftForce, ...] = ()
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -182,6 +184,7 @@ class CoupledMachine:
             base=self.base,
             gravity=self.gravity,
             dashpots=self.dashpots,
+            forces=self.forces,
         )
 
 
@@ -200,6 +203,7 @@ def assemble_machine(
     gravity: Sequence[float] | None = None,
     rates: tuple[float, float] = (1.0, 1.0),
     dashpots: Sequence[ShaftDashpots] = (),
+    forces: Sequence[ShaftForce] = (),
 ) -> CoupledMachine:
     """Assemble the coupled system of components that exist already; :class:`coupling.Machine` makes them of its parts.
 
@@ -209,7 +213,7 @@ def assemble_machine(
         The components.
     speeds : dict of str to float
         Signed speed of each rotor [rad/s].
-    bearings, meshes, unbalances, bows, torques
+    bearings, meshes, unbalances, bows, torques, forces
         Connectors and loads.
     drives
         Stations of the torques that accelerate a train, see
@@ -271,6 +275,8 @@ def assemble_machine(
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
     loads = _loads(coordinates, bearings, unbalances, bows, torques, base, gravity)
+    for force in forces:
+        coordinates.add_force(loads, force)
     for linear, _ in held:
         if linear.offset is not None:
             loads.constant -= linear.directions @ linear.offset
@@ -303,6 +309,7 @@ def assemble_machine(
         base,
         None if gravity is None else tuple(gravity),
         tuple(dashpots),
+        tuple(forces),
     )
 
 

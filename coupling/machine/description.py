@@ -39,7 +39,7 @@ from coupling.machine.gear_train import (
     require_balanced_outputs,
     require_one_plane,
 )
-from coupling.machine.loads import BowReactions, Torque, Unbalance, constant_torques
+from coupling.machine.loads import BowReactions, ShaftForce, Torque, Unbalance, constant_torques
 from coupling.machine.parts import (
     CONSTANT,
     Driving,
@@ -92,6 +92,8 @@ class Machine:
     housing : housing.HousingModes or HousingComponent, optional
     torque_at : float
         Station of the input torque, from the left end of its shaft [m].
+    forces : sequence of ShaftForce
+        Constant forces from outside, such as belts and weights on the ends of shafts.
 
     Raises
     ------
@@ -115,6 +117,7 @@ class Machine:
     outputs: Sequence[Output] = ()
     housing: HousingComponent | HousingModes | None = None
     torque_at: float = 0.0
+    forces: Sequence[ShaftForce] = ()
 
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
@@ -284,6 +287,7 @@ class Machine:
             base=driving.base,
             gravity=driving.gravity,
             dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
+            forces=self.forces,
         )
 
     def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:
@@ -325,12 +329,13 @@ class Machine:
                 self.housing_component,
                 self.constant_torques,
                 gravity,
+                self.forces,
             )
         except EquilibriumNotFoundError as error:
             raise EquilibriumNotFoundError("; ".join((str(error), *self.warnings))) from error
 
     def preload_point(self) -> OperatingPoint:
-        """Solve static equilibrium without torques and weight: the forces with which bearings are preloaded.
+        """Solve static equilibrium without torques, forces and weight: the forces with which bearings are preloaded.
 
         Raises
         ------
@@ -338,7 +343,7 @@ class Machine:
             As :meth:`operating_point`.
         """
         outputs = [one if one.torque is None else replace(one, torque=0.0) for one in self.outputs]
-        return replace(self, torque=0.0, outputs=outputs).operating_point()
+        return replace(self, torque=0.0, outputs=outputs, forces=()).operating_point()
 
     @property
     def needs_operating_point(self) -> bool:
@@ -572,6 +577,7 @@ class Machine:
         gears = self._gears_on(shaft.name)
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
         pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
+        forces = [one for one in self.forces if one.rotor == shaft.name]
         pushed_at += [mounted.bearing.at for mounted in held if isinstance(mounted.law, RollingLaw)]
         modal = modal_rotor(
             self.rotor(shaft.name),
@@ -579,9 +585,9 @@ class Machine:
             frequency_limit=limit,
             count=count,
             gears_at=[gear.at for gear in gears],
-            forces_at=() if shaft.bow is None else shaft.bow.at.tolist(),
+            forces_at=[*(one.at for one in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=pushed_at,
-            thrusts_at=pushed_at,
+            thrusts_at=[*pushed_at, *(one.at for one in forces if one.force[2] != 0.0)],
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 
@@ -605,9 +611,10 @@ class Machine:
         return placed[0], placed[1]
 
     def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
-        """Shaft with nodes at bearings, torques and faces, thickened by the solid bodies of its gears."""
+        """Shaft with nodes at bearings, loads and faces, thickened by the solid bodies of its gears."""
         places = [mounted.bearing.at for mounted in self._bearings_on(shaft.name)]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
+        places += [one.at for one in self.forces if one.rotor == shaft.name]
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:

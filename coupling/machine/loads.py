@@ -1,4 +1,4 @@
-"""Loads on a machine: unbalance, shaft bow, torques, base excitation and gravity, as loads on the coordinates.
+"""Loads on a machine: unbalance, shaft bow, forces, torques, base excitation and gravity, as loads on the coordinates.
 
 Loads act on parts by name. Base excitation and gravity are inertia loads on coordinates that are relative to a moving
 base.
@@ -53,6 +53,15 @@ class BowReactions:
     rotor: str
     at: FloatArray
     forces: npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class ShaftForce:
+    """A constant force along x, y, z [N] on a rotor at a distance from its left end [m], such as the pull of a belt."""
+
+    rotor: str
+    at: float
+    force: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -222,6 +231,22 @@ class MachineCoordinates:
         for at, value in zip(bow.at.tolist(), bow.forces, strict=True):
             force = force + value * self.rotating_force(bow.rotor, at)
         loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
+
+    def add_force(self, loads: Loads, given: ShaftForce) -> None:
+        """Add a constant force on a section of a rotor.
+
+        Raises
+        ------
+        CouplingError
+            Where it has a part along z and nothing holds the rotor along its axis.
+        """
+        rotor = self.rotor(given.rotor)
+        if given.force[2] != 0.0 and rotor.modal.axial is None:
+            raise CouplingError(
+                f"a force of {given.force[2]:.4g} N along z on rotor {given.rotor!r}, which no bearing holds along its "
+                "axis; expected a bearing with axial stiffness, or a force across the axis"
+            )
+        loads.constant += np.array(given.force) @ self.rows(given.rotor, rotor.motions(given.at)[:3])
 
     def add_torque(self, loads: Loads, torque: AnyTorque) -> None:
         """Add a torque: constant, tabled over time, harmonic, or a slope over the speed."""

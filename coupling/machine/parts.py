@@ -11,7 +11,7 @@ from coupling.gears.loaded.gear_pair import GearPair
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing
 from coupling.machine.gear_train import LARGEST_OFFSET, Output
-from coupling.machine.loads import AnyTorque, BaseMotion, Drive
+from coupling.machine.loads import AnyTorque, BaseMotion, Drive, ShaftForce
 from rotors import Disc, Rotor
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
@@ -152,6 +152,11 @@ class MachineParts(Protocol):
         """Position at which the driving torque enters [m]."""
         ...
 
+    @property
+    def forces(self) -> Sequence[ShaftForce]:
+        """Constant forces on the shafts."""
+        ...
+
 
 def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
     """Rotor with the gears on it as discs; a gear without mass and inertias adds none."""
@@ -203,6 +208,7 @@ def require_names(machine: MachineParts) -> None:
     needed += [(f"gear {one.name!r}", "shaft", one.shaft) for one in machine.gears]
     needed += [(pair_label(pair), "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
     needed += [("an output", "shaft", one.shaft) for one in machine.outputs]
+    needed += [("a force", "shaft", one.rotor) for one in machine.forces]
     for where, kind, name in needed:
         if name not in kinds[kind]:
             known = ", ".join(map(repr, kinds[kind])) or "none"
@@ -219,11 +225,12 @@ def require_names(machine: MachineParts) -> None:
 
 
 def require_stations(machine: MachineParts) -> None:
-    """Refuse gears, bearings and torques beyond the ends of their shafts."""
+    """Refuse gears, bearings, torques and forces beyond the ends of their shafts."""
     shafts = {shaft.name: shaft for shaft in machine.shafts}
     stations = [(f"gear {one.name!r}", one.shaft, one.at) for one in machine.gears]
     stations += [(f"bearing {one.bearing.name!r}", one.rotor, one.bearing.at) for one in machine.bearings]
     stations += [("an output", one.shaft, one.at) for one in machine.outputs if one.at is not None]
+    stations += [("a force", one.rotor, one.at) for one in machine.forces]
     if machine.gear_pairs:
         first = next(gear.shaft for gear in machine.gears if gear.name == machine.gear_pairs[0].driver)
         stations.append(("the input torque", first, machine.torque_at))

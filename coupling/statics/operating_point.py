@@ -37,7 +37,7 @@ from coupling.gears.loaded.face_load import FaceLoad
 from coupling.gears.loaded.transmission_error import LoadedMesh
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing, RollingLaw
-from coupling.machine.loads import Torque
+from coupling.machine.loads import ShaftForce, Torque
 from coupling.statics.static_model import (
     ConnectorLaw,
     FaceContactLaw,
@@ -344,6 +344,7 @@ def solve_operating_point(
     housing: HousingComponent | None,
     torques: Sequence[Torque],
     gravity: Sequence[float] | None = None,
+    forces: Sequence[ShaftForce] = (),
 ) -> OperatingPoint:
     """Find the static equilibrium of a machine.
 
@@ -357,6 +358,8 @@ def solve_operating_point(
         Constant ones.
     gravity : sequence of float, optional
         Acceleration of free fall along x, y, z [m/s²].
+    forces : sequence of ShaftForce
+        Constant ones.
 
     Raises
     ------
@@ -365,7 +368,7 @@ def solve_operating_point(
     EquilibriumNotFoundError
         Where no equilibrium is found, or the forces do not balance to `RESIDUAL_BAR`.
     """
-    model = _StaticModel(shafts, bearings, pairs, housing, torques, gravity)
+    model = _StaticModel(shafts, bearings, pairs, housing, torques, gravity, forces)
     return model.solve()
 
 
@@ -380,6 +383,7 @@ class _StaticModel:
         housing: HousingComponent | None,
         torques: Sequence[Torque],
         gravity: Sequence[float] | None,
+        forces: Sequence[ShaftForce],
     ) -> None:
         self.shafts, self.bearings, self.pairs, self.housing = shafts, bearings, pairs, housing
         self.gravity = None if gravity is None else tuple(gravity)
@@ -398,7 +402,7 @@ class _StaticModel:
         self.pedestal_first = {name: size + 2 * n for n, name in enumerate(pedestals)}
         self.size = size + 2 * len(pedestals)
         self.stiffness = self._linear_stiffness()
-        self.load = self._loads(torques)
+        self.load = self._loads(torques, forces)
         self.directions = [self._bearing_rows(one.mounted) for one in bearings]
         approaches = [self._pair_rows(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
@@ -425,8 +429,10 @@ class _StaticModel:
             whole[own, own] = self.housing.stiffness
         return whole
 
-    def _loads(self, torques: Sequence[Torque]) -> FloatArray:
+    def _loads(self, torques: Sequence[Torque], forces: Sequence[ShaftForce]) -> FloatArray:
         load = np.zeros(self.size)
+        for force in forces:
+            load += force.force @ self._section(force.rotor, force.at)[:3]
         for torque in torques:
             part = self._part(torque.rotor)
             load[self.first[part.name] + 6 * part.shaft.node(torque.at) + 5] += torque.value

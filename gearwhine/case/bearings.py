@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from rotors.rolling_bearings import RollingBearing, Row
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
+# As `rotors.rolling_bearings.catalogue` has it, and a test holds: a case is read without numpy, which that room takes.
 CatalogueType = Literal[
     "deep-groove",
     "angular-contact",

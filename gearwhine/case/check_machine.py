@@ -382,7 +382,11 @@ def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 
 def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:
-    """Yield torques that are put on a rotor beyond its end."""
+    """Yield torques and forces that are put on a rotor beyond its end."""
+    for place, force in enumerate(operation.force):
+        rotor = draft.rotor(force.rotor)
+        if rotor is not None:
+            yield from check_station(rotor, force.at, ("operation", "force", place, "at"))
     for place, output in enumerate(operation.output):
         rotor = draft.rotor(output.rotor)
         if rotor is not None and output.at is not None:

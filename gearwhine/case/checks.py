@@ -66,6 +66,8 @@ def check_names(draft: Draft) -> Iterator[Finding]:
     for index, output in draft.raw_entries("operation", "output"):
         shafts = rotors or gears
         yield from _check_reference(output, ("operation", "output", index, "rotor"), "rotor", shafts)
+    for index, force in draft.raw_entries("operation", "force"):
+        yield from _check_reference(force, ("operation", "force", index, "rotor"), "rotor", rotors)
 
 
 def _check_materials(draft: Draft) -> Iterator[Finding]:

@@ -124,13 +124,13 @@ class Case(Table):
 
     @property
     def is_loaded(self) -> bool:
-        """Whether a torque, weight or a preload loads the machine of the case, so that it has an operating point."""
+        """Whether torque, force, weight or preload loads the machine of the case, so that it has an operating point."""
         operation = self.operation
         if operation is None or not self.rotor or not self.bearing:
             return False
         rolling = [one.stiffness.rolling for one in self.bearing if isinstance(one.stiffness, RollingStiffness)]
         preloaded = any(one.pressed or one.mounting is not None for one in rolling)
-        return operation.torque != 0.0 or operation.gravity is not None or preloaded
+        return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""

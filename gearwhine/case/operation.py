@@ -16,6 +16,7 @@ from gearwhine.case import units
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
+    Force,
     LengthFromZero,
     Name,
     Point,
@@ -31,6 +32,7 @@ from gearwhine.case.fields import (
 if TYPE_CHECKING:
     from coupling import BaseMotion
     from coupling.machine.gear_train import Output as BuiltOutput
+    from coupling.machine.loads import ShaftForce as BuiltForce
     from coupling.machine.loads import TorqueHistory as BuiltHistory
     from coupling.machine.loads import TorqueRipple as BuiltRipple
 
@@ -261,6 +263,22 @@ class Output(Table):
         return BuiltOutput(self.rotor, self.torque, self.at)
 
 
+class ShaftForce(Table):
+    """`[[operation.force]]`: a constant force on a rotor [N], at a station [m], such as the pull of a belt."""
+
+    rotor: Name
+    at: LengthFromZero
+    x: Force = 0.0
+    y: Force = 0.0
+    z: Force = 0.0
+
+    def build(self) -> BuiltForce:
+        """Build the force on the shaft."""
+        from coupling.machine.loads import ShaftForce as BuiltForce
+
+        return BuiltForce(self.rotor, self.at, (self.x, self.y, self.z))
+
+
 class Operation(Table):
     """`[operation]`: speed [rad/s] and torque [N m] of the first driver's rotor.
 
@@ -270,7 +288,7 @@ class Operation(Table):
     `over_time` is added to the torque, and the outputs take it in their proportions unless one has its own; `ripple`
     swings about it. `motor` and `load` are torque over speed of a run whose speed is free: what drives, and what
     the outputs together take, both at the first driver's rotor (without `load`: `torque`, whatever the speed).
-    `base` moves the ground; `gravity` is an acceleration along x, y, z [m/s²], None for none.
+    `base` moves the ground; `gravity` is an acceleration along x, y, z [m/s²], None for none; `force` acts on rotors.
     """
 
     speed: Speed
@@ -283,6 +301,7 @@ class Operation(Table):
     base: Base | None = None
     gravity: tuple[Acceleration, Acceleration, Acceleration] | None = None
     output: tuple[Output, ...] = Field(default=(), max_length=1000)
+    force: tuple[ShaftForce, ...] = Field(default=(), max_length=1000)
 
 
 _SHORTEST_RECORD = 0.01  # revolutions

@@ -176,6 +176,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
         outputs=[output.build() for output in operation.output],
         housing=housing,
         torque_at=operation.at or 0.0,
+        forces=[force.build() for force in operation.force],
     )
 
 

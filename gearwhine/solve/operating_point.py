@@ -301,7 +301,7 @@ def require_load(case: Case) -> None:
     """
     require(case, "rotor", "bearing", "operation", command="load")
     if not case.is_loaded:
-        expected = "a torque, or gravity, which load the shafts, or a preload of rolling bearings"
+        expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
         raise CaseError([Problem("operation.torque", 0.0, expected)])
     require_machine(case)
 

@@ -170,8 +170,8 @@ class LineContactRow:
     def slice_drops(self) -> FloatArray:
         """Profile drop P at each slice, (slices,), m.
 
-        ISO 16281: P = 0.00035 D ln[1 / (1 − (2x/L)²)] for L ≤ 2.5 D; for longer rollers the middle is straight and
-        P = 0.0005 D ln[1 / (1 − ((2|x| − L + 2.5 D) / 2.5 D)²)] at its ends.
+        ISO/TS 16281:2008, Eqs. 42–44: P = 0.00035 D ln[1 / (1 − (2x/L)²)] for L ≤ 2.5 D; the middle of longer rollers
+        is straight, and P = 0.0005 D ln[1 / (1 − ((2|x| − L + 2.5 D) / 2.5 D)²)] at its ends.
         """
         if self.profile == "straight":
             return np.zeros(self.slices)
@@ -308,7 +308,10 @@ class TaperedRollerRow(LineContactRow):
 
     @property
     def slice_drops(self) -> FloatArray:
-        """Profile drop P at each slice, (slices,), m: 0.00045 D ln[1 / (1 − (2x/L)²)] if logarithmic (ISO 16281)."""
+        """Profile drop P at each slice, (slices,), m: 0.00045 D ln[1 / (1 − (2x/L)²)] if logarithmic.
+
+        ISO/TS 16281:2008, after Nguyen-Schäfer, Computational Tapered and Cylinder Roller Bearings, 2019, Eq. 1.8.
+        """
         if self.profile == "straight":
             return np.zeros(self.slices)
         return np.asarray(-0.00045 * self.roller_diameter * np.log1p(-((2.0 * self.slice_places / self.length) ** 2)))

@@ -178,6 +178,7 @@ class OwnStatics:
         places = [0.0, *np.cumsum([part.length for part in rotor.segments])]
         places += [one.bearing.at for one in self.machine.bearings if one.rotor == shaft]
         places += [torque.at for torque in self.machine.constant_torques if torque.rotor == shaft]
+        places += [one.at for one in self.machine.forces if one.rotor == shaft]
         places += [end for low, high, _ in self.bodies(shaft) for end in (low, high)]
         for pair in self.machine.gear_pairs:
             for name in (pair.driver, pair.driven):
@@ -221,13 +222,15 @@ class OwnStatics:
         return self.section(one.rotor, one.bearing.at)[:5] - self.seat(name)
 
     def loads(self, gravity: Sequence[float] | None = None, sag: FloatArray | None = None) -> FloatArray:
-        """Torques, weight of the shafts, and the forces that let the seats sag by (5 b,) under the housing's own."""
+        """Torques and forces, weight of the shafts, and what lets the seats sag by (5 b,) under the housing's own."""
         found = np.zeros(self.size)
         if sag is not None:
             here = slice(self.seat_first, self.seat_first + sag.size)
             found[here] = self.linear[here, here] @ sag
         for torque in self.machine.constant_torques:
             found += torque.value * self.section(torque.rotor, torque.at)[5]
+        for one in self.machine.forces:
+            found += np.array(one.force) @ self.section(one.rotor, one.at)[:3]
         if gravity is not None:
             for shaft in self.machine.shafts:
                 for at, part, _, length in self._elements(shaft.name):

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from own_statics import FULL, STEEL, STIFFNESS, TEETH, distance, linear_bearing, one_stage, toothed
 
-from coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftGear
+from coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
 from coupling.errors import EquilibriumNotFoundError
 from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
@@ -19,7 +19,8 @@ from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.machine.components import HousingComponent
 from coupling.statics.operating_point import CAUSES
-from rotors import EquilibriumError, Rotor, Segment
+from coupling.statics.static_equilibrium import static_equilibrium
+from rotors import EquilibriumError, Rotor, RotorError, Segment
 from rotors.rolling_bearings import BallRow, RollingBearing, TaperedRollerRow
 
 FloatArray = npt.NDArray[np.float64]
@@ -219,6 +220,70 @@ def test_five_stations_over_the_face_are_enough(monkeypatch: pytest.MonkeyPatch)
     assert coarse.misalignment == pytest.approx(fine.misalignment, rel=2e-3)
     assert coarse.k_h_beta == pytest.approx(fine.k_h_beta, rel=5e-3)
     assert coarse.misalignment_by_cause["bodies"] == pytest.approx(fine.misalignment_by_cause["bodies"], rel=5e-3)
+
+
+def belt_drive(force: tuple[float, float, float], stiffness: npt.ArrayLike = RADIAL) -> Machine:
+    """A shaft on two bearings 120 mm apart, pulled 40 mm beside the left one."""
+    held = [
+        MountedBearing(linear_bearing(name, at, stiffness), "shaft", None) for name, at in (("l", 0.05), ("r", 0.17))
+    ]
+    shaft = Shaft(Rotor("shaft", [Segment(0.2, 0.03, 0.0, STEEL)]))
+    return Machine([shaft], held, speed=100.0, forces=[ShaftForce("shaft", 0.01, force)])
+
+
+@pytest.mark.parametrize("moving", [False, True], ids=["operating point", "coupled system"])
+def test_a_belt_pulls_on_an_overhung_shaft_end(moving: bool) -> None:
+    """By the lever: 4/3 of the pull on the near bearing and -1/3 on the far one, on springs of 1e8 N/m."""
+    machine = belt_drive((900.0, -600.0, 0.0))
+    if moving:
+        system = machine.assembled.system
+        q = static_equilibrium(system)
+        left, right = (one.stiffness @ (one.directions.T @ q) for one in system.linear)
+    else:
+        left, right = (one.force[:2] for one in machine.operating_point().bearings)
+    assert left == pytest.approx([1200.0, -800.0], rel=1e-6)
+    assert right == pytest.approx([-300.0, 200.0], rel=1e-6)
+
+
+def test_a_belt_bends_an_overhung_shaft_end() -> None:
+    """Its end sags by F a² (l + a) / 3 E I, by the shear of the overhang and the span, and by the springs."""
+    machine, (a, span) = belt_drive((900.0, 0.0, 0.0)), (0.04, 0.12)
+    second, area, ratio = math.pi / 64 * 0.03**4, math.pi / 4 * 0.03**2, STEEL.poisson_ratio
+    sheared = 6 * (1 + ratio) / (7 + 6 * ratio) * STEEL.shear_modulus * area
+    bent = a**2 * (span + a) / (3.0 * STEEL.youngs_modulus * second) + a * (1.0 + a / span) / sheared
+    sunk = ((1.0 + a / span) ** 2 + (a / span) ** 2) / 1e8
+    (found,) = machine.operating_point().shafts[0].motions([0.01])[0]
+    assert found == pytest.approx(900.0 * (bent + sunk), rel=1e-6)
+
+
+def test_forces_move_bearings_of_the_coupled_system_as_the_operating_point() -> None:
+    """What forces across and along the axis add to the bearings' loads, beside the teeth of a helical pair.
+
+    The loads themselves differ more: the modal shafts stand without solid gears, and their teeth on one section.
+    """
+    forces = [ShaftForce("in", 0.0, (900.0, -600.0, 0.0)), ShaftForce("out", 0.16, (0.0, 700.0, -400.0))]
+    machines = one_stage(forces=forces), one_stage()
+    points, systems = [one.operating_point() for one in machines], [one.assembled.system for one in machines]
+    moved = [static_equilibrium(system) for system in systems]
+    for number, name in enumerate(one.name for one in points[0].bearings):
+        added = points[0].bearing(name).force[:3] - points[1].bearing(name).force[:3]
+        linear = [system.linear[number] for system in systems]
+        ours, none = (one.stiffness @ (one.directions.T @ q) for one, q in zip(linear, moved, strict=True))
+        assert (ours - none)[:3] == pytest.approx(added, abs=0.005 * 900.0)
+    again = machines[0].assembled.at_speed(machines[0].speed).system
+    np.testing.assert_allclose(again.load, systems[0].load, rtol=1e-12)
+
+
+def test_forces_off_the_shafts_or_that_nothing_holds_are_refused() -> None:
+    with pytest.raises(CouplingError, match="a force: no shaft 'belt'; expected one of 'in', 'out'"):
+        one_stage(forces=[ShaftForce("belt", 0.0, (1.0, 0.0, 0.0))])
+    with pytest.raises(RotorError, match="a force"):
+        one_stage(forces=[ShaftForce("in", 0.5, (1.0, 0.0, 0.0))])
+    pushed = belt_drive((0.0, 0.0, 50.0))
+    with pytest.raises(CouplingError, match="a force of 50 N along z on rotor 'shaft', which no bearing holds"):
+        _ = pushed.assembled
+    with pytest.raises(CouplingError, match="nothing holds the axial motion of shaft 'shaft', and the loads drive it"):
+        pushed.operating_point()
 
 
 def test_tapered_rollers_hold_a_shaft_between_them() -> None:

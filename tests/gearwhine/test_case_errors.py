@@ -46,6 +46,13 @@ ONE_WRONG = {
     ),
     # names
     "output rotor": ("operation.output", [{"rotor": "y", "torque": 1}], "operation.output[0].rotor", "of a rotor"),
+    "force rotor": ("operation.force", [{"rotor": "y", "at": 0}], "operation.force[0].rotor", "of a rotor"),
+    "force station": (
+        "operation.force",
+        [{"rotor": "output", "at": "3 m", "x": "5 N"}],
+        "operation.force[0].at",
+        "which is 200 mm long",
+    ),
     "rotor named housing": ("rotor.0.name", "housing", "rotor[0].name", "another name than 'housing'"),
     "same name": ("rotor.1.name", "input", "rotor[1].name", "rotor[0] has this one"),
     # places

@@ -83,6 +83,18 @@ def test_bearings_are_linearised_where_the_machine_rests(case: gw.Case) -> None:
         assert force[:2] == pytest.approx(load.force[:2], abs=5e-3 * float(np.hypot(*load.force[:2])))
 
 
+def test_a_belt_in_the_case_loads_its_bearings(case: gw.Case) -> None:
+    """600 N along y on the end of the input shaft, all of it and no more carried by its bearings, down to the signs."""
+    belt = {"rotor": "input", "at": "210 mm", "y": "-600 N"}
+    given = document()
+    pulled = describe_machine(parse_case(given | {"operation": given["operation"] | {"force": [belt]}}))
+    carried = [
+        sum(one.force[:3] for one in machine.operating_point().bearings if one.mounted.rotor == "input")
+        for machine in (describe_machine(case), pulled)
+    ]
+    assert carried[1] - carried[0] == pytest.approx([0.0, -600.0, 0.0], abs=1e-3)
+
+
 def test_flanks_open_as_the_operating_point_finds(case: gw.Case) -> None:
     """The contact of a pair left to the operating point has the load over its face that was found there."""
     point = describe_machine(case).operating_point()

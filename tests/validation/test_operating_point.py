@@ -23,7 +23,7 @@ from own_statics import (
 from scipy.optimize import nnls
 from scipy.sparse.linalg import splu
 
-from coupling import Machine, MountedBearing, Output, Shaft, ShaftGear
+from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
 from coupling.gears import ConstantStiffness, HelixDeviation, TipRelief, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
@@ -99,6 +99,10 @@ CHANGES: dict[str, tuple[dict[str, Any], Sequence[float] | None]] = {
     "braking, on the back flanks": ({"torque": -150.0}, None),
     "spur": ({"hand": 0.0}, None),
     "weight": ({}, GRAVITY),
+    "a belt and a weight on the shafts": (
+        {"forces": [ShaftForce("in", 0.0, (800.0, -300.0, 0.0)), ShaftForce("out", 0.12, (0.0, -500.0, 250.0))]},
+        None,
+    ),
     "torque in the middle": ({"torque_at": 0.1, "outputs": [Output("out", 150.0 * 41 / 23, 0.03)]}, None),
     "pedestals": ({"bearings": on_pedestals([[3e8, 2e7], [2e7, 5e8]])}, None),
     "journal bearings": ({"bearings": journal()}, None),

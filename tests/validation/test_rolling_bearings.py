@@ -3,7 +3,12 @@
 - ISO 16281 ball bearing, as MASTA's documentation works it: 7 balls of 11.5 mm on 43.5 mm, grooves .52 and .53,
   E 210 GPa, ν .3, no clearance; 1000 N radially displace it by 15.110 µm, axially by 133.54 µm.
 - Krämer's formula with Friswell et al. (2010): 8 balls of 30 mm, 500 N, 30°: 1.00906e8 N/m.
-- Static and dynamic load ratings of common sizes as bearing makers print them.
+- Harris and Kotzalas (2006, Essential Concepts), tables 7.4 and 7.5: load distribution of one and of two rows of point
+  contacts under radial and axial load, by Sjövall's integrals with one contact angle for all balls.
+- Nguyen-Schäfer, Computational Tapered and Cylinder Roller Bearings (Springer 2019): the profiles of ISO/TS 16281 of
+  tapered (equation 1.8) and short cylindrical rollers (chapter 2), and the loads and pressures of a cylindrical roller
+  bearing NJ 207 under radial load and moment (section 2.9).
+- Static and dynamic load ratings of common sizes as SKF's general catalogue 6000 prints them.
 - ISO 281:2007, f_c of balls (table 2, single-row grooves and self-aligning) and of rollers (table 7) over γ.
 - Half a loaded circle of a row with a contact angle: F_a = 1.260 F_r tan α and Q_max = 4.08 F_r/(Z cos α) of line
   contact, 1.216 and 4.37 of point contact (NSK, Technical Report CAT. No. E728g, section 5.1).
@@ -16,7 +21,9 @@
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +33,7 @@ from rotors.rolling_bearings import (
     BallRow,
     RollerRow,
     RollingBearing,
+    RollingState,
     TaperedRollerRow,
     catalogue_row,
     dynamic_rating,
@@ -39,62 +47,184 @@ from rotors.rolling_bearings import (
 )
 
 FloatArray = npt.NDArray[np.float64]
+Published = Callable[..., None]
+
+ISO_BALLS = "ISO 16281 ball bearing, MASTA documentation"
+ESSENTIALS = "Harris & Kotzalas, Essential Concepts of Bearing Technology (2006)"
+SJOEVALL = f"{ESSENTIALS}, table 7.4, one row"
+TWO_ROWS = f"{ESSENTIALS}, table 7.5, two rows"
+NJ_207 = "Nguyen-Schäfer (2019), section 2.9, cylindrical roller bearing NJ 207"
+CATALOGUE = "SKF general catalogue 6000, ratings of insides estimated from main dimensions"
 
 
 @pytest.mark.parametrize(("direction", "micrometres"), [(0, 15.110), (2, 133.54)])
-def test_ball_bearing_of_iso_16281(direction: int, micrometres: float) -> None:
+def test_ball_bearing_of_iso_16281(published: Published, direction: int, micrometres: float) -> None:
     bearing = RollingBearing([BallRow(7, 11.5e-3, 43.5e-3, inner_groove=0.52, outer_groove=0.53)])
     state = rolling_equilibrium(bearing, 1000.0 * np.eye(5)[direction])
-    assert 1e6 * state.displacement[direction] == pytest.approx(micrometres, rel=1e-4)
+    quantity = f"{('radial', '', 'axial')[direction]} displacement under 1 kN"
+    published(ISO_BALLS, quantity, micrometres, 1e6 * state.displacement[direction], "µm", rel=1e-4)
+
+
+# Of table 7.4: epsilon, F_r tan(alpha) / F_a, J_r and J_a; 1.67 stands for 5/3.
+ONE_ROW = (
+    (0.2, 0.9318, 0.1590, 0.1707),
+    (0.3, 0.8964, 0.1892, 0.2110),
+    (0.4, 0.8601, 0.2117, 0.2462),
+    (0.5, 0.8225, 0.2288, 0.2782),
+    (0.6, 0.7835, 0.2416, 0.3084),
+    (0.7, 0.7427, 0.2505, 0.3374),
+    (0.8, 0.6995, 0.2559, 0.3658),
+    (0.9, 0.6529, 0.2576, 0.3945),
+    (1.0, 0.6000, 0.2546, 0.4244),
+    (1.25, None, 0.2289, 0.5044),
+    (5.0 / 3.0, 0.3088, 0.1871, 0.6060),
+    (2.5, 0.1850, 0.1339, 0.7240),
+    (5.0, 0.0831, 0.0711, 0.8558),
+)
+# Many small balls in open grooves, under so little load that their contact angle stays.
+MANY_BALLS = BallRow(300, 0.4e-3, 70e-3, math.radians(40.0), 1.0, 1.0)
+
+
+def many_balls_at(epsilon: float, bearing: RollingBearing) -> RollingState:
+    """Rings displaced to a load zone epsilon = (1 + z tan(alpha) / x) / 2 of the circle's diameter."""
+    x = 1e-8
+    z = (2.0 * epsilon - 1.0) * x / math.tan(MANY_BALLS.contact_angle)
+    return rolling_state(bearing, [x, 0.0, z, 0.0, 0.0])
+
+
+def test_load_distribution_of_one_row(published: Published, remark: Callable[[str, str], None]) -> None:
+    """J_r = F_r / (Z Q_max cos alpha) and J_a = F_a / (Z Q_max sin alpha)."""
+    remark(
+        SJOEVALL,
+        "The ratio printed for ε = 1.25, 0.4338, is a misprint: the table's own J_r / J_a is 0.4538, and ours 0.4537.",
+    )
+    angle, tangent = MANY_BALLS.contact_angle, math.tan(MANY_BALLS.contact_angle)
+    for epsilon, ratio, radial, axial in ONE_ROW:
+        state = many_balls_at(epsilon, RollingBearing([MANY_BALLS]))
+        worst = MANY_BALLS.count * state.rows[0].outer_load.max()
+        zone = f"ε = {epsilon:.3g}"
+        published(SJOEVALL, f"J_r, {zone}", radial, state.load[0] / (worst * math.cos(angle)), abs=1e-4)
+        published(SJOEVALL, f"J_a, {zone}", axial, state.load[2] / (worst * math.sin(angle)), abs=3e-4)
+        if ratio is not None:
+            ours = state.load[0] * tangent / state.load[2]
+            published(SJOEVALL, f"F_r tan α / F_a, {zone}", ratio, ours, abs=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("epsilon", "radial", "axial", "worst_of_other", "radial_of_other"),
+    [
+        (0.5, 0.4577, 0.0, 1.0, 1.0),
+        (0.6, 0.3568, 0.1744, 0.544, 0.477),
+        (0.7, 0.3036, 0.2782, 0.281, 0.212),
+        (0.8, 0.2758, 0.3445, 0.125, 0.078),
+        (0.9, 0.2618, 0.3900, 0.037, 0.017),
+        (1.0, 0.2546, 0.4244, 0.0, 0.0),
+    ],
+)
+def test_load_distribution_of_two_rows(
+    published: Published, epsilon: float, radial: float, axial: float, worst_of_other: float, radial_of_other: float
+) -> None:
+    """By the most loaded ball of both rows; the row that axial load relieves carries the parts of the other's."""
+    angle = MANY_BALLS.contact_angle
+    state = many_balls_at(epsilon, paired(MANY_BALLS, "back to back", 20e-3))
+    left, right = state.rows
+    worst, zone = left.outer_load.max(), f"ε₁ = {epsilon:g}"
+    parts = [float((row.outer_load * np.cos(row.outer_angle) * np.cos(row.azimuths)).sum()) for row in (left, right)]
+    ours = state.load[0] / (MANY_BALLS.count * worst * math.cos(angle))
+    published(TWO_ROWS, f"J_r, {zone}", radial, ours, abs=1e-4)
+    ours = state.load[2] / (MANY_BALLS.count * worst * math.sin(angle))
+    published(TWO_ROWS, f"J_a, {zone}", axial, ours, abs=1e-4)
+    published(TWO_ROWS, f"Q_max2 / Q_max1, {zone}", worst_of_other, right.outer_load.max() / worst, abs=6e-4)
+    published(TWO_ROWS, f"F_r2 / F_r1, {zone}", radial_of_other, parts[1] / parts[0], abs=6e-4)
+
+
+@pytest.mark.parametrize(
+    ("row", "factor", "part"),
+    [
+        (TaperedRollerRow(20, 6.5e-3, 12.445e-3, 48e-3, angle=math.radians(16.7), slices=10), 0.00045, 0.9),
+        (RollerRow(15, 10e-3, 9e-3, 53.5e-3, slices=10), 0.00035, 0.9),
+        # 4 D long: straight over 1.5 D, then by the part of the 2.5 D at both ends, (3.6 - 4 + 2.5) / 2.5.
+        (RollerRow(15, 3e-3, 12e-3, 53.5e-3, slices=10), 0.0005, 0.84),
+    ],
+    ids=["tapered", "short cylinders", "long cylinders"],
+)
+def test_profiles_of_iso_16281(row: RollerRow | TaperedRollerRow, factor: float, part: float) -> None:
+    """P = factor D ln(1 / (1 - part²)) in the last slice of ten, at 0.45 of the length from the middle."""
+    expected = factor * row.roller_diameter * math.log(1.0 / (1.0 - part**2))
+    assert row.slice_drops[[0, -1]] == pytest.approx(expected, rel=1e-12)
+
+
+def test_cylindrical_rollers_under_a_moment(published: Published, remark: Callable[[str, str], None]) -> None:
+    """The book's program cuts rollers as ISO/TS 16281 does, and lets each of them tilt between its rings and its rib.
+
+    Here rollers tilt half as much as the rings and the 5 kN on the rib are left out. The centrifugal force of the book
+    is that of rollers that orbit at the speed of the shaft, 41 N; at the cage's, (1 - gamma) / 2 of it, it is 6.7 N.
+    """
+    remark(
+        NJ_207,
+        "The book tilts the rollers by the force on their rib, which is left out here: 3 % of the worst roller's load, "
+        "8 % of its tilt. Its centrifugal force is that of rollers that orbit at the shaft's speed, not the cage's.",
+    )
+    speed = 5000.0 * math.pi / 30.0
+    row = RollerRow(15, 10e-3, 9e-3, 53.5e-3, slices=65)
+    state = rolling_equilibrium(RollingBearing([row]), [20e3, 0.0, 0.0, 0.0, 30.0], held={"z": 0.0}, speed=speed)
+    (loads,) = state.rows
+    assert loads.slice_loads is not None
+    loaded = np.flatnonzero(loads.inner_load > 0.0)
+    np.testing.assert_array_equal(loaded, [0, 1, 2, 3, 12, 13, 14])  # 4 to 11 by the book, from the one after the worst
+    published(NJ_207, "load of the worst roller, inner ring", 5746.0, loads.inner_load.max(), "N", rel=0.04)
+    published(NJ_207, "load of its worst slice", 152.0, loads.slice_loads.max(), "N", rel=0.01)
+    published(NJ_207, "pressure at the inner ring", 3.14, loads.inner_pressure.max() / 1e9, "GPa", rel=0.01)
+    published(NJ_207, "pressure at the outer ring", 2.60, loads.outer_pressure.max() / 1e9, "GPa", rel=0.01)
+    tilt = 60.0 * math.degrees(state.displacement[4] / 2.0)
+    published(NJ_207, "tilt of the worst roller", 13.5, tilt, "arcmin", rel=0.10)
+    published(NJ_207, "radial stiffness, F_r / x", 533.0, 20e3 / state.displacement[0] / 1e6, "N/µm", rel=0.10)
+    at_shaft_speed = row.centrifugal_force(speed) / (0.5 * (1.0 - row.gamma)) ** 2
+    published(NJ_207, "centrifugal force at the speed of the shaft", 41.0, at_shaft_speed, "N", rel=0.03)
 
 
 def test_kramers_formula() -> None:
     assert kramer_ball_stiffness(8, 0.03, 500.0, math.radians(30.0)) == pytest.approx(1.00906e8, rel=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("kind", "bore", "outer", "width", "elements", "rating"),
-    [
-        ("deep-groove", 25, 52, 15, 9, 7.8e3),
-        ("deep-groove", 40, 80, 18, 9, 19.0e3),
-        ("deep-groove", 25, 62, 17, 7, 11.6e3),
-        ("cylindrical-roller", 25, 52, 15, 13, 27.0e3),
-        ("cylindrical-roller", 40, 80, 18, 14, 53.0e3),
-        ("cylindrical-roller", 50, 90, 20, 16, 69.5e3),
-        ("tapered-roller", 25, 52, 16.25, 15, 33.7e3),
-        ("tapered-roller", 30, 62, 17.25, 15, 48.0e3),
-        ("tapered-roller", 30, 72, 20.75, 13, 60.1e3),
-        ("spherical-roller", 40, 80, 23, 17, 90.0e3),
-        ("spherical-roller", 50, 90, 23, 19, 108.0e3),
-        ("spherical-roller", 60, 110, 28, 19, 166.0e3),
-    ],
+# Dimensions [mm], dynamic and static rating [kN]; of the balls and of NU 205 the usual count of elements.
+PRINTED: tuple[tuple[str, str, float, float, float, float, float, int | None], ...] = (
+    ("6205", "deep-groove", 25, 52, 15, 14.8, 7.8, 9),
+    ("6208", "deep-groove", 40, 80, 18, 32.5, 19.0, 9),
+    ("6305", "deep-groove", 25, 62, 17, 23.4, 11.6, 7),
+    ("6210", "deep-groove", 50, 90, 20, 37.1, 23.2, 10),
+    ("NU 205 ECP", "cylindrical-roller", 25, 52, 15, 28.6, 27.0, 13),
+    ("NU 208 ECP", "cylindrical-roller", 40, 80, 18, 62.0, 53.0, None),
+    ("NU 210 ECP", "cylindrical-roller", 50, 90, 20, 73.5, 69.5, None),
+    ("30205 J2/Q", "tapered-roller", 25, 52, 16.25, 30.8, 33.5, None),
+    ("30206 J2/Q", "tapered-roller", 30, 62, 17.25, 40.2, 44.0, None),
+    ("30306 J2/Q", "tapered-roller", 30, 72, 20.75, 56.1, 56.0, None),
+    ("33012/Q", "tapered-roller", 60, 95, 27, 106.0, 143.0, None),
+    ("33014", "tapered-roller", 70, 110, 31, 130.0, 196.0, None),
+    ("22208 E", "spherical-roller", 40, 80, 23, 96.5, 90.0, None),
+    ("22210 E", "spherical-roller", 50, 90, 23, 104.0, 108.0, None),
+    ("22212 E", "spherical-roller", 60, 110, 28, 156.0, 166.0, None),
 )
-def test_estimated_insides_have_the_printed_static_rating(
-    kind: str, bore: float, outer: float, width: float, elements: int, rating: float
+
+
+@pytest.mark.parametrize("printed", PRINTED, ids=[each[0] for each in PRINTED])
+def test_estimated_insides_have_the_printed_ratings(
+    published: Published,
+    remark: Callable[[str, str], None],
+    printed: tuple[str, Any, float, float, float, Any, Any, Any],
 ) -> None:
-    row = catalogue_row(kind, bore / 1e3, outer / 1e3, width / 1e3)  # type: ignore[arg-type]
-    assert row.count == elements
+    """Main dimensions alone give the static rating to 15 % and the dynamic one to 18 %."""
+    remark(
+        CATALOGUE,
+        "An estimate of the inside misses most sizes by less than 10 %, and wide series such as 330 by more. SKF rates "
+        "several of these bearings (Explorer) higher than ISO 281 rates their geometry, so that ours lie below.",
+    )
+    name, kind, bore, outer, width, dynamic, static, count = printed
+    row, rows = catalogue_row(kind, bore / 1e3, outer / 1e3, width / 1e3), 2 if kind == "spherical-roller" else 1
     assert row.estimated
-    rows = 2 if kind == "spherical-roller" else 1
-    assert rows * static_rating(row) == pytest.approx(rating, rel=0.10)
-
-
-@pytest.mark.parametrize(
-    ("kind", "bore", "outer", "width", "dynamic"),
-    [
-        ("deep-groove", 25, 52, 15, 14.0e3),
-        ("deep-groove", 40, 80, 18, 30.7e3),
-        ("cylindrical-roller", 40, 80, 18, 53.9e3),
-        ("tapered-roller", 25, 52, 16.25, 31.5e3),
-        ("tapered-roller", 30, 62, 17.25, 43.5e3),
-        ("tapered-roller", 30, 72, 20.75, 59.6e3),
-    ],
-)
-def test_estimated_insides_have_the_printed_dynamic_rating(
-    kind: str, bore: float, outer: float, width: float, dynamic: float
-) -> None:
-    row = catalogue_row(kind, bore / 1e3, outer / 1e3, width / 1e3)  # type: ignore[arg-type]
-    assert dynamic_rating(row) == pytest.approx(dynamic, rel=0.10)
+    assert row.count == (count or row.count)
+    published(CATALOGUE, f"static rating of {name}", static, rows * static_rating(row) / 1e3, "kN", rel=0.15)
+    published(CATALOGUE, f"dynamic rating of {name}", dynamic, dynamic_rating(row, rows) / 1e3, "kN", rel=0.18)
 
 
 @pytest.mark.parametrize(
