@@ -17,7 +17,7 @@ from housing.fem.factorization import Backend, Factorization, Factorizer
 from housing.fem.matrices import FreeSystem, Matrices
 from housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
 from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
-from housing.modes.residual_modes import ResidualModes, joined_residual_modes, residual_attachment_modes
+from housing.modes.residual_modes import ResidualModes, joined_residual_modes, port_motions, residual_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -65,7 +65,7 @@ class ModeSet:
 
     def project(self, port: sparse.csr_array) -> FloatArray:
         """Project a port on the modes: their motions at it, shape (n_modes, n_motions)."""
-        return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
+        return port_motions(port, self.shapes)
 
     def project_all(self, port: sparse.csr_array) -> FloatArray:
         """Motions at a port of the modes, then of the residual modes, shape (n_modes + n_residual, n_motions)."""

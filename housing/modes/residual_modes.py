@@ -142,7 +142,18 @@ class ResidualModes:
 
     def project(self, port: sparse.csr_array) -> FloatArray:
         """Project a port on the residual modes: their motions at it, shape (k, n_motions)."""
-        return np.asarray((port @ self.shapes.reshape(len(self.shapes), port.shape[1]).T).T)
+        return port_motions(port, self.shapes)
+
+
+def port_motions(port: sparse.csr_array, shapes: FloatArray) -> FloatArray:
+    """Motions at a port, shape (r, 3 n_nodes), by shapes (k, n_nodes, 3): shape (k, r).
+
+    Only the entries of the shapes that the port has are read: a product with whole shapes begins with a copy of them.
+    """
+    places, columns = np.unique(port.indices, return_inverse=True)
+    taken = shapes.reshape(len(shapes), port.shape[1])[:, places]
+    narrow = sparse.csr_array((port.data, columns, port.indptr), shape=(port.shape[0], len(places)))
+    return np.asarray((narrow @ taken.T).T)
 
 
 def residual_attachment_modes(
