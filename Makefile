@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS ?= 2
 # Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo test lint types unit validation stiffness-page install install-dev system format constraints clean
+.PHONY: demo test lint types unit docs reference validation stiffness-page install install-dev system format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
@@ -68,6 +68,10 @@ $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
 # The validation page, from the tests against published values.
 validation: install-dev
 	$(BIN)/pytest tests/validation -q --validation-table docs/validation.md
+
+# The tables of the case file and the page of the commands, from the schema and the commands.
+reference: install
+	$(BIN)/python scripts/reference_pages.py
 
 # The tables and the figure of the page of stiffness models.
 stiffness-page: install
