@@ -13,6 +13,7 @@ from sphinx.application import Sphinx
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "docs" / "site")]
 
+import gallery  # noqa: E402
 import python_pages  # noqa: E402
 
 import gearwhine  # noqa: E402
@@ -67,6 +68,7 @@ _START = """\
 
 def write_pages(app: Sphinx) -> None:
     """Write the pages that no one writes by hand."""
+    gallery.write_gallery(ROOT, ROOT / "docs" / "gallery", python_pages.ROOMS)
     python_pages.write_pages(ROOT, ROOT / "docs" / "reference")
 
 

@@ -327,7 +327,7 @@ def commands() -> str:
     text = app.generate_docs(output_format="markdown", heading_level=1)
     text = text[text.index("## gearwhine ") :]
     # A name in angle brackets is no HTML; the first argument has no option of its own in practice.
-    text = re.sub(r"<(\w+)>", r"\\<\1\\>", text).replace("```console", "```")
+    text = re.sub(r"<(\w+)>", r"\\<\1\\>", text).replace("```console", "```text")
     text = re.sub(r"\*\*(Parameters|Arguments)\*\*:\n\n| \*\[default: (False|\[\])\]\*", "", text)
     # Where this runs as `python -m pytest`, cyclopts shows that as part of the usage.
     text = re.sub(r"^(gearwhine \w+) -m \S+ ", r"\1 ", text, flags=re.MULTILINE)
