@@ -44,6 +44,8 @@ maximum_signature_line_length = 90
 napoleon_google_docstring = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False
+# Quotes in tables and messages are what a user types.
+smartquotes = False
 # In docstrings a single backtick is code, as in Markdown.
 default_role = "literal"
 

@@ -155,7 +155,7 @@ _NAMED: dict[Any, str] = {
     rotors.ShearCoefficient: '"cowper", "hutchinson" or a number',
     measured.Amount: "quantity or number",
     measured.KeyPath: "key path",
-    bearings.MatrixRows: "5 of: 5 of: stiffness or damping",
+    bearings.MatrixRows: "5 × 5 × stiffness or damping",
     StrictBool: "true or false",
     bool: "true or false",
     str: "text",
@@ -193,11 +193,11 @@ def value_of(hint: Any, link: dict[type[Table], str]) -> Value:
     if origin is tuple:
         first = value_of(parts[0], link)
         if parts[-1] is Ellipsis:
-            return first._replace(kind=f"list: {first.kind}")
-        return first._replace(kind=f"{len(parts)} of: {first.kind}")
+            return first._replace(kind=f"list of {first.kind}")
+        return first._replace(kind=f"{len(parts)} × {first.kind}")
     if origin is dict:
         inner = value_of(parts[1], link)
-        return inner._replace(kind=f"table of: {inner.kind}")
+        return inner._replace(kind=f"table of {inner.kind}")
     raise TypeError(f"no words for {hint}")
 
 
@@ -223,7 +223,7 @@ def default_of(field: FieldInfo, hint: Any, meaning: str) -> tuple[str, str]:
     if field.is_required():
         return "**required**", text
     value = field.default
-    if value is None or value == () or field.default_factory is not None:
+    if value in (None, (), "") or field.default_factory is not None:
         return "–", text
     if isinstance(value, Table) or value == {}:
         return "–", text
