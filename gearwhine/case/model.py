@@ -52,38 +52,41 @@ def _named(entries: Iterable[NamedEntry], name: str) -> NamedEntry:
 class Case(Table):
     """A case: rotors only, a housing only, gears only, or all.
 
-    Attributes are named as the keys of the case file and hold SI floats: m, kg, s, N, rad, rad/s; frequencies
-    are in Hz. Entries of a list keep the order of the file.
-
-    Attributes
-    ----------
-    title, notes
-        Text for people.
-    material
-        Materials by name.
-    housing, operation, transient, sweep, rotor_analysis, measured, update
-        None where the case has no such table.
-    rotor, bearing, gear, gear_pair
-        Empty where the case has none.
-    provenance
-        From key path (`*` for any entry) to "published", "nominal" or "found", with text after a colon.
+    Attributes are named as the keys of the case file and hold SI floats: m, kg, s, N, rad, rad/s; frequencies are in
+    Hz. Entries of a list keep the order of the file. A table that the case has not is None, a list empty.
     """
 
     title: Annotated[str, Field(max_length=500)] = ""
+    """Title of the case, shown with its results."""
     notes: Text = ""
+    """Text for readers of the case."""
     material: dict[Name, Material] = Field(default={}, max_length=1000)
+    """Materials by name, `[material.NAME]`."""
     housing: Housing | None = None
+    """Housing; without it bearings stand on the ground."""
     rotor: tuple[Rotor, ...] = Field(default=(), max_length=1000)
+    """Shafts, `[[rotor]]`."""
     bearing: tuple[Bearing, ...] = Field(default=(), max_length=1000)
+    """Bearings, `[[bearing]]`."""
     gear: tuple[Gear, ...] = Field(default=(), max_length=1000)
+    """Gears, `[[gear]]`."""
     gear_pair: tuple[GearPair, ...] = Field(default=(), max_length=1000)
+    """Gear pairs, `[[gear_pair]]`."""
     operation: Operation | None = None
+    """Speed and torque."""
     transient: Transient | None = None
+    """Motion over time."""
     sweep: Sweep | None = None
+    """Speeds of a sweep."""
     rotor_analysis: RotorAnalysis | None = None
+    """Analyses of rotors alone."""
     measured: Measured | None = None
+    """Measured modes of the housing."""
     update: Update | None = None
+    """Parameters that are fitted to the measured modes."""
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
+    """Standing of each number: from key path (`*` for any entry) to "published", "nominal" or "found", with text after
+    a colon."""
 
     def rotor_named(self, name: str) -> Rotor:
         """Return the rotor of this name; KeyError where there is none."""

@@ -174,9 +174,7 @@ def test_the_terminal_is_compact(helical: Result[SolvedLoad], capsys: pytest.Cap
 
 def test_nothing_that_loads_the_machine_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["load", "spur-pair", "-q", "--set", "operation.torque=0 N*m"]) == 2
-    expected = (
-        "operation.torque: expected a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
-    )
+    expected = "operation.torque: expected a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
     assert f"{expected}, got 0.0" in capsys.readouterr().err
     assert run_command(["load", "overhung-fan", "-q"]) == 2
     assert expected in capsys.readouterr().err
