@@ -210,7 +210,9 @@ class Study:
 
         return machine.gears(self.case, progress=self.progress)
 
-    def operating_point(self, *, over_torque: bool = False, sensitivity: bool = False) -> Result[SolvedLoad]:
+    def operating_point(
+        self, *, over_torque: bool = False, sensitivity: bool = False, rigid_seats: bool = False
+    ) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.machine.operating_point`."""
         from gearwhine.analyses import machine
 
@@ -218,7 +220,8 @@ class Study:
             self.case,
             over_torque=over_torque,
             sensitivity=sensitivity,
-            housing=self.housing,
+            rigid_seats=rigid_seats,
+            housing=None if rigid_seats else self.housing,
             progress=self.progress,
         )
 

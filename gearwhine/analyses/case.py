@@ -68,6 +68,30 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
 
 def report_case(case: Case, folder: Path) -> dict[str, Any]:
     """Write the results in a folder as one HTML page, which marks those that no longer fit the case."""
+    return _report(folder, case)
+
+
+def report_folder(folder: Path, *, other: Path | None = None) -> dict[str, Any]:
+    """Write the results in a folder as one HTML page; those that do not fit the case of the newest are marked.
+
+    Parameters
+    ----------
+    folder : path
+        Of results.
+    other : path, optional
+        Another folder that is asked for.
+
+    Raises
+    ------
+    CaseError
+        Where two folders are given, or the folder holds no results.
+    """
+    if other is not None:
+        raise CaseError([Problem("--output", str(other), f"none beside the results folder {str(folder)!r}")])
+    return _report(folder, None)
+
+
+def _report(folder: Path, case: Case | None) -> dict[str, Any]:
     from gearwhine.output.html import report_page
     from gearwhine.results import chapters_of
 

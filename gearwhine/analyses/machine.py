@@ -118,6 +118,7 @@ def operating_point(
     *,
     over_torque: bool = False,
     sensitivity: bool = False,
+    rigid_seats: bool = False,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -128,11 +129,12 @@ def operating_point(
     Parameters
     ----------
     case : Case
-        Without a housing its seats are rigid.
     over_torque : bool
         Whether to find it from 10 to 150 % of the torque as well.
     sensitivity : bool
         Whether to rank walls, bearing stiffness and positions by their influence on the gear pairs.
+    rigid_seats : bool
+        Whether to leave the housing out and hold the bearings in rigid seats, as in a case without one.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -144,7 +146,9 @@ def operating_point(
         Where no equilibrium is found.
     """
     require_load(case)
-    if housing is None and case.housing is not None:
+    if rigid_seats:
+        housing = None
+    elif housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=sensitivity)
     document = load_document(case.title, solved)

@@ -64,11 +64,21 @@ def examples(
         hand_over(copy_example(name, common.output or Path()), common, show_files)
 
 
-def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
-    """Write the results in OUT (default: ./<case>-results) as one HTML page, report.html."""
-    from gearwhine.analyses.case import report_case
-    from gearwhine.output.terminal import shown_by
+def report(
+    case: Annotated[str, Parameter(help="A results folder; or a case, whose changes since its results are named.")],
+    *,
+    common: Common = NONE_GIVEN,
+) -> None:
+    """Write all results in a folder as one HTML page, report.html: of a folder, or of a case's OUT.
 
+    OUT is ./<case>-results by default.
+    """
+    from gearwhine.analyses.case import report_case, report_folder
+    from gearwhine.output.terminal import show_files, shown_by
+
+    if Path(case).is_dir():
+        hand_over(report_folder(Path(case), other=common.output), common, show_files)
+        return
     on_case(
         case,
         common,

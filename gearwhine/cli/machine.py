@@ -64,6 +64,10 @@ def load(
             help="Also rank walls, bearing stiffness and bearing positions by their influence on the gear pairs.",
         ),
     ] = False,
+    rigid_seats: Annotated[
+        bool,
+        Parameter(name=["--rigid-seats"], negative=(), help="Hold the bearings in rigid seats; leave the housing out."),
+    ] = False,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
@@ -77,6 +81,7 @@ def load(
             given,
             over_torque=over_torque,
             sensitivity=sensitivity,
+            rigid_seats=rigid_seats,
             folder=common.output,
             fresh=fresh,
             progress=progress,
