@@ -213,7 +213,12 @@ class Study:
         return machine.gears(self.case, progress=self.progress)
 
     def operating_point(
-        self, *, over_torque: bool = False, sensitivity: bool = False, line: str | None = None
+        self,
+        *,
+        over_torque: bool = False,
+        sensitivity: bool = False,
+        line: str | None = None,
+        rigid_seats: bool = False,
     ) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.machine.operating_point`."""
         from gearwhine.analyses import machine
@@ -223,7 +228,8 @@ class Study:
             over_torque=over_torque,
             sensitivity=sensitivity,
             line=line,
-            housing=self.housing,
+            rigid_seats=rigid_seats,
+            housing=None if rigid_seats else self.housing,
             progress=self.progress,
         )
 
@@ -312,16 +318,16 @@ class Study:
         *,
         signals: Signals = "sensors",
     ) -> list[str]:
-        """Write the results in a folder in formats of other programs; see :func:`gearwhine.analyses.case.export_case`.
+        """Write the results in a folder in formats of other programs; see :func:`gearwhine.analyses.case.export_results`.
 
         Returns
         -------
         list of str
             The files, relative to the folder.
         """
-        from gearwhine.analyses.case import export_case
+        from gearwhine.analyses.case import export_results
 
-        return list(export_case(self.case, Path(folder), formats, signals=signals)["files"])
+        return list(export_results(Path(folder), self.case, formats, signals=signals)["files"])
 
 
 def _text(value: object) -> str:

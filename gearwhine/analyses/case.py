@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files
+from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files, load_case
 from gearwhine.output import staging
 from gearwhine.output.sections import Column, Document, Section, table_of
 from gearwhine.progress import Progress, silent
@@ -70,14 +70,17 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     return {"folder": str(folder), "files": [source.name for source in sources]}
 
 
-def report_case(case: Case, folder: Path, *, interactive: bool = False, progress: Progress = silent) -> dict[str, Any]:
+def write_report(
+    folder: Path, case: Case | None = None, *, interactive: bool = False, progress: Progress = silent
+) -> dict[str, Any]:
     """Write the results in a folder as one HTML page, which marks those that no longer fit the case.
 
     Parameters
     ----------
-    case : Case
     folder : path
         With results of one command or several.
+    case : Case, optional
+        By default that of the newest result.
     interactive : bool
         Whether shapes move, curves can be zoomed and tables be sorted: ``report-interactive.html`` in place of
         ``report.html``, which has no script.
@@ -107,17 +110,21 @@ def report_case(case: Case, folder: Path, *, interactive: bool = False, progress
 _EXPORTS = "exports"
 
 
-def export_case(
-    case: Case, folder: Path, formats: Sequence[Format] = ("csv", "uff", "wav"), *, signals: Signals = "sensors"
+def export_results(
+    folder: Path,
+    case: Case | None = None,
+    formats: Sequence[Format] = ("csv", "uff", "wav"),
+    *,
+    signals: Signals = "sensors",
 ) -> dict[str, Any]:
     """Write the results in a folder in formats of other programs, into its sub-folder ``exports``.
 
     Parameters
     ----------
-    case : Case
-        Gives the positions of the sensors.
     folder : path
-        A results folder.
+        With results of one command or several.
+    case : Case, optional
+        Gives the positions of the sensors; by default that of the newest result.
     formats : sequence of {"csv", "uff", "wav"}
         Tables of the report; histories, spectra and transmissibilities as datasets 58; accelerations of the sensors'
         histories as sound.
@@ -138,8 +145,12 @@ def export_case(
     from gearwhine.output.store import stored_results
     from gearwhine.results import chapters_of
 
-    if not stored_results(folder):
-        raise CaseError([Problem("export", str(folder), "a results folder: run a command on the case with -o first")])
+    results = stored_results(folder)
+    if not results:
+        expected = f"a results folder, as `gearwhine run CASE -o {folder}` leaves it"
+        raise CaseError([Problem("export", str(folder), expected)])
+    if case is None:
+        case = load_case(folder / results[0][0] / "case.toml").case
     document: dict[str, Any] = {}
     with staging(folder) as place:
         own = place / _EXPORTS

@@ -119,6 +119,7 @@ def operating_point(
     over_torque: bool = False,
     sensitivity: bool = False,
     line: str | None = None,
+    rigid_seats: bool = False,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -129,7 +130,6 @@ def operating_point(
     Parameters
     ----------
     case : Case
-        Without a housing its seats are rigid.
     over_torque : bool
         Whether to find it from 10 to 150 % of the torque as well.
     sensitivity : bool
@@ -137,6 +137,8 @@ def operating_point(
     line : str, optional
         The line that is ranked and drawn, a sensor's name or with its frequency, ``roof@1377``; by default the highest.
         It asks for the sensitivity too.
+    rigid_seats : bool
+        Whether to leave the housing out and hold the bearings in rigid seats, as in a case without one.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -148,7 +150,9 @@ def operating_point(
         Where no equilibrium is found.
     """
     require_load(case)
-    if housing is None and case.housing is not None:
+    if rigid_seats:
+        housing = None
+    elif housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     ranked = sensitivity or line is not None
     solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=ranked, line=line)

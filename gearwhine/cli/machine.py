@@ -72,6 +72,10 @@ def load(
             "By default the highest.",
         ),
     ] = None,
+    rigid_seats: Annotated[
+        bool,
+        Parameter(name=["--rigid-seats"], negative=(), help="Hold the bearings in rigid seats; leave the housing out."),
+    ] = False,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
 ) -> None:
@@ -86,6 +90,7 @@ def load(
             over_torque=over_torque,
             sensitivity=sensitivity,
             line=line,
+            rigid_seats=rigid_seats,
             folder=common.output,
             fresh=fresh,
             progress=progress,

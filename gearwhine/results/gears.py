@@ -387,7 +387,6 @@ PAIR = (
     Quantity("torque_n_m", lambda pair: pair.solved.torque),
     Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
     Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
-    Quantity("misalignment_found_rad", lambda pair: pair.misalignment.found),
     Quantity("mean_force_n", lambda pair: pair.solved.static.force),
     Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
     Quantity("path_of_contact", lambda pair: _points(path_of_contact(pair.solved.geometry))),
@@ -562,7 +561,8 @@ def _mesh(pair: Document) -> list[str]:
         lines[-1] += f", torque on the driver {pair['torque_n_m']:.5g} N·m, mesh force {pair['mean_force_n']:.1f} N"
     origin = pair.get("misalignment_from", "default")
     if origin != "default" or pair["mean_force_n"]:
-        words = misalignment_words(pair.get("misalignment_rad"), origin, pair.get("misalignment_found_rad"))
+        taken = pair.get("misalignment_rad")
+        words = misalignment_words(taken, origin, taken if origin == "operating point" else None)
         lines.append(words[0].upper() + words[1:])
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     lines.append(

@@ -88,7 +88,7 @@ BEARING = (
         (),
         "rad",
         "angle between the shaft and its seat",
-        heading="tilt [µrad]",
+        heading="tilt\n[µrad]",
         shown=".0f",
         scale=_MICRO,
     ),
@@ -107,7 +107,7 @@ BEARING = (
         (),
         "Pa",
         "greatest pressure of the rolling elements",
-        heading="pressure [GPa]",
+        heading="pressure\n[GPa]",
         shown=".3g",
         scale=1e-9,
     ),
@@ -140,7 +140,7 @@ BEARING = (
         (),
         "h",
         "basic rating life L10 by ISO 281 at the speed of operation",
-        heading="L10 [h]",
+        heading="L10\n[h]",
         shown=".3g",
     ),
     Quantity(
@@ -150,7 +150,7 @@ BEARING = (
         (),
         "h",
         "basic reference rating life L10r by ISO/TS 16281 of the elements' loads, at the speed of operation",
-        heading="L10r [h]",
+        heading="L10r\n[h]",
         shown=".3g",
     ),
 )
@@ -196,7 +196,7 @@ PAIR = (
         (),
         "N",
         "mean mesh force along the line of action",
-        heading="force [N]",
+        heading="force\n[N]",
         shown=".0f",
     ),
     Quantity("thrust_n", lambda one: one.thrust, "mesh_thrust", (), "N", "axial force on the driven gear along z"),
@@ -220,7 +220,7 @@ PAIR = (
     Quantity(
         "misalignment_over_face_m",
         lambda one: one.misalignment * one.pair.geometry.face_width,
-        heading="misaligned [µm]",
+        heading="misaligned\n[µm]",
         shown="z.2f",
         scale=_MICRO,
     ),
@@ -241,7 +241,7 @@ PAIR = (
         (),
         "N/m",
         "mean mesh stiffness under load over the mesh period",
-        heading="stiffness [N/µm]",
+        heading="stiffness\n[N/µm]",
         shown=".1f",
         scale=_MEGA,
     ),
@@ -337,12 +337,12 @@ TAKEN = (
 
 _PAIR_COLUMNS = (
     *columns_of(PAIR),
-    Column("TE p-p [µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
+    Column("TE p-p\n[µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
 )
 _CAUSE_COLUMNS = (
     *columns_of(PAIR)[:2],
-    Column("misaligned [µrad]", "misalignment_rad", "z.2f", _MICRO),
-    *(Column(f"by {cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
+    Column("misaligned\n[µrad]", "misalignment_rad", "z.2f", _MICRO),
+    *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
 )
 
 _PLACE = ("shaft_place",)
@@ -684,24 +684,24 @@ _PICTURES = (
 
 
 _TORQUE_COLUMNS = (
-    Column("torque [N m]", "torque_n_m", ".4g"),
+    Column("torque\n[N m]", "torque_n_m", ".4g"),
     Column("pair", "pair"),
-    Column("misaligned [µrad]", "misalignment_rad", "z.2f", _MICRO),
+    Column("misaligned\n[µrad]", "misalignment_rad", "z.2f", _MICRO),
     Column("K_Hβ", "k_h_beta", ".3f"),
-    Column("stiffness [N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
-    Column("TE p-p [µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
+    Column("stiffness\n[N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
+    Column("TE p-p\n[µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
 )
 
 _MOST_INFLUENCES = 10  # parameters of a table
 _MOST_BEARINGS = 8  # of a sentence
 _INFLUENCE_COLUMNS = (
     Column("parameter", "parameter"),
-    Column("of", "kind"),
+    Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
     Column("step", "step"),
     Column("pair", "pair"),
-    Column("misaligned [µrad]", "misalignment_rad", "+.3f", _MICRO),
+    Column("misaligned\n[µrad]", "misalignment_rad", "+.3f", _MICRO),
     Column("K_Hβ", "k_h_beta", "+.4f"),
-    Column("TE p-p [nm]", "transmission_error_peak_to_peak_m", "+.2f", 1e9),
+    Column("TE p-p\n[nm]", "transmission_error_peak_to_peak_m", "+.2f", 1e9),
 )
 
 

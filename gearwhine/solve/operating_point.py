@@ -187,7 +187,7 @@ def solve_load(
     ----------
     case : Case
     housing : SolvedHousing, ReducedHousing or None
-        Of the case; without it seats are rigid. For the gradients a solved one.
+        Of the case; None for rigid seats, also where the case has one. For the gradients a solved one.
     progress : callable
     over_torque : bool
         Whether to find it at `TORQUES` as well.
@@ -209,7 +209,7 @@ def solve_load(
     operation = case.operation
     assert operation is not None
     part = reduce_housing(case, housing, progress) if isinstance(housing, SolvedHousing) else housing
-    machine = describe_machine(case, None if part is None else part.component)
+    machine = describe_machine(case, None if part is None else part.component, grounded=part is None)
     progress("static equilibrium of the machine")
     point = machine.operating_point(operation.gravity)
     found: dict[float, OperatingPoint] = {}

@@ -75,3 +75,34 @@ def test_options_of_one_folder_keep_each_others_results(tmp_path: Path, capsys: 
     other = load("--set", "operation.torque=50 N*m")
     assert not {"kept", "sensitivity", "over_torque"} & set(other)
     assert "load-over-torque.png" not in {path.name for path in out.iterdir()}
+
+
+def test_rigid_seats_leave_the_housing_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The same equilibrium as of the case without a housing; no housing is solved for it."""
+    out = tmp_path / "out"
+    assert run_command(["load", "small-gearbox", "-q", "--json", "--rigid-seats", "-o", str(out)]) == 0
+    rigid = json.loads(capsys.readouterr().out)
+    assert rigid["seats"] == "rigid"
+    assert all(bearing["seat_displacement_m"] == [0.0, 0.0, 0.0] for bearing in rigid["bearings"])
+    assert not {"modes.nc", "load-housing.png"} & {path.name for path in out.iterdir()}
+    bare = ("--set", "housing=", "--set", "bearing.*.seat=ground")
+    assert run_command(["load", "small-gearbox", "-q", "--json", *bare]) == 0
+    alone = json.loads(capsys.readouterr().out)
+    assert [one["force_n"] for one in rigid["bearings"]] == [one["force_n"] for one in alone["bearings"]]
+    assert rigid["gear_pairs"] == alone["gear_pairs"]
+
+
+def test_a_folder_is_reported_without_its_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert run_command(["load", "spur-pair", "-q", "-o", str(out)]) == 0
+    assert run_command(["report", str(out), "-q"]) == 0
+    assert "report.html" in capsys.readouterr().out
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "Operating point" in page
+    assert "Does not fit" not in page
+    assert run_command(["report", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert "what is asked for cannot be used as it stands" in told
+    assert f"as `gearwhine run CASE -o {tmp_path}` leaves it" in told
+    assert run_command(["report", str(out), "-o", str(tmp_path / "other")]) == 2
+    assert "none beside the results folder" in capsys.readouterr().err

@@ -35,7 +35,7 @@ def test_full_scale_is_the_next_round_number(peak: float) -> None:
 
 def test_what_is_not_there_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["export", "small-gearbox", "-q", "-o", str(tmp_path / "none")]) == 2
-    assert "run a command on the case with -o first" in capsys.readouterr().err
+    assert "as `gearwhine run CASE -o" in capsys.readouterr().err
     assert run_command(["check", "small-gearbox", "-q", "-o", str(tmp_path / "out")]) == 0
     assert run_command(["export", "small-gearbox", "-q", "--wav", "-o", str(tmp_path / "out")]) == 2
     assert "results with what can be written as wav" in capsys.readouterr().err

@@ -1,15 +1,19 @@
 """Operating point of cases: its document, arrays, warnings and text, against statics and the library's own call."""
 
+import io
+import json
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.case import CaseError
 from gearwhine.cli import run_command
+from gearwhine.output.terminal import show_section
 from gearwhine.results import chapters_of
 from gearwhine.results.operating_point import sections
 from gearwhine.solve.operating_point import SolvedLoad, load_warnings
@@ -170,6 +174,32 @@ def test_the_terminal_is_compact(helical: Result[SolvedLoad], capsys: pytest.Cap
     assert "Forces balance to" in told.out
     assert "nothing holds, and no load drives: the rotation of 'input'" in told.out.lower()
     assert told.err.startswith("warning: gear pair 'pinion' -> 'wheel': the case gives a misalignment")
+
+
+def test_tables_of_long_names_fit_a_hundred_columns() -> None:
+    """With every column there is: rolling bearings, all torques, all influences; no cell is cut or broken."""
+    force = {"x": "-294 N", "y": "-807 N", "z": "0 N"}
+    study = gw.load("spur-pair", {"bearing.0.stiffness": ROLLING, "bearing.0.load": force})
+    document = json.loads(study.operating_point(over_torque=True, sensitivity=True).json())
+    long, gears = "intermediate-front", {"driver": "pinion 1", "driven": "wheel 1"}
+    for bearing in document["bearings"]:
+        bearing |= {"name": long, "force_n": [-12345.6] * 3}
+    for holder in (document, *document["over_torque"], *document["sensitivity"]):
+        for pair in holder["gear_pairs"]:
+            pair |= gears
+    for influence in document["sensitivity"]:
+        influence["parameter"] = long
+    text = io.StringIO()
+    console = Console(file=text, width=WIDEST, highlight=False, markup=False)
+    for section in sections(document):
+        show_section(console, section)
+    lines = text.getvalue().splitlines()
+    assert max(len(line.rstrip()) for line in lines) <= WIDEST
+    assert "…" not in text.getvalue()
+    assert sum(long in line for line in lines) == len(document["bearings"]) + len(document["sensitivity"])
+    assert sum("pinion 1 → wheel 1 " in line for line in lines) == len(document["over_torque"]) + len(
+        document["sensitivity"]
+    )
 
 
 def test_nothing_that_loads_the_machine_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

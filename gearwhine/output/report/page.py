@@ -135,7 +135,7 @@ def _style() -> str:
 
 
 def _stored(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
-    expected = f"a results folder with {SUMMARY}: run a command on the case with -o first"
+    expected = f"a results folder with {SUMMARY}, as `gearwhine run CASE -o {folder}` leaves it"
     found = stored_results(folder)
     if (folder / SUMMARY).exists() and not any(own == Path() for own, _ in found):
         raise CaseError([Problem("report", str(folder / SUMMARY), f"{expected}; this one is damaged")])
