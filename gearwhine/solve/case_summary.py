@@ -17,6 +17,7 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.plausibility import centrifugal_warnings
 from rotors import Rotor as BuiltRotor
 
 
@@ -113,9 +114,16 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     pairs = tuple(_checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(pair.given), pair.geometry)
+    locations = axial_locations(case)
+    warnings += centrifugal_warnings(
+        (one.name, one.rolling, speeds[location.shaft])
+        for location in locations
+        for one in location.bearings
+        if one.rolling is not None and location.shaft in speeds
+    )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
-    return CheckedCase(case, mesh, rotors, pairs, axial_locations(case), warnings)
+    return CheckedCase(case, mesh, rotors, pairs, locations, warnings)
 
 
 def _checked_pairs(case: Case) -> Iterator[CheckedPair]:
