@@ -17,6 +17,7 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.part_fits import fit_warnings
 from gearwhine.solve.plausibility import centrifugal_warnings
 from rotors import Rotor as BuiltRotor
 
@@ -114,6 +115,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     pairs = tuple(_checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(pair.given), pair.geometry)
+    warnings += fit_warnings(case, {one.given.name: one.built for one in rotors}, None if mesh is None else mesh.mesh)
     locations = axial_locations(case)
     warnings += centrifugal_warnings(
         (one.name, one.rolling, speeds[location.shaft])
