@@ -690,13 +690,12 @@ class _StaticModel:
         count = len(self.bearings)
         meshes = states[count : count + len(self.pairs)]
         pressed = max((float(loads[:-1].sum()) for _, loads, _ in meshes), default=0.0)
-        least = _IDLE * pressed
         if self.pairs and pressed <= RESIDUAL_BAR * float(np.abs(self.load).max(initial=0.0)):
             names = ", ".join(pair.label for pair in self.pairs)
             turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())
             raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
         pairs = tuple(
-            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, least)
+            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, pressed)
             for pair, approach, rows, twist in zip(
                 self.pairs, deflections[count:], self.directions[count:], self.twists, strict=False
             )
@@ -779,7 +778,7 @@ class _StaticModel:
         approach: FloatArray,
         causes: Mapping[str, FloatArray],
         twisted: FloatArray,
-        least: float,
+        pressed: float,
     ) -> PairLoad:
         contact = pair.contact
         slope = -contact.face_slope
@@ -789,9 +788,11 @@ class _StaticModel:
         by_cause["bodies"] = twist
         touched = approach - pair.clearance * contact.uniform
         force = contact.at(touched).force
+        # What the balance of forces leaves open is no load of a pair that only turns along.
+        force = force if force > RESIDUAL_BAR * pressed else 0.0
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
         # An idle pair is solved under a small force, which moves nothing else.
-        loading = force if force > 0.0 else least
+        loading = force if force > 0.0 else _IDLE * pressed
         mean = contact.under_force(loading, shape)
         fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)

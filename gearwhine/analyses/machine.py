@@ -22,7 +22,12 @@ from gearwhine.solve.coupled_system import SolvedSystem, solve_system
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
-from gearwhine.solve.plausibility import add_uncertainty, machine_warnings, unstable_modes_warnings
+from gearwhine.solve.plausibility import (
+    add_uncertainty,
+    centrifugal_warnings,
+    machine_warnings,
+    unstable_modes_warnings,
+)
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 
@@ -51,6 +56,10 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
     """
     solved = solve_rotors(case, progress)
     document = rotors_document(solved)
+    for one in solved:
+        fast = [(name, state.bearing, one.operation or 0.0) for name, state in one.rolling.items()]
+        loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in one.rolling.items()}
+        add_warnings(document, centrifugal_warnings(fast, loads))
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_rotors

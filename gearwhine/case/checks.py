@@ -255,7 +255,7 @@ def _seat_warnings(case: Case) -> list[str]:
     loose = [bearing.name for bearing in case.bearing if "seat" not in bearing.model_fields_set]
     if case.housing is None or not loose or all(bearing.grounded for bearing in case.bearing):
         return []
-    names = ", ".join(show_value(name) for name in loose)
+    names = ", ".join(f'"{name}"' for name in loose)
     verb = "has no 'seat': it stands" if len(loose) == 1 else "have no 'seat': they stand"
     return [
         f"bearing{'s' * (len(loose) > 1)} {names} {verb} on the ground, not in [housing]; give the name of a "

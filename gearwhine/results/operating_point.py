@@ -387,9 +387,9 @@ TORQUE = (
             Quantity("driver", lambda one: one.pair.driver.name),
             Quantity("driven", lambda one: one.pair.driven.name),
             Quantity("misalignment_rad", lambda one: one.misalignment),
-            Quantity("k_h_beta", lambda one: one.k_h_beta),
-            Quantity("mean_stiffness_n_per_m", lambda one: one.mean_stiffness),
-            Quantity("transmission_error_peak_to_peak_m", lambda one: np.ptp(one.transmission_error)),
+            Quantity("k_h_beta", _of_loaded(lambda one: one.k_h_beta)),
+            Quantity("mean_stiffness_n_per_m", _of_loaded(lambda one: one.mean_stiffness)),
+            Quantity("transmission_error_peak_to_peak_m", _of_loaded(lambda one: np.ptp(one.transmission_error))),
         ),
     ),
 )
@@ -490,7 +490,8 @@ def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
     def taken(solved: "SolvedLoad") -> Any:
         if not solved.over_torque or not solved.point.pairs:
             return None
-        return np.array([[of(pair) for pair in point.pairs] for point in solved.over_torque.values()])
+        rows = [[of(pair) for pair in point.pairs] for point in solved.over_torque.values()]
+        return np.array(rows, dtype=np.float64)  # NaN of pairs that carry nothing
 
     return Quantity("", taken, f"{name}_over_torque", ("load_torque", "loaded_pair"), unit, f"{what} over torque")
 
@@ -553,13 +554,13 @@ LOAD = (
         "torque of the first driver",
     ),
     _over_torque("misalignment", "rad", "angle between the flanks", lambda pair: pair.misalignment),
-    _over_torque("face_load_factor", "1", "face load factor K_Hbeta", lambda pair: pair.k_h_beta),
-    _over_torque("mesh_mean_stiffness", "N/m", "mean mesh stiffness", lambda pair: pair.mean_stiffness),
+    _over_torque("face_load_factor", "1", "face load factor K_Hbeta", _of_loaded(lambda pair: pair.k_h_beta)),
+    _over_torque("mesh_mean_stiffness", "N/m", "mean mesh stiffness", _of_loaded(lambda pair: pair.mean_stiffness)),
     _over_torque(
         "transmission_error_peak_to_peak",
         "m",
         "peak-to-peak static transmission error",
-        lambda pair: np.ptp(pair.transmission_error),
+        _of_loaded(lambda pair: np.ptp(pair.transmission_error)),
     ),
 )
 """Of the operating point."""

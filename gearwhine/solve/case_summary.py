@@ -23,6 +23,8 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.part_fits import fit_warnings
+from gearwhine.solve.plausibility import centrifugal_warnings
 from rotors import Rotor as BuiltRotor
 
 
@@ -119,9 +121,18 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
+    warnings += fit_warnings(case, {one.given.name: one.built for one in rotors}, None if mesh is None else mesh.mesh)
+    locations = axial_locations(case)
+    speeds = {one.given.name: one.speed for one in rotors if one.speed is not None}
+    warnings += centrifugal_warnings(
+        (one.name, one.rolling, speeds[location.shaft])
+        for location in locations
+        for one in location.bearings
+        if one.rolling is not None and location.shaft in speeds
+    )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
-    return CheckedCase(case, mesh, rotors, pairs, axial_locations(case), warnings)
+    return CheckedCase(case, mesh, rotors, pairs, locations, warnings)
 
 
 def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:

@@ -26,7 +26,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.load_sensitivity import LoadSensitivity, solve_load_sensitivity
-from gearwhine.solve.plausibility import bearing_load_warnings
+from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings
 from rotors import EquilibriumError, RotorError
 from rotors.rolling_bearings import BallRow, RollerRow, Row
 
@@ -40,6 +40,7 @@ _DIFFERENCE = 0.1  # part of the larger of two numbers by which they may differ 
 _ALIGNED = 1e-6  # difference of misalignments that is none [rad]
 _UNEVEN = 2.0  # K_Hβ beyond which a face is said to carry unevenly
 _SHORT_LIFE = 1000.0  # [h]
+_WRONG_SIDE = 1e-3  # part of a bearing's force that balls in angular contact may carry against their angle
 _ARC_MINUTE = math.radians(1.0 / 60.0)
 # Largest angles between shaft and seat (SKF, Rolling Bearings, 2018: deep groove ball bearings 2' to 10', cylindrical
 # roller bearings 3' or 4' by their series), and the pressures of the static rating (ISO 76) [Pa].
@@ -315,6 +316,7 @@ def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
         *([] if note is None else [warning("sensitivity", note)]),
         *told,
         *(found for one in solved.bearings for found in _bearing_warnings(one)),
+        *_speed_warnings(solved),
         *_stiffness_warnings(case, solved, loads),
         *(found for one in solved.point.pairs for found in _face_warnings(one)),
         *_misalignment_warnings(solved),
@@ -340,6 +342,18 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
             bearing=name,
             peak_pressure_pa=state.peak_pressure,
         )
+    for each, thrust in zip(state.bearing.rows, state.row_thrusts, strict=True):
+        angular = type(each) is BallRow and each.contact_angle > 0.0 and not each.self_aligning
+        if angular and -thrust > _WRONG_SIDE * float(np.linalg.norm(one.load.force[:3])):
+            way = "-z" if each.direction > 0 else "+z"
+            yield warning(
+                "thrust side",
+                f'bearing "{name}": its balls carry {-thrust:.4g} N towards {way}, against their contact angle, on a '
+                "shoulder that a bearing of this type does not have; turn it round (`carries`) or let another bearing "
+                "take that thrust",
+                bearing=name,
+                thrust_n=-thrust,
+            )
     limit, kind = _tilt_limit(row)
     if len(state.bearing.rows) == 1 and one.load.tilt > limit:
         yield warning(
@@ -368,6 +382,15 @@ def _tilt_limit(row: Row) -> tuple[float, str]:
     if type(row) is BallRow and row.contact_angle == 0.0 and not row.self_aligning:
         return _BALL_TILT, "deep groove ball"
     return math.inf, ""
+
+
+def _speed_warnings(solved: SolvedLoad) -> list[dict[str, Any]]:
+    """Warn of bearings so fast that the centrifugal force of their elements matters."""
+    rolling = [(one.load.mounted, one.load.rolling) for one in solved.bearings if one.load.rolling is not None]
+    return centrifugal_warnings(
+        [(mounted.bearing.name, state.bearing, solved.machine.speeds[mounted.rotor]) for mounted, state in rolling],
+        {mounted.bearing.name: max(float(row.outer_load.max()) for row in state.rows) for mounted, state in rolling},
+    )
 
 
 def _stiffness_warnings(case: Case, solved: SolvedLoad, told: set[str]) -> Iterator[dict[str, Any]]:

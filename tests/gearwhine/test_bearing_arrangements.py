@@ -134,3 +134,16 @@ def test_moments_stand_beside_the_forces() -> None:
     assert headings == ["bearing", "pressure [GPa]", "preload [N]", "L10 [h]", "L10r [h]", "x, y, z [N/µm]"]
     stiffness = np.diag(result.solved.point.bearings[0].stiffness)[:3]
     assert [float(part) for part in texts[0][-1].split(",")] == pytest.approx(1e-6 * stiffness, rel=1e-3)
+
+
+def test_balls_that_carry_thrust_on_the_wrong_shoulder_are_warned_of() -> None:
+    """Both bearings of each shaft carry towards +z; the wheel is pushed along -z, with all of the thrust."""
+    balls = {"count": 13, "element_diameter": "9.6 mm", "pitch_diameter": "46 mm", "contact_angle": "40 deg"}
+    changes = opposed(("+z", "+z"))
+    for number in range(4):
+        changes[f"bearing.{number}.stiffness"] = {"rolling": balls}
+    document = gw.load("helical-pair", changes).operating_point().document
+    found = [one for one in document["warnings"] if one["name"] == "thrust side"]
+    assert {one["bearing"] for one in found} == {"output-left", "output-right"}
+    assert sum(one["thrust_n"] for one in found) == pytest.approx(-document["gear_pairs"][0]["thrust_n"], rel=1e-6)
+    assert "N towards -z, against their contact angle" in found[0]["message"]

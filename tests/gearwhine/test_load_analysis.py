@@ -17,6 +17,7 @@ from gearwhine.output.terminal import show_section
 from gearwhine.results import chapters_of
 from gearwhine.results.operating_point import sections
 from gearwhine.solve.operating_point import SolvedLoad, load_warnings
+from rotors.rolling_bearings.rows import STEEL
 
 WIDEST = 100  # columns of the terminal
 # Pinion of `helical-pair`: 23 teeth of module 3 mm, 15 degrees of helix, 20 degrees of normal pressure angle.
@@ -341,3 +342,21 @@ def test_lives_of_rotors_and_load_are_those_of_one_rating() -> None:
     (turning,) = [one for rotor in study.rotors().document["rotors"] for one in rotor["rolling_bearings"]]
     for key in ("dynamic_rating_n", "dynamic_rating_from", "life_h", "reference_life_h"):
         assert turning[key] == (loaded[key] if isinstance(loaded[key], str) else pytest.approx(loaded[key], rel=1e-9))
+
+
+def test_fast_bearings_are_warned_of_the_centrifugal_force_that_is_left_out() -> None:
+    """F = m d_m / 2 (½ (1 - D/d_m) Ω)² of a steel ball of 6308's size, by hand; at 5500 rpm n d_m is below 500 000."""
+    load = {"x": "-294 N", "y": "-807 N", "z": "0 N"}
+    changes = {"bearing.0.stiffness": ROLLING, "bearing.0.load": load}
+    assert not [text for text in gw.load("spur-pair", changes).check().warnings if "n·d_m" in text]
+    study = gw.load("spur-pair", changes | {"operation.speed": "8000 rpm"})
+    mass = STEEL.element_density * np.pi / 6.0 * 15.081e-3**3
+    cage = 0.5 * (1.0 - 15.081 / 65.0) * 8000.0 * np.pi / 30.0
+    force = mass * 32.5e-3 * cage**2
+    assert force == pytest.approx(44.0 * (8000.0 * 65.0 / 5e5) ** 2, rel=0.02)  # the figure in the docs
+    for result in (study.operating_point(), study.check(), study.rotors()):
+        (entry,) = [one for one in result.document["warnings"] if one["name"] == "bearing speed"]
+        assert entry["speed_factor_mm_per_min"] == pytest.approx(8000.0 * 65.0)
+        assert entry["centrifugal_force_n"] == pytest.approx(force, rel=1e-9)
+        assert "n·d_m = 5.2e+05 mm/min (8000 rpm, pitch circle 65 mm)" in entry["message"]
+        assert f"{force:.3g} N each" in entry["message"]

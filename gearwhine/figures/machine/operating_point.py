@@ -348,6 +348,8 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
     for number, (what, of) in enumerate(shown):
         axes = panel(figure, FOOT + number * (_SMALL + _SMALL_ROOM), _SMALL)
         for place, pair in enumerate(solved.point.pairs):
+            if pair.force == 0.0:
+                continue
             name = f"{name_in_legend(pair.pair.driver.name)} → {name_in_legend(pair.pair.driven.name)}"
             values = [of(row.pairs[place]) for row in rows]
             color = SERIES[place % len(SERIES)]
