@@ -15,7 +15,9 @@ from hashlib import sha256
 from pathlib import Path
 
 _WORKERS = 2
-_FIGURE_IS_AN_ARGUMENT = "figure.savefig(sys.argv[1])"
+# How an example takes the file or folder that it writes.
+_FIGURE = "figure.savefig(sys.argv[1])"
+_FOLDER = "folder = sys.argv[1] if"
 
 
 def write_gallery(root: Path, folder: Path, rooms: tuple[str, ...]) -> None:
@@ -59,7 +61,7 @@ def _output(path: Path, kept: Path, root: Path) -> Path:
     if kept.is_dir():
         return kept
     source = path.read_text(encoding="utf-8")
-    arguments = ["figure.png"] if _FIGURE_IS_AN_ARGUMENT in source else ["results"] if "sys.argv" in source else []
+    arguments = ["figure.png"] if _FIGURE in source else ["results"] if _FOLDER in source else []
     with tempfile.TemporaryDirectory() as work:
         environment = os.environ | {"PYTHONPATH": str(root), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
         done = subprocess.run(
