@@ -16,6 +16,7 @@ from gearwhine.output.sections import Picture, Section
 
 _LARGEST = 8 << 20  # bytes: a larger file is no picture of ours
 _LIGHT = 512  # bytes: not worth packing
+_TALL = 1.2  # height over width of a picture that fills a printed page
 _COLOURS, _QUALITY = 256, 85  # of a palette, and of WebP
 _SMALL, _WIDE = 720, 1400  # pixels across, of a small picture and of any
 
@@ -83,7 +84,8 @@ def figure(shown: Shown, identifier: str) -> str:
     kind, data, (width, height) = packed
     encoded = base64.b64encode(data).decode("ascii")
     image = f'<img alt="{caption}" width="{width}" height="{height}" src="data:{kind};base64,{encoded}">'
-    return f'<figure id="{identifier}" data-picture="{name}">{image}<figcaption>{caption}</figcaption></figure>\n'
+    tall = ' class="tall"' if height > _TALL * width else ""
+    return f'<figure id="{identifier}" data-picture="{name}"{tall}>{image}<figcaption>{caption}</figcaption></figure>\n'
 
 
 def _packed(path: Path, widest: int) -> tuple[str, bytes, tuple[int, int]] | None:
