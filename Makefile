@@ -3,6 +3,8 @@
 #   make demo   runs the main job on the NASA gear noise rig
 #   make test   lint, strict types, import arrows, tests
 #
+# and make docs builds the documentation site in build/site.
+#
 # Each makes the virtual environment in .venv and installs into it where that is missing or out of date.
 
 PYTHON ?= python3
@@ -17,7 +19,7 @@ export OPENBLAS_NUM_THREADS ?= 2
 # Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo test lint types unit validation stiffness-page install install-dev system format constraints clean
+.PHONY: demo test lint types unit docs reference validation stiffness-page install install-dev system format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
@@ -60,14 +62,28 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 	$(PIP) install -c constraints.txt -e .
 	@touch $@
 
+$(VENV)/.installed-docs: pyproject.toml constraints.txt | $(BIN)/python
+	@echo "Installing with the tools of the documentation site ..."
+	$(PIP) install -c constraints.txt -e .[docs]
+	@touch $@
+
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "Installing with the development tools (some minutes) ..."
 	$(PIP) install -c constraints.txt -e .[dev]
 	@touch $@ $(VENV)/.installed
 
+# The documentation site, from the pages in docs, the docstrings, the schema and the worked examples, which it runs.
+# It is read without a network: open build/site/index.html.
+docs: $(VENV)/.installed-docs install
+	$(BIN)/sphinx-build -W --keep-going -q -j 2 -b html -c docs . build/site
+
 # The validation page, from the tests against published values.
 validation: install-dev
 	$(BIN)/pytest tests/validation -q --validation-table docs/validation.md
+
+# The tables of the case file and the page of the commands, from the schema and the commands.
+reference: install
+	$(BIN)/python scripts/reference_pages.py
 
 # The tables and the figure of the page of stiffness models.
 stiffness-page: install
@@ -81,7 +97,7 @@ format: install-dev
 constraints:
 	rm -rf .venv-constraints
 	$(PYTHON) -m venv .venv-constraints
-	.venv-constraints/bin/pip --disable-pip-version-check -qq install -e .[dev]
+	.venv-constraints/bin/pip --disable-pip-version-check -qq install -e .[dev,docs]
 	{ sed -n '/^#/p' constraints.txt; .venv-constraints/bin/pip freeze --exclude-editable; } > constraints.new
 	mv constraints.new constraints.txt
 	rm -rf .venv-constraints

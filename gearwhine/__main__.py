@@ -1,10 +1,18 @@
 """The ``gearwhine`` command."""
 
+import os
 import sys
+
+_BLAS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def main() -> None:
     """Run the command and leave with its exit code."""
+    if "OMP_NUM_THREADS" not in os.environ:
+        # Read when numpy is loaded, later than here. Factorisations and products of the housing have threads of their
+        # own; those of BLAS wait for each other in the small matrices of a machine, on a busy processor for minutes.
+        for name in _BLAS:
+            os.environ.setdefault(name, "1")
     from gearwhine.cli import run_command
 
     sys.exit(run_command(sys.argv[1:]))

@@ -32,7 +32,9 @@ def explain(error: Exception) -> tuple[int, str | None]:
 
     if isinstance(error, CaseError):
         count = len(error.problems)
-        head = "the case cannot be used as it stands" if count == 1 else f"{count} problems in the case"
+        asked = all(problem.key.startswith(("--", "report")) for problem in error.problems)
+        what = "what is asked for" if asked else "the case"
+        head = f"{what} cannot be used as it stands" if count == 1 else f"{count} problems in {what}"
         return 2, head + ":\n" + "\n".join(f"  {problem}" for problem in error.problems)
     if isinstance(error, CouplingError | GearError | HousingError | GeometryError | RotorError):
         return 2, str(error)

@@ -10,13 +10,18 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.output import file_stems
+from gearwhine.output.quantity import warning
+from gearwhine.output.report import MovingShape
 from gearwhine.progress import Progress
-from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
+from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
+    from gearwhine.solve.load_sensitivity import LoadSensitivity
     from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.operating_shapes import RunLine
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
+    from housing.pictures.drawn_shapes import DrawnShape
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
@@ -26,8 +31,12 @@ _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
 _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
+_DB = 20.0 / np.log(10.0)  # of a level, in one relative change of an amplitude
 _MOST_MODES = 5000
 _DOMINANT = 8
+_MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
+_BYTES, _BYTES_OF_TRIANGLE = 5e6, 20.0  # of all their models, compressed and in base64
+_TRIANGLES = 1500, 10000  # of each, at least and at most
 
 
 def check_request(
@@ -137,15 +146,76 @@ def draw_lines(
     CaseError
         As :func:`gearwhine.solve.operating_shapes.read_spectrum_lines`.
     """
-    from gearwhine.drawing_process import draw_in_process
-    from gearwhine.solve.operating_shapes import lines_document, operating_shape_of_line, read_spectrum_lines
+    from gearwhine.solve.operating_shapes import lines_document, read_spectrum_lines
     from housing.pictures.drawn_shapes import drawn_housing
 
     lines = read_spectrum_lines(folder, frequencies, housing)
+    draw_operating_shapes(housing, lines, view, mode_format, place, progress)
+    return lines_document(lines, housing, drawn_housing(housing.mesh))
+
+
+def draw_operating_shapes(
+    housing: SolvedHousing,
+    lines: "Sequence[RunLine]",
+    view: str,
+    mode_format: ModeFormat,
+    place: Path,
+    progress: Progress,
+) -> list[str]:
+    """Draw the housing at lines of a run into ``place``, and name the files: ``line-1283.3Hz.png`` and so on."""
+    from gearwhine.drawing_process import draw_in_process
+    from gearwhine.solve.operating_shapes import operating_shape_of_line
+    from housing.pictures.drawn_shapes import drawn_housing
+
     surface = drawn_housing(housing.mesh)
-    shapes = [operating_shape_of_line(line, housing, surface) for line in lines]
-    draw_in_process(surface, shapes, place, mode_format, view, progress)
-    return lines_document(lines, housing, surface)
+    shapes = [operating_shape_of_line(line, housing.modes, surface) for line in lines]
+    return draw_in_process(surface, shapes, place, mode_format, view, progress)
+
+
+def moving_shapes(folder: Path) -> list[MovingShape]:
+    """Return all modes stored in a results folder, and the operating shapes at a run's highest lines, as 3D models.
+
+    Parameters
+    ----------
+    folder : path
+        Empty is the list where it holds no modes of a housing that can be read.
+    """
+    from gearwhine.solve.operating_shapes import operating_shape_of_line, stored_lines
+    from housing.errors import ModeFileError
+    from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
+    from housing.pictures.gltf import light_model
+    from housing.storage.mode_file import read_modes
+
+    try:
+        record = read_modes(folder / MODE_CACHE_FILE)
+    except (OSError, ModeFileError):
+        return []
+    surface = drawn_housing(record.mesh)
+    lines = stored_lines(folder, record, _MOVING_LINES)
+    shapes = [operating_shape_of_line(line, record.modes, surface) for line in lines]
+    shapes += drawn_modes(surface, record.modes, range(1, min(len(record.modes.shapes), _MOVING_MODES) + 1))
+    triangles = int(np.clip(_BYTES / (_BYTES_OF_TRIANGLE * len(shapes)), *_TRIANGLES))
+    return [MovingShape(one.name, one.title, one.note, light_model(surface, one, triangles)) for one in shapes]
+
+
+def draw_load_pictures(
+    housing: SolvedHousing | None, solved: "SolvedLoad", place: Path, progress: Progress
+) -> list[dict[str, Any]]:
+    """Draw a housing at an operating point, and its sensitivity where that is known; return warnings.
+
+    Without a renderer numbers and figures are there, and a warning says so.
+    """
+    from housing.errors import RendererUnavailableError
+
+    if housing is None or solved.point.housing is None:
+        return []
+    try:
+        draw_deflection(housing, solved.point.housing, "iso", place, progress)
+        if solved.sensitivity is not None:
+            draw_sensitivity(housing, solved, "iso", place, progress)
+    except RendererUnavailableError as error:
+        return [warning("pictures", f"no picture of the housing: {error}")]
+    return []
 
 
 def draw_deflection(
@@ -186,7 +256,9 @@ def draw_deflection(
 def draw_sensitivity(
     housing: SolvedHousing, solved: "SolvedLoad", view: str, place: Path, progress: Progress
 ) -> list[str]:
-    """Draw where material on the housing changes the misalignment of each gear pair, as ``load-sensitivity-PAIR.png``.
+    """Draw where material on the housing changes the misalignment of each gear pair, and the level of a sensor's line.
+
+    They are ``load-sensitivity-PAIR.png`` and ``load-sensitivity-line.png``.
 
     Parameters
     ----------
@@ -229,7 +301,31 @@ def draw_sensitivity(
         )
         quantity = "Change [µrad/(mm·dm²)]"
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
+    shapes += _line_shapes(solved.sensitivity, surface.nodes)
     return draw_in_process(surface, shapes, place, "png", view, progress) if shapes else []
+
+
+def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -> "list[DrawnShape]":
+    """Change of the ranked line's level by material on the surface, on the housing's motion at the line."""
+    from gearwhine.figures.style import shortened
+    from housing.pictures.drawn_shapes import DrawnShape
+
+    if sensitivity.lines is None or sensitivity.line_density is None:
+        return []
+    line = sensitivity.sensor_lines[sensitivity.line]
+    motion = sensitivity.lines.field(line.motion)[nodes]
+    values = _PER_MM_DM2 * 1e-6 * _DB / line.amplitude * sensitivity.line_density[nodes]
+    largest = float(np.quantile(np.abs(values), _SHOWN_PART))
+    if largest == 0.0:
+        return []
+    # At the instant of the largest motion.
+    turned = motion * np.exp(-0.5j * np.angle(np.sum(motion**2)))
+    title = f"{shortened(line.sensor, 20)} at {line.frequency / _TWO_PI:.0f} Hz: level by added material"
+    note = (
+        f"{line.amplitude:.3g} m/s² now; blue lowers, red raises it by each mm on a dm² of surface. "
+        f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
+    )
+    return [DrawnShape("load-sensitivity-line", title, note, turned.real, "Change [dB/(mm·dm²)]", largest, values)]
 
 
 def draw_measured(

@@ -14,9 +14,11 @@ from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
     from coupling import Machine
+    from gearwhine.analyses.case import Format
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.mode_pictures import ModeFormat
+    from gearwhine.output.export import Signals
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.coupled_system import SolvedSystem
@@ -210,7 +212,14 @@ class Study:
 
         return machine.gears(self.case, progress=self.progress)
 
-    def operating_point(self, *, over_torque: bool = False, sensitivity: bool = False) -> Result[SolvedLoad]:
+    def operating_point(
+        self,
+        *,
+        over_torque: bool = False,
+        sensitivity: bool = False,
+        line: str | None = None,
+        rigid_seats: bool = False,
+    ) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.machine.operating_point`."""
         from gearwhine.analyses import machine
 
@@ -218,7 +227,9 @@ class Study:
             self.case,
             over_torque=over_torque,
             sensitivity=sensitivity,
-            housing=self.housing,
+            line=line,
+            rigid_seats=rigid_seats,
+            housing=None if rigid_seats else self.housing,
             progress=self.progress,
         )
 
@@ -299,6 +310,24 @@ class Study:
         return machine.sweep(
             self.case, self._source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
         )
+
+    def export(
+        self,
+        folder: str | os.PathLike[str],
+        formats: Sequence[Format] = ("csv", "uff", "wav"),
+        *,
+        signals: Signals = "sensors",
+    ) -> list[str]:
+        """Write the results in a folder in formats of other programs; see :func:`gearwhine.analyses.case.export_results`.
+
+        Returns
+        -------
+        list of str
+            The files, relative to the folder.
+        """
+        from gearwhine.analyses.case import export_results
+
+        return list(export_results(Path(folder), self.case, formats, signals=signals)["files"])
 
 
 def _text(value: object) -> str:

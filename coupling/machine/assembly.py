@@ -38,7 +38,7 @@ from coupling.machine.connectors import (
     SpeedTable,
     shaft_dashpots,
 )
-from coupling.machine.coupled_system import CoupledSystem, embed
+from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing
 from coupling.machine.loads import (
     AnyTorque,
@@ -132,6 +132,28 @@ class CoupledMachine:
             return {}
         name = self.housing.name
         return {sensor: self.rows(name, row) for sensor, row in self.housing.sensors.items()}
+
+    def flanks(self, number: int) -> tuple[int, bool]:
+        """Mesh of a contact of the system, and whether the contact is its back flanks."""
+        backs = _back_contacts(self.meshes)
+        return (number, False) if number < len(self.meshes) else (backs.index(number), True)
+
+    def shuttling(self, number: int, law: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
+        """Moments of load shuttling of a contact with another law of its flanks, as a constant load and harmonics.
+
+        Parameters
+        ----------
+        number : int
+            Of the contact in the system.
+        law : ToothContact
+        force : float
+            Mean mesh force, above 0 [N].
+        """
+        place, back = self.flanks(number)
+        mesh = self.meshes[place]
+        sense = (1 if self.speeds[mesh.driver.rotor] >= 0.0 else -1) * (-1 if back else 1)
+        coordinates = MachineCoordinates(self.system.components, self.speeds)
+        return _shuttling(coordinates, mesh, sense, replace(self.system.contacts[number], contact=law), force)
 
     def at_speed(self, speed: float) -> "CoupledMachine":
         """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
@@ -407,17 +429,22 @@ def _with_shuttling(
     for contact, mean, (mesh, sense) in zip(system.contacts, mean_meshes(system), flanks, strict=True):
         if mean is None or mean.force <= 0.0:
             continue
-        push, axial = _push(mesh, sense)
-        tilting = np.zeros(system.size)
-        for mounted, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
-            rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
-            tilting += side * coordinates.rows(mounted.rotor, push[0] * rows[4] - push[1] * rows[3])
-        shifted, moving = shuttling_loads(
-            contact.contact, mesh.geometry, mean.force, axial, tilting, contact.phase, contact.rate
-        )
+        shifted, moving = _shuttling(coordinates, mesh, sense, contact, mean.force)
         constant += shifted
         harmonics += moving
     return replace(system, load=constant, harmonic_loads=tuple(harmonics))
+
+
+def _shuttling(
+    coordinates: MachineCoordinates, mesh: GearMesh, sense: int, contact: ContactConnector, force: float
+) -> tuple[FloatArray, list[HarmonicLoad]]:
+    """Moments of a contact's load about the middle of the face, see `shuttling_loads`."""
+    push, axial = _push(mesh, sense)
+    tilting = np.zeros(coordinates.size)
+    for mounted, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+        rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
+        tilting += side * coordinates.rows(mounted.rotor, push[0] * rows[4] - push[1] * rows[3])
+    return shuttling_loads(contact.contact, mesh.geometry, force, axial, tilting, contact.phase, contact.rate)
 
 
 def _push(mesh: GearMesh, sense: int) -> tuple[tuple[float, float], float]:

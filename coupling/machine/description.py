@@ -15,7 +15,7 @@ from math import copysign
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
+from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears import GearPairGeometry
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
@@ -23,6 +23,7 @@ from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
 from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
 from coupling.machine.assembly import CoupledMachine, assemble_machine
+from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
@@ -189,6 +190,20 @@ class Machine:
         applied = [AppliedTorque(one.rotor, one.at, one.value) for one in self.constant_torques]
         return self.train.mean_pair_torques(applied, self.speed)
 
+    @cached_property
+    def axial_locations(self) -> tuple[AxialLocation, ...]:
+        """Axial location of each shaft by its bearings."""
+        speeds = self.speeds
+        return tuple(
+            AxialLocation(shaft.name, [axial_support(one, speeds[shaft.name]) for one in self._bearings_on(shaft.name)])
+            for shaft in self.shafts
+        )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is allowed but likely not meant: bearings that do not hold their shaft against each other."""
+        return tuple(text for location in self.axial_locations for text in location.warnings)
+
     def shaft(self, name: str) -> Shaft:
         """Return the shaft of this name."""
         return next(shaft for shaft in self.shafts if shaft.name == name)
@@ -278,6 +293,9 @@ class Machine:
     def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:
         """Solve static equilibrium under the mean torques: loads, deflections, misalignment, load over the faces.
 
+        Without any torque no flanks carry, and the result has no gear pairs: it is the equilibrium of preloads and
+        weight.
+
         Parameters
         ----------
         gravity : sequence of float, optional
@@ -286,7 +304,7 @@ class Machine:
         Raises
         ------
         CouplingError
-            Where a load drives a motion that nothing holds, or no torque acts on gears.
+            Where a load drives a motion that nothing holds, or the torques do not load the gears.
         EquilibriumNotFoundError
             Where no equilibrium is found, or the forces do not balance.
         rotors.EquilibriumError
@@ -294,21 +312,38 @@ class Machine:
         """
         sense = 1 if self.speed >= 0.0 else -1
         pairs = []
+        carrying = any(torque.value != 0.0 for torque in self.constant_torques)
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+            if not carrying:
+                continue
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
             gears = self._static_gears((driver, driven), geometry)
             pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
-        return solve_operating_point(
-            [self._static_shaft(shaft, pairs) for shaft in self.shafts],
-            [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
-            pairs,
-            self.housing_component,
-            self.constant_torques,
-            gravity,
-            self.forces,
-        )
+        try:
+            return solve_operating_point(
+                [self._static_shaft(shaft, pairs) for shaft in self.shafts],
+                [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
+                pairs,
+                self.housing_component,
+                self.constant_torques,
+                gravity,
+                self.forces,
+            )
+        except EquilibriumNotFoundError as error:
+            raise EquilibriumNotFoundError("; ".join((str(error), *self.warnings))) from error
+
+    def preload_point(self) -> OperatingPoint:
+        """Solve static equilibrium without torques, forces and weight: the forces with which bearings are preloaded.
+
+        Raises
+        ------
+        EquilibriumNotFoundError, rotors.EquilibriumError
+            As :meth:`operating_point`.
+        """
+        outputs = [one if one.torque is None else replace(one, torque=0.0) for one in self.outputs]
+        return replace(self, torque=0.0, outputs=outputs, forces=()).operating_point()
 
     @property
     def needs_operating_point(self) -> bool:
@@ -338,7 +373,7 @@ class Machine:
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
         point = self.operating_point(gravity) if point is None else point
-        gaps = {one.names: one.station_gap for one in point.pairs}
+        gaps = point.flank_gaps([pair_label(pair) for pair in self.gear_pairs if pair.misalignment is None])
         pairs = [
             replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
             if pair.misalignment is None
@@ -531,7 +566,7 @@ class Machine:
 
     def _component(self, shaft: Shaft, limit_factor: float, progress: Callable[[str], None]) -> RotorComponent:
         progress(f"modes of rotor {shaft.name}")
-        held = [mounted for mounted in self.bearings if mounted.rotor == shaft.name]
+        held = self._bearings_on(shaft.name)
         limit, count = shaft.frequency_limit, shaft.mode_count
         if limit is None and count is None:
             limit = 2.0 * np.pi * LATERAL_LIMIT_HZ
@@ -577,7 +612,7 @@ class Machine:
 
     def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
         """Shaft with nodes at bearings, loads and faces, thickened by the solid bodies of its gears."""
-        places = [mounted.bearing.at for mounted in self.bearings if mounted.rotor == shaft.name]
+        places = [mounted.bearing.at for mounted in self._bearings_on(shaft.name)]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         places += [one.at for one in self.forces if one.rotor == shaft.name]
         for pair in pairs:
@@ -592,6 +627,9 @@ class Machine:
                 bodies.append((ends[0], min(ends[1], shaft.rotor.length), 2.0 * one.gear.root_circle_radius))
         exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
+
+    def _bearings_on(self, shaft: str) -> list[MountedBearing]:
+        return [mounted for mounted in self.bearings if mounted.rotor == shaft]
 
     def _gears_on(self, shaft: str) -> list[ShaftGear]:
         return [gear for gear in self.gears if gear.shaft == shaft]

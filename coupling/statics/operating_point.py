@@ -316,6 +316,26 @@ class OperatingPoint:
         """Return the load of the bearing of this name."""
         return next(one for one in self.bearings if one.name == name)
 
+    def flank_gaps(self, unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
+        """Gap of the flanks over the face [m], by the names of driver and driven gear.
+
+        Parameters
+        ----------
+        unaligned : sequence of str
+            Labels of the pairs whose misalignment has to follow from this point.
+
+        Raises
+        ------
+        CouplingError
+            Where there are such pairs and no torque loads the flanks.
+        """
+        if unaligned and not self.pairs:
+            raise CouplingError(
+                f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
+                "expected a torque, or the misalignment"
+            )
+        return {one.names: one.station_gap for one in self.pairs}
+
 
 def solve_operating_point(
     shafts: Sequence[StaticShaftPart],
@@ -643,9 +663,12 @@ class _StaticModel:
         # Elastic forces are differences of large ones where a part is short and stiff: their rounding is no imbalance,
         # on whatever node it is left.
         terms = np.abs(self.stiffness + extra) @ np.abs(x)
+        # Without loads the preloads are the scale, also of rows that press each other within a bearing.
+        laws = [] if np.any(self.load) else zip(self.laws, deflections, strict=True)
+        pressing = max((law.elements.at(z).force for law, z in laws if isinstance(law, RollingElementLaw)), default=0.0)
         rounding = _ROUNDINGS * np.finfo(np.float64).eps * float(terms[: self.housing_first].max())
-        beyond, _ = self._relative(np.maximum(np.abs(residual) - rounding, 0.0), forces)
-        relative, where = self._relative(residual, forces)
+        beyond, _ = self._relative(np.maximum(np.abs(residual) - rounding, 0.0), forces, pressing)
+        relative, where = self._relative(residual, forces, pressing)
         if not (beyond <= RESIDUAL_BAR and relative <= _LARGEST_ROUNDING):
             raise EquilibriumNotFoundError(
                 f"no static equilibrium of the machine: {relative:.3g} of the largest load is out of balance on "
@@ -667,13 +690,12 @@ class _StaticModel:
         count = len(self.bearings)
         meshes = states[count : count + len(self.pairs)]
         pressed = max((float(loads[:-1].sum()) for _, loads, _ in meshes), default=0.0)
-        least = _IDLE * pressed
         if self.pairs and pressed <= RESIDUAL_BAR * float(np.abs(self.load).max(initial=0.0)):
             names = ", ".join(pair.label for pair in self.pairs)
             turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())
             raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
         pairs = tuple(
-            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, least)
+            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, pressed)
             for pair, approach, rows, twist in zip(
                 self.pairs, deflections[count:], self.directions[count:], self.twists, strict=False
             )
@@ -692,10 +714,13 @@ class _StaticModel:
         housing = None if self.housing is None else x[own]
         return OperatingPoint(shafts, bearings, pairs, housing, relative, iterations, free, tangent)
 
-    def _relative(self, residual: FloatArray, forces: Sequence[FloatArray]) -> tuple[float, str]:
-        """Largest force out of balance over the largest load, moments over that load times the longest shaft; where."""
+    def _relative(self, residual: FloatArray, forces: Sequence[FloatArray], least: float) -> tuple[float, str]:
+        """Largest force out of balance over the largest load, moments over that load times the longest shaft; where.
+
+        The largest load is at least ``least`` [N].
+        """
         longest = max(float(np.ptp(part.shaft.places)) for part in self.shafts) or 1.0
-        largest = 1e-300
+        largest = max(least, 1e-300)
         for part in self.shafts:
             load = self.load[self._own(part.name)].reshape(-1, 6)
             largest = max(largest, float(np.abs(load[:, :3]).max()), float(np.abs(load[:, 3:]).max()) / longest)
@@ -753,7 +778,7 @@ class _StaticModel:
         approach: FloatArray,
         causes: Mapping[str, FloatArray],
         twisted: FloatArray,
-        least: float,
+        pressed: float,
     ) -> PairLoad:
         contact = pair.contact
         slope = -contact.face_slope
@@ -763,9 +788,11 @@ class _StaticModel:
         by_cause["bodies"] = twist
         touched = approach - pair.clearance * contact.uniform
         force = contact.at(touched).force
+        # What the balance of forces leaves open is no load of a pair that only turns along.
+        force = force if force > RESIDUAL_BAR * pressed else 0.0
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
         # An idle pair is solved under a small force, which moves nothing else.
-        loading = force if force > 0.0 else least
+        loading = force if force > 0.0 else _IDLE * pressed
         mean = contact.under_force(loading, shape)
         fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)

@@ -1,18 +1,22 @@
-"""The bundled cases, what follows from a case without solving it, and a results folder as a page."""
+"""The bundled cases, what follows from a case without solving it, and a results folder as a page or exported."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files
+from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files, load_case
 from gearwhine.output import staging
 from gearwhine.output.sections import Column, Document, Section, table_of
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
+    from gearwhine.output.export import Signals
     from gearwhine.solve.case_summary import CheckedCase
+
+Format = Literal["csv", "uff", "wav"]
 
 
 def check(case: Case, *, progress: Progress = silent) -> Result[CheckedCase]:
@@ -66,12 +70,137 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     return {"folder": str(folder), "files": [source.name for source in sources]}
 
 
-def report_case(case: Case, folder: Path) -> dict[str, Any]:
-    """Write the results in a folder as one HTML page, which marks those that no longer fit the case."""
-    from gearwhine.output.html import report_page
+def write_report(
+    folder: Path, case: Case | None = None, *, interactive: bool = False, progress: Progress = silent
+) -> dict[str, Any]:
+    """Write the results in a folder as one HTML page, which marks those that no longer fit the case.
+
+    Parameters
+    ----------
+    folder : path
+        With results of one command or several.
+    case : Case, optional
+        By default that of the newest result.
+    interactive : bool
+        Whether shapes move, curves can be zoomed and tables be sorted: ``report-interactive.html`` in place of
+        ``report.html``, which has no script.
+    progress : callable
+
+    Raises
+    ------
+    CaseError
+        Where the folder holds no results, or a summary cannot be read.
+    """
+    from gearwhine.output.report import Contents, report_page
+    from gearwhine.results import chapters_of
+    from gearwhine.results.first_page import first_page
+
+    name, shapes = "report.html", None
+    if interactive:
+        from gearwhine.mode_pictures import moving_shapes
+
+        progress("modelling the shapes that move")
+        name, shapes = "report-interactive.html", moving_shapes(folder)
+    page = report_page(folder, Contents(chapters_of, first_page), case, shapes=shapes)
+    with staging(folder) as place:
+        (place / name).write_text(page, encoding="utf-8")
+    return {"folder": str(folder), "files": [name]}
+
+
+_EXPORTS = "exports"
+
+
+def export_results(
+    folder: Path,
+    case: Case | None = None,
+    formats: Sequence[Format] = ("csv", "uff", "wav"),
+    *,
+    signals: Signals = "sensors",
+) -> dict[str, Any]:
+    """Write the results in a folder in formats of other programs, into its sub-folder ``exports``.
+
+    Parameters
+    ----------
+    folder : path
+        With results of one command or several.
+    case : Case, optional
+        Gives the positions of the sensors; by default that of the newest result.
+    formats : sequence of {"csv", "uff", "wav"}
+        Tables of the report; histories, spectra and transmissibilities as datasets 58; accelerations of the sensors'
+        histories as sound.
+    signals : {"sensors", "all"}
+        Whether the universal files leave out forces and motions of bearings, gears and meshes.
+
+    Returns
+    -------
+    dict
+        ``tables``, ``universal_files`` and ``sounds``, each a list of files with what they hold.
+
+    Raises
+    ------
+    CaseError
+        Where the folder holds no results, or nothing that can be written in any of these formats.
+    """
+    from gearwhine.output import export
+    from gearwhine.output.store import stored_results
     from gearwhine.results import chapters_of
 
-    page = report_page(folder, chapters_of, case)
+    results = stored_results(folder)
+    if not results:
+        expected = f"a results folder, as `gearwhine run CASE -o {folder}` leaves it"
+        raise CaseError([Problem("export", str(folder), expected)])
+    if case is None:
+        case = load_case(folder / results[0][0] / "case.toml").case
+    document: dict[str, Any] = {}
     with staging(folder) as place:
-        (place / "report.html").write_text(page, encoding="utf-8")
-    return {"folder": str(folder), "files": ["report.html"]}
+        own = place / _EXPORTS
+        own.mkdir()
+        if "csv" in formats:
+            document["tables"] = export.write_tables(folder, chapters_of, own)
+        if "uff" in formats:
+            document["universal_files"] = export.write_universal_files(folder, own, _sensors(case), signals)
+        if "wav" in formats:
+            document["sounds"] = export.write_sounds(folder, own)
+        files = sorted(path.relative_to(place).as_posix() for path in own.iterdir())
+        if not files:
+            expected = f"results with what can be written as {', '.join(formats)}"
+            raise CaseError([Problem("export", str(folder), f"{expected}: run the case with a transient and sensors")])
+    return document | {"folder": str(folder), "files": files}
+
+
+def _sensors(case: Case) -> list[tuple[str, tuple[float, float, float], int]]:
+    """Name, position and direction of each sensor, as universal files number them."""
+    sensors = () if case.housing is None else case.housing.sensor
+    return [(sensor.name, sensor.position, _direction(sensor.unit_vector)) for sensor in sensors]
+
+
+def _direction(unit_vector: tuple[float, float, float] | None) -> int:
+    """Return 1, 2, 3 for x, y, z with a sign; 0 for another direction and for the normal of the surface."""
+    for number, share in enumerate(unit_vector or (), start=1):
+        if abs(share) > 1.0 - 1e-9:
+            return number if share > 0.0 else -number
+    return 0
+
+
+def export_sections(document: Document) -> tuple[Section, ...]:
+    """Return what was exported, as tables."""
+    sounds = (
+        Column("file", "file"),
+        Column("sensor", "sensor"),
+        Column("full scale [m/s²]", "full_scale_m_per_s2", "g"),
+        Column("peak [m/s²]", "peak_m_per_s2"),
+        Column("rms [m/s²]", "rms_m_per_s2"),
+        Column("length [s]", "seconds", ".3f"),
+    )
+    tables = (Column("file", "file"), Column("rows", "rows"))
+    functions = (Column("file", "file"), Column("functions", "functions"))
+    return (
+        Section(
+            "",
+            (
+                *table_of(tables, document.get("tables", ()), "Tables (CSV)"),
+                *table_of(functions, document.get("universal_files", ()), "Universal files, datasets 58"),
+                *table_of(sounds, document.get("sounds", ()), "Sounds of the sensors' acceleration (WAV)"),
+            ),
+        ),
+    )

@@ -6,26 +6,30 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, require, swept_keys
-from gearwhine.from_case.machine import basis_error, solve_machine, solve_pairs
-from gearwhine.mode_pictures import draw_deflection, draw_sensitivity
+from gearwhine.case import Case, dump_case, require, swept_keys
+from gearwhine.from_case.machine import basis_error, point_of_pairs, require_machine, solve_machine, solve_pairs
+from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
-from gearwhine.results.operating_point import LOAD, load_document
+from gearwhine.results.operating_point import LOAD, kept_options, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.steady_state import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.coupled_system import SolvedSystem, solve_system
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.operating_point import SolvedLoad, load_warnings, require_load, solve_load
-from gearwhine.solve.plausibility import add_uncertainty, machine_warnings, unstable_modes_warnings
+from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
+from gearwhine.solve.plausibility import (
+    add_uncertainty,
+    centrifugal_warnings,
+    machine_warnings,
+    unstable_modes_warnings,
+)
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
-from housing.errors import RendererUnavailableError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,6 +56,10 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
     """
     solved = solve_rotors(case, progress)
     document = rotors_document(solved)
+    for one in solved:
+        fast = [(name, state.bearing, one.operation or 0.0) for name, state in one.rolling.items()]
+        loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in one.rolling.items()}
+        add_warnings(document, centrifugal_warnings(fast, loads))
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_rotors
@@ -90,9 +98,14 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         Where the case has no gear pairs, or one cannot be solved as it stands.
     """
     require(case, "gear_pair", command="gears")
-    loaded = solve_pairs(case, None, progress)
+    point = point_of_pairs(case, None, progress)
+    loaded = solve_pairs(case, None, progress, point=point)
     aims = relief_aims(case, loaded, progress, folder=folder)
-    pairs = solve_over_torques(analyse_pairs(case, loaded), progress, aims)
+    pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
+    document = gears_document(pairs)
+    if point is not None and case.housing is not None:
+        message = "the misalignment is that of bearings in rigid seats; load and run find it with the housing"
+        add_warnings(document, [warning("rigid seats", message)])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_gear_pairs
@@ -103,7 +116,7 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
         "gears",
         case,
         pairs,
-        gears_document(pairs),
+        document,
         _arrays=lambda: labelled(case, (GEARS, pairs)),
         _figures=figures,
     )
@@ -114,6 +127,8 @@ def operating_point(
     *,
     over_torque: bool = False,
     sensitivity: bool = False,
+    line: str | None = None,
+    rigid_seats: bool = False,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -124,11 +139,15 @@ def operating_point(
     Parameters
     ----------
     case : Case
-        Without a housing its seats are rigid.
     over_torque : bool
         Whether to find it from 10 to 150 % of the torque as well.
     sensitivity : bool
-        Whether to rank walls, bearing stiffness and positions by their influence on the gear pairs.
+        Whether to rank walls, bearing stiffness and positions by their influence on gear pairs and sensors' lines.
+    line : str, optional
+        The line that is ranked and drawn, a sensor's name or with its frequency, ``roof@1377``; by default the highest.
+        It asks for the sensitivity too.
+    rigid_seats : bool
+        Whether to leave the housing out and hold the bearings in rigid seats, as in a case without one.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -140,9 +159,12 @@ def operating_point(
         Where no equilibrium is found.
     """
     require_load(case)
-    if housing is None and case.housing is not None:
+    if rigid_seats:
+        housing = None
+    elif housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=sensitivity)
+    ranked = sensitivity or line is not None
+    solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=ranked, line=line)
     document = load_document(case.title, solved)
     add_warnings(document, load_warnings(case, solved))
 
@@ -152,15 +174,8 @@ def operating_point(
         return draw_load(case, solved)
 
     def files(place: Path, *, pictures: bool) -> None:
-        if not pictures or housing is None or solved.point.housing is None:
-            return
-        try:
-            draw_deflection(housing, solved.point.housing, "iso", place, progress)
-            if solved.sensitivity is not None:
-                draw_sensitivity(housing, solved, "iso", place, progress)
-        except RendererUnavailableError as error:
-            # The figures and numbers are there without it.
-            add_warnings(result.document, [warning("pictures", f"no picture of the housing: {error}")])
+        if pictures:
+            add_warnings(result.document, draw_load_pictures(housing, solved, place, progress))
 
     result = Result(
         "load",
@@ -171,6 +186,7 @@ def operating_point(
         _figures=figures,
         _files=files,
         _housing=housing,
+        _kept=lambda place, earlier: kept_options(dump_case(case), result.document, place, earlier),
     )
     return result
 
@@ -274,7 +290,13 @@ def steady(
     coupling.PeriodicError
         Where no periodic motion is found.
     """
-    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, folder=folder, fresh=fresh)
+    require(case, "rotor", "operation", command="steady")
+    require_machine(case)
+    if housing is None and case.housing is not None:
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+    load, told = find_load(case, housing, progress)
+    point = None if load is None else load.point
+    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, point=point)
     solved = solve_steady(
         case,
         machine,
@@ -286,21 +308,25 @@ def steady(
         exact=exact,
     )
     document = steady_document(case.title, solved)
-    add_warnings(document, machine_warnings(machine))
-    error = basis_error(case, machine, solved_housing, pairs, progress)
+    if load is not None:
+        document["load"] = load_part(load)
+    add_warnings(document, [*machine_warnings(machine), *told])
+    error = basis_error(case, machine, solved_housing, pairs, progress, point=point)
     add_uncertainty(document, error, document["trusted_below_hz"])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_steady
+        from gearwhine.figures import draw_load, draw_steady
 
-        return draw_steady(case, solved)
+        yield from draw_steady(case, solved)
+        if load is not None:
+            yield from draw_load(case, load)
 
     return Result(
         "steady",
         case,
         solved,
         joined(document, origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (STEADY, solved)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (LOAD, load), (STEADY, solved)),
         _figures=figures,
         _housing=solved_housing,
     )

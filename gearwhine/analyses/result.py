@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -12,8 +13,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from gearwhine.case import Case
 from gearwhine.output import COMMANDS, finite, json_text, staging
 from gearwhine.output.quantity import add_warnings
-from gearwhine.output.store import store_results
+from gearwhine.output.store import Kept, earlier_result, store_results
 from gearwhine.progress import Progress, silent
+from housing.storage.netcdf import Variables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -74,6 +76,7 @@ class Result(Generic[Solved]):
     _housing: SolvedHousing | None = None
     _data_file: str = "results.nc"
     _started: float | None = None
+    _kept: Callable[[Path, Mapping[str, Any]], Kept] | None = None
 
     def __post_init__(self) -> None:
         """Give the document its list of warnings."""
@@ -157,10 +160,18 @@ class Result(Generic[Solved]):
             Where the folder cannot be written to; what it held stays as it was.
         """
         begin = time.perf_counter()
+        kept = Kept()
+        for key in self.document.pop("kept", ()):  # of another folder
+            del self.document[key]
+        if self._kept is not None and (earlier := earlier_result(Path(folder), self.command)) is not None:
+            kept = self._kept(*earlier)
+            self.document.update(kept.document)
 
         def write(place: Path) -> None:
             progress("writing results")
-            self._write_data(place)
+            self._write_data(place, kept.variables)
+            for file in kept.files:
+                shutil.copyfile(file, place / file.name)
             if pictures:
                 from gearwhine.figures.style import save_all
 
@@ -179,14 +190,14 @@ class Result(Generic[Solved]):
             self.document.update(folder=str(folder), files=files)
         return list(self.document["files"])
 
-    def _write_data(self, place: Path) -> None:
+    def _write_data(self, place: Path, kept: Variables) -> None:
         if self._arrays is None:
             return
         from gearwhine.output.dataset import LabelledArrays
 
         found = self._arrays()
         if isinstance(found, LabelledArrays):
-            found.write(place / self._data_file)
+            replace(found, variables={**found.variables, **kept}).write(place / self._data_file)
         else:
             found.to_netcdf(place / self._data_file, engine="h5netcdf")
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine, solve_pairs
-from gearwhine.mode_pictures import draw_modes
+from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.output.quantity import add_warnings, joined
@@ -21,6 +21,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import comparison_document, write_comparison
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
+from gearwhine.results.operating_point import LOAD, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import RUN_SIGNATURE, TRANSIENT, HistoryStream, run_signature_document, transient_document
 from gearwhine.results.system import SYSTEM, system_document
@@ -28,6 +29,8 @@ from gearwhine.solve.comparison import compare_housing
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import MODE_CACHE_FILE, solve_housing, write_mode_cache
+from gearwhine.solve.operating_point import find_load
+from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, unstable_modes_warnings
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
@@ -41,11 +44,14 @@ if TYPE_CHECKING:
     from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import SolvedSignature
     from gearwhine.solve.transient import SolvedTransient
     from housing.correlation import Comparison
+
+_DRAWN_LINES = 6  # operating shapes of a run
 
 
 def run(
@@ -58,7 +64,7 @@ def run(
     until_written: ExitStack | None = None,
     progress: Progress = silent,
 ) -> Result[RunSolution]:
-    """Do everything that the case asks for: rotors, gears, housing, comparison, coupled modes, transient.
+    """Do everything that the case asks for: rotors, gears, housing, comparison, load, coupled modes, transient.
 
     Parameters
     ----------
@@ -103,8 +109,13 @@ def run(
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     timed("housing", begin)
     begin = time.perf_counter()
-    pairs = solve_pairs(case, housing, progress)
-    analysed = analyse_pairs(case, pairs)
+    part = None if housing is None or not (case.rotor and case.operation) else reduce_housing(case, housing, progress)
+    load, told = find_load(case, part, progress)
+    point = None if load is None else load.point
+    timed("load", begin)
+    begin = time.perf_counter()
+    pairs = solve_pairs(case, part, progress, point=point)
+    analysed = analyse_pairs(case, pairs, point)
     timed("rotors_and_gears", begin - seconds["rotors_and_gears"])
     if rotors:
         document = joined(document, rotors_document(rotors))
@@ -121,14 +132,16 @@ def run(
     transient, system, signature, run_signature = None, None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
-        part = None if housing is None else reduce_housing(case, housing, progress)
-        machine = build_machine(case, part, pairs, progress)
-        basis = basis_error(case, machine, part, pairs, progress)
+        machine = build_machine(case, part, pairs, progress, point=point)
+        basis = basis_error(case, machine, part, pairs, progress, point=point)
         system = solve_system(case, machine, housing, progress)
         document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         timed("system", begin)
+        if load is not None:
+            document["load"] = load_part(load)
+        add_warnings(document, told)
         if case.transient is not None:
             if folder is not None and housing is not None and not housing.source_holds:
                 # Now, not with the results: who goes on with a long transient need not solve them again.
@@ -144,7 +157,7 @@ def run(
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)
             document = joined(document, transient_document(transient, signature))
-            add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient)))
+            add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=told))
             add_uncertainty(document, basis, transient.trusted_limit)
             run_signature = solve_run_signature(case, transient)
             add_warnings(document, run_signature_warnings(case, transient))
@@ -155,7 +168,7 @@ def run(
 
     seconds["total"] = time.perf_counter() - start
     document["seconds"] = seconds
-    solved = RunSolution(rotors, analysed, housing, comparison, system, transient, signature, run_signature)
+    solved = RunSolution(rotors, analysed, housing, comparison, system, transient, signature, run_signature, load)
 
     def files(place: Path, *, pictures: bool) -> None:
         if solved.housing is None:
@@ -165,6 +178,12 @@ def run(
             write_comparison(place, comparison)
         if pictures:
             draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress)
+            if load is not None:
+                draw_load_pictures(solved.housing, load, place, progress)
+            if solved.transient is not None and solved.signature is not None:
+                lines = highest_lines(solved.signature, solved.transient.trusted_limit, _DRAWN_LINES)
+                if lines:
+                    draw_operating_shapes(solved.housing, lines, "iso", "png", place, progress)
 
     return Result(
         "run",
@@ -257,6 +276,7 @@ class RunSolution:
     transient: SolvedTransient | None
     signature: SolvedSignature | None
     run_signature: RunSignature | None
+    load: SolvedLoad | None = None
 
 
 def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
@@ -267,6 +287,7 @@ def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
         (HOUSING, solved.housing),
         (ROTORS, solved.rotors),
         (GEARS, solved.pairs),
+        (LOAD, solved.load),
         (SYSTEM, solved.system),
         (TRANSIENT, None if solved.transient is None else (solved.transient, solved.signature)),
         (RUN_SIGNATURE, solved.run_signature),
@@ -280,6 +301,8 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
 
     if solved.pairs:
         yield from figures.draw_gear_pairs(solved.pairs, progress)
+    if solved.load is not None:
+        yield from figures.draw_load(case, solved.load)
     if solved.system is not None:
         yield from figures.draw_system(case, solved.system)
     if solved.transient is not None:

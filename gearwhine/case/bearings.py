@@ -65,17 +65,24 @@ class BearingLoad(Table):
     """Mean load of a bearing: the force of the shaft on it [N]."""
 
     x: Force = 0.0
+    """Force along x."""
     y: Force = 0.0
+    """Force along y."""
     z: Force = 0.0
+    """Force along z."""
 
 
 class Stop(Table):
     """A ring around the shaft: beyond its radial `gap` [m] it takes `force` [N] at a `depth` [m], by an `exponent`."""
 
     force: Annotated[float, Quantity(units.FORCE, above=0.0)]
+    """Force at the penetration `depth`."""
     depth: PositiveLength
+    """Penetration at which the force is `force`."""
     exponent: Annotated[float, Quantity(units.RATIO, at_least=1.0, at_most=10.0)] = 1.0
+    """Exponent n of force · (penetration / depth)ⁿ."""
     gap: LengthFromZero = 0.0
+    """Radial gap between shaft and ring."""
 
     def build(self) -> GapLaw:
         """Build the force law of the stop."""
@@ -87,26 +94,37 @@ class Stop(Table):
 class Mounting(Table):
     """Fits and temperatures of a bearing, by which `clearance`, then that before mounting, changes [m, K].
 
-    `inner_interference` on the shaft and `outer_interference` in the housing are diametral, of the cold parts, less
-    `smoothing` of the surfaces; the shaft is hollow by `shaft_bore`, the housing a ring to `housing_diameter`, thick
-    where none is given. `..._rise` is a temperature over that of the sizes: of shaft and housing that of their rings
-    unless given. The shaft is of steel. `bore` and `outer_diameter` are the bearing's, where no catalogue has them.
+    The shaft is of steel.
     """
 
     inner_interference: Length = 0.0
+    """Diametral interference of the inner ring on the shaft, cold."""
     outer_interference: Length = 0.0
+    """Diametral interference of the outer ring in the housing, cold."""
     smoothing: LengthFromZero = 0.0
+    """Loss of either interference by smoothing of the surfaces."""
     shaft_bore: LengthFromZero = 0.0
+    """Bore of a hollow shaft of steel."""
     housing_diameter: PositiveLength | None = None
+    """Outer diameter of the housing around the ring. Default: thick."""
     housing_modulus: Annotated[float, Quantity(units.STRESS, above=0.0)] = 210e9
+    """Young's modulus of the housing."""
     housing_poisson_ratio: Annotated[float, Quantity(units.RATIO, above=-1.0, at_most=0.5)] = 0.3
+    """Poisson's ratio of the housing."""
     housing_expansion: Annotated[float, Quantity(units.EXPANSION, at_least=0.0)] = 11.7e-6
+    """Coefficient of thermal expansion of the housing."""
     inner_rise: Annotated[float, Quantity(units.TEMPERATURE)] = 0.0
+    """Temperature of the inner ring over that of the sizes."""
     outer_rise: Annotated[float, Quantity(units.TEMPERATURE)] = 0.0
+    """Temperature of the outer ring over that of the sizes."""
     shaft_rise: Annotated[float, Quantity(units.TEMPERATURE)] | None = None
+    """Temperature of the shaft over that of the sizes. Default: `inner_rise`."""
     housing_rise: Annotated[float, Quantity(units.TEMPERATURE)] | None = None
+    """Temperature of the housing over that of the sizes. Default: `outer_rise`."""
     bore: PositiveLength | None = None
+    """Bore of the bearing; needed without a catalogue."""
     outer_diameter: PositiveLength | None = None
+    """Outer diameter of the bearing; needed without a catalogue."""
 
     def operating_clearance(self, row: Row, clearance: float, bore: float, outer_diameter: float) -> float:
         """Diametral clearance in operation of a row in a bearing of these diameters [m]."""
@@ -143,30 +161,38 @@ class Mounting(Table):
 
 
 class _Mounted(Table):
-    """Mounting of a bearing: clearance, preload and arrangement of rows [m, N].
-
-    `clearance` is diametral and in running, or before mounting with `mounting`; a negative one is an interference.
-    `preload` is axial: of a single row a spring's force on the shaft along `carries`, of two rows the force with which
-    they press each other. `carries` is the way in which an axial force of the shaft presses the elements of a single
-    row, or of two in tandem; `axial_offset` moves the inner ring that way at assembly, against another bearing.
-    `law`: whether it is the linear one about its load in the transient, or that of every element with its play as they
-    go round. `dynamic_rating` and `static_rating` are the maker's C and C0 of the whole bearing, for the rated life and
-    for an inside that is estimated. `flanges` let cylindrical rollers carry axial load, by `flange_stiffness` each.
-    """
+    """Mounting of a bearing: clearance, preload and arrangement of rows [m, N]."""
 
     law: Literal["linear", "nonlinear"] = "linear"
+    """Law in the transient: the tangent about the load, or the Hertzian force of every element with its clearance while
+    the cage rotates, which excites the ball-pass frequency. "nonlinear" is not for four-point balls and flanges."""
     clearance: Length = 0.0
+    """Diametral clearance in operation, or before mounting where `mounting` is given; negative is an interference."""
     mounting: Mounting | None = None
+    """Fits and temperatures, which change the clearance."""
     preload: Annotated[float, Quantity(units.FORCE, at_least=0.0)] = 0.0
+    """Axial preload: of one row a spring's force on the shaft along `carries`, of two rows the force between them.
+    Springs of two opposed bearings cancel on the shaft: their preload is `axial_offset`."""
     axial_offset: Length = 0.0
+    """Displacement of the inner ring along `carries` at assembly: rigid preload against another bearing of the shaft,
+    whose force `gearwhine load` finds."""
     carries: Literal["+z", "-z"] = "+z"
+    """Direction of the axial force of the shaft that loads the elements."""
     arrangement: Arrangement = "single"
+    """One such row, or two."""
     spacing: PositiveLength | None = None
+    """Distance of the centres of two rows; needed for two."""
     dynamic_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
+    """Basic dynamic load rating C of the whole bearing, for the lives of `rotors` and `load`. Default: that of the
+    geometry by ISO 281."""
     static_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
+    """Basic static load rating C0 of the whole bearing; improves an inside that is estimated from a catalogue."""
     flanges: Literal["none", "one", "both"] = "none"
+    """Flanges of cylindrical rollers, which carry no axial load without: one, along `carries`, or both."""
     flange_stiffness: PositiveStiffness | None = None
+    """Stiffness of each roller between its flanges; needed with `flanges`."""
     axial_clearance: LengthFromZero = 0.0
+    """Axial clearance between the flanges."""
 
     @property
     def pressed(self) -> bool:
@@ -263,22 +289,30 @@ _KINDS: dict[str, CatalogueType] = {
 
 
 class RollingGeometry(_Mounted):
-    """A rolling bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter.
-
-    `count` is of one row; "spherical-roller" and "self-aligning-ball" have two. `contact_angle` is that at the outer
-    ring; `osculation` the contour radius of spherical rollers over that of their raceways.
-    """
+    """A rolling bearing by its geometry [m, rad]; a groove is its radius over the ball's diameter."""
 
     element: Element = "ball"
+    """Rolling elements. "four-point-ball" has two arcs a ring, with the `contact_angle` of the shim;
+    "self-aligning-ball" has two rows in a spherical outer ring; "roller" is cylindrical; "spherical-roller" has two
+    rows."""
     count: Annotated[int, Whole(3, 500)]
+    """Number of elements of one row."""
     element_diameter: PositiveLength
+    """Diameter of the balls or rollers."""
     element_length: PositiveLength | None = None
+    """Length of contact of rollers; needed for them."""
     pitch_diameter: PositiveLength
+    """Diameter of the circle of the elements' centres."""
     contact_angle: _ContactAngle = 0.0
+    """Contact angle at the outer ring; needed by four-point and self-aligning balls and tapered rollers."""
     inner_groove: _Groove | None = None
+    """Groove radius of the inner ring over the ball's diameter. Default: 0.52, of self-aligning balls 0.53."""
     outer_groove: _Groove | None = None
+    """Groove radius of the outer ring over the ball's diameter. Default: 0.53."""
     profile: Literal["straight", "logarithmic"] | None = None
+    """Profile of cylindrical and tapered rollers. Default: logarithmic."""
     osculation: Annotated[float, Quantity(units.RATIO, above=0.0, below=1.0)] | None = None
+    """Contour radius of spherical rollers over that of the raceways. Default: 0.98."""
 
     @model_validator(mode="after")
     def _fits(self) -> RollingGeometry:
@@ -352,17 +386,20 @@ class RollingGeometry(_Mounted):
 
 
 class Catalogue(Table):
-    """Main dimensions of a catalogue [m, rad]; the inside is estimated.
-
-    `axial_factor` is the catalogue's Y of tapered or Y1 of spherical rollers, in place of their contact angle.
-    """
+    """Main dimensions of a catalogue [m, rad]; the inside is estimated."""
 
     type: CatalogueType
+    """Type of the bearing."""
     bore: PositiveLength
+    """Bore."""
     outer_diameter: PositiveLength
+    """Outer diameter."""
     width: PositiveLength
+    """Width, of tapered rollers T."""
     contact_angle: _ContactAngle | None = None
+    """Contact angle. Default: a usual one of the type."""
     axial_factor: Annotated[float, Quantity(units.RATIO, above=0.0)] | None = None
+    """Factor Y of tapered or Y1 of spherical rollers, in place of the contact angle (ISO 281)."""
 
     @model_validator(mode="after")
     def _is_a_ring(self) -> Catalogue:
@@ -391,6 +428,7 @@ class RollingCatalogue(_Mounted):
     """A rolling bearing by its main dimensions."""
 
     catalogue: Catalogue
+    """Main dimensions, from which the inside is estimated."""
 
     @model_validator(mode="after")
     def _has_rings(self) -> RollingCatalogue:
@@ -457,27 +495,39 @@ class RadialStiffness(_Radial):
     """A 2×2 radial stiffness [N/m]: force against the shaft's motion relative to its seat."""
 
     xx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS, above=0.0))]
+    """Stiffness xx: force along x against motion along x; a list with `speeds`."""
     yy: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS, above=0.0))]
+    """Stiffness yy: force along y against motion along y; a list with `speeds`."""
     xy: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))] = 0.0
+    """Stiffness xy: force along x against motion along y; a list with `speeds`."""
     yx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))] = 0.0
+    """Stiffness yx: force along y against motion along x; a list with `speeds`."""
 
 
 class RadialDamping(_Radial):
     """A 2×2 radial damping [N s/m]."""
 
     xx: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING, at_least=0.0))] = 0.0
+    """Damping xx: force along x against velocity along x; a list with `speeds`."""
     yy: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING, at_least=0.0))] = 0.0
+    """Damping yy: force along y against velocity along y; a list with `speeds`."""
     xy: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING))] = 0.0
+    """Damping xy: force along x against velocity along y; a list with `speeds`."""
     yx: Annotated[Coefficient, OverSpeed(Quantity(units.DAMPING))] = 0.0
+    """Damping yx: force along y against velocity along x; a list with `speeds`."""
 
 
 class PedestalStiffness(_Radial):
     """A 2×2 stiffness to the ground [N/m]."""
 
     xx: PositiveStiffness
+    """Stiffness xx to the ground."""
     yy: PositiveStiffness
+    """Stiffness yy to the ground."""
     xy: Stiffness = 0.0
+    """Stiffness xy to the ground."""
     yx: Stiffness = 0.0
+    """Stiffness yx to the ground."""
 
     @model_validator(mode="after")
     def _holds(self) -> PedestalStiffness:
@@ -490,17 +540,24 @@ class PedestalDamping(_Radial):
     """A 2×2 damping to the ground [N s/m]."""
 
     xx: DampingFromZero = 0.0
+    """Damping xx to the ground."""
     yy: DampingFromZero = 0.0
+    """Damping yy to the ground."""
     xy: Damping = 0.0
+    """Damping xy to the ground."""
     yx: Damping = 0.0
+    """Damping yx to the ground."""
 
 
 class Pedestal(Table):
     """Pedestal of a bearing on the ground: a mass [kg] on springs and dashpots, free to move in x and y."""
 
     mass: Mass = 0.0
+    """Mass."""
     stiffness: PedestalStiffness
+    """Stiffness to the ground."""
     damping: PedestalDamping = PedestalDamping()
+    """Damping to the ground."""
 
     def build(self) -> BuiltPedestal:
         """Build the pedestal."""
@@ -533,6 +590,7 @@ class _Matrix(Table):
     """A 5x5 matrix over (x, y, z, tilt about x, tilt about y)."""
 
     matrix: MatrixRows
+    """Five rows of five over x, y, z and the rotations about x and y."""
 
     def build(self) -> npt.NDArray[np.float64]:
         """Build the coefficient matrix, (5, 5)."""
@@ -563,12 +621,14 @@ class RollingStiffness(Table):
     """A stiffness that follows from the geometry of a rolling-element bearing under its load."""
 
     rolling: Rolling
+    """Rolling bearing, by its geometry or by a catalogue's main dimensions."""
 
 
 class StopStiffness(Table):
     """No stiffness, but a stop that the shaft may strike; linear analyses see its slope under the bearing's load."""
 
     stop: Stop
+    """Stop that the shaft may strike; linear analyses use its slope under `load`."""
 
 
 def _stiffness_form(value: Any) -> str:
@@ -587,11 +647,18 @@ class Bearing(Table):
     """
 
     name: Name
+    """Name of the bearing."""
     rotor: Name
+    """Name of the rotor."""
     at: LengthFromZero
+    """Station from the rotor's left end."""
     seat: Name = "ground"
+    """Name of a seat of the housing, or "ground", which is warned of beside bearings in seats."""
     speeds: tuple[SpeedFromZero, ...] | None = Field(default=None, min_length=2, max_length=MOST_ENTRIES)
+    """Ascending speeds of the rotor, at which coefficients that are lists are given; all speeds of the case lie between
+    them."""
     pedestal: Pedestal | None = None
+    """Pedestal under a bearing on the ground. Default: rigid ground."""
     stiffness: Annotated[
         Annotated[RadialStiffness, Tag("~radial")]
         | Annotated[MatrixStiffness, Tag("~matrix")]
@@ -599,11 +666,15 @@ class Bearing(Table):
         | Annotated[StopStiffness, Tag("~stop")],
         Discriminator(_stiffness_form),
     ]
+    """Stiffness against the shaft's motion relative to its seat, in one of four forms."""
     damping: Annotated[
         Annotated[RadialDamping, Tag("~radial")] | Annotated[MatrixDamping, Tag("~matrix")],
         Discriminator(_damping_form),
     ] = RadialDamping()
+    """Damping, in one of two forms."""
     load: BearingLoad | None = None
+    """Mean force of the shaft on a rolling bearing or stop. Default: of a rolling bearing that of the static
+    equilibrium, in a case with gear pairs and a torque; of a stop none."""
 
     @property
     def follows_own_law(self) -> bool:

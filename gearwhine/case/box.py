@@ -35,67 +35,91 @@ class Walls(Table):
     """Wall thicknesses face by face [m]."""
 
     left: PositiveLength
+    """Thickness of the left wall (x min)."""
     right: PositiveLength
+    """Thickness of the right wall (x max)."""
     bottom: PositiveLength
+    """Thickness of the bottom wall (y min)."""
     top: PositiveLength
+    """Thickness of the top wall (y max)."""
     back: PositiveLength
+    """Thickness of the back wall (z min)."""
     front: PositiveLength
+    """Thickness of the front wall (z max)."""
 
 
 class Feet(Table):
     """Four blocks under the corners of a box; size along x, y, z, and the diameter of their bolts' circles [m]."""
 
     size: tuple[PositiveLength, PositiveLength, PositiveLength]
+    """Size of each block along x, y, z."""
     bolt_patch: PositiveLength | None = None
+    """Diameter of the circle that each bolt clamps on the underside; names the surfaces `foot-1-bolt` to `foot-4-bolt`.
+    Default: no such surfaces."""
 
 
 class Rib(Table):
-    """A straight rib on a wall: where it runs, where its middle plane lies, how high and thick it is [m].
-
-    `start` and `end`, in the file `from` and `to`, lie along its axis; by default it runs the length of the wall.
-    """
+    """A straight rib on a wall: where it runs, where its middle plane lies, how high and thick it is [m]."""
 
     face: Face
+    """Wall that the rib stands on."""
     along: Literal["x", "y", "z"]
+    """Axis that it runs along."""
     at: Length
+    """Coordinate of its middle plane."""
     height: PositiveLength
+    """Height above the wall."""
     thickness: PositiveLength
+    """Thickness."""
     side: Literal["outside", "inside"] = "outside"
+    """Side of the wall that it stands on."""
     start: Length | None = Field(default=None, alias="from")
+    """Beginning along its axis. Default: that of the wall."""
     end: Length | None = Field(default=None, alias="to")
+    """End along its axis. Default: that of the wall."""
 
 
 class Flange(Table):
     """A frame that widens the rim under a cover: how far it stands off the walls, how thick it is [m]."""
 
     width: PositiveLength
+    """Distance that it stands off the walls."""
     thickness: PositiveLength
+    """Thickness."""
     side: Literal["outside", "inside"] = "outside"
+    """Side of the walls that it stands on."""
 
 
 class CoverBolts(Table):
-    """The bolts of a cover [m]: `per_edge`, even rows with the corners counted in both, or `positions`.
-
-    `grip` is the length between head and thread, `patch_diameter` the circle that each presses together; `material`
-    is that of the bolts, by default the housing's.
-    """
+    """The bolts of a cover [m]: `per_edge`, even rows with the corners counted in both, or `positions`."""
 
     diameter: PositiveLength
+    """Nominal diameter of the thread."""
     per_edge: tuple[Annotated[int, Whole(2, MOST_PARTS)], Annotated[int, Whole(2, MOST_PARTS)]] | None = None
+    """Number of bolts along the two edges of the plane, the corners counted in both. One of this and `positions`."""
     positions: tuple[tuple[Length, Length], ...] = Field(default=(), max_length=MOST_PARTS)
+    """Points of the plane in which the bolts stand. One of this and `per_edge`."""
     patch_diameter: PositiveLength | None = None
+    """Diameter of the circle that each bolt clamps. Default: twice the diameter."""
     grip: PositiveLength | None = None
+    """Length between head and thread. Default: the thickness of cover and flange."""
     material: Name | None = None
+    """Material of the bolts. Default: that of the housing."""
 
 
 class Cover(Table):
     """The wall of one face as a plate of its own; its thickness [m] is by default the wall's."""
 
     face: Face
+    """Face whose wall is the cover."""
     thickness: PositiveLength | None = None
+    """Thickness of the plate. Default: that of the wall."""
     flange: Flange | None = None
+    """Frame that widens the rim under the cover."""
     bolts: CoverBolts | None = None
+    """Bolts of the cover; needed unless `bonded`."""
     bonded: StrictBool = False
+    """Cover and rim share their nodes, in place of bolts."""
 
     @model_validator(mode="after")
     def _fastened(self) -> Cover:
@@ -108,22 +132,31 @@ class Fillets(Table):
     """Radii of the edges of the cavity and of the outer box [m]; those around a cover stay sharp."""
 
     inside: LengthFromZero = 0.0
+    """Radius of the edges of the cavity."""
     outside: LengthFromZero = 0.0
+    """Radius of the outer edges."""
 
 
 class Box(Table):
     """`[housing.box]`: a closed box by its outside size, walls, element size and parts, all in m."""
 
     size: tuple[BoxLength, BoxLength, BoxLength]
+    """Outside size along x, y, z."""
     wall: Annotated[
         Annotated[PositiveLength, Tag("~scalar")] | Annotated[Walls, Tag("~table")],
         Discriminator(_scalar_or_table),
     ]
+    """Wall thickness: one for all walls, or one for each face."""
     mesh_size: PositiveLength
+    """Edge length of the elements."""
     feet: Feet | None = None
+    """Four blocks under the corners."""
     ribs: tuple[Rib, ...] = Field(default=(), max_length=MOST_PARTS)
+    """Ribs on the walls."""
     cover: Cover | None = None
+    """The wall of one face as a plate of its own."""
     fillets: Fillets = Fillets()
+    """Radii of the edges; those around a cover stay sharp."""
 
     @property
     def walls(self) -> Walls:

@@ -1,4 +1,4 @@
-"""Checks across the tables of a case: names and provenance; all checks of a case in turn, and its warnings.
+"""Checks across the tables of a case: names and provenance; all checks of a case in turn, its warnings, axial location.
 
 A name belongs to one entry, and a reference finds its entry. Names are read from the document itself, so an entry in
 which something else is wrong still counts. `[provenance]` gives the origin of numbers: published, nominal or found.
@@ -7,13 +7,17 @@ which something else is wrong still counts. `[provenance]` gives the origin of n
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from gearwhine.case.bearings import Bearing, MatrixStiffness, RollingStiffness
 from gearwhine.case.check_housing import check_box, check_housing_form
 from gearwhine.case.check_machine import check_bearings, check_gears, check_running, check_shafts
 from gearwhine.case.errors import NOTHING, Finding, Location, did_you_mean, key_of, look_up, show_value
 from gearwhine.case.model import Case, Draft
 from gearwhine.case.overrides import parse_key_path, place_in_list
+
+if TYPE_CHECKING:
+    from coupling.machine.axial_location import AxialLocation, AxialSupport
 
 _PROBES = ("rotor_analysis", "unbalance_response", "probes")
 _TORSION = ("rotor_analysis", "torsional_response")
@@ -180,6 +184,38 @@ def check(draft: Draft) -> Iterator[Finding]:
     yield from check_provenance(draft)
 
 
+def axial_locations(case: Case) -> tuple[AxialLocation, ...]:
+    """Return the axial location of each rotor by its bearings; a bearing that cannot be built holds nothing."""
+    from coupling.machine.axial_location import AxialLocation, AxialSupport
+
+    found = []
+    for rotor in case.rotor:
+        given = [bearing for bearing in case.bearing if bearing.rotor == rotor.name]
+        names = {bearing.name for bearing in given}
+        supports = [_axial_support(bearing) for bearing in given]
+        for own in rotor.saved.bearings if rotor.saved is not None else ():
+            held = own.stiffness.shape[-1] == 5 and own.stiffness[..., 2, 2].min() > 0.0
+            if own.name not in names:
+                supports.append(AxialSupport(own.name, own.at, frozenset((1, -1)) if held else frozenset()))
+        found.append(AxialLocation(rotor.name, supports))
+    return tuple(found)
+
+
+def _axial_support(bearing: Bearing) -> AxialSupport:
+    from coupling.machine.axial_location import AxialSupport
+    from rotors import RotorError
+
+    stiffness = bearing.stiffness
+    if isinstance(stiffness, RollingStiffness):
+        try:
+            rolling = stiffness.rolling.build(bearing.name)
+        except RotorError:  # which every command that builds it refuses
+            return AxialSupport(bearing.name, bearing.at, frozenset())
+        return AxialSupport(bearing.name, bearing.at, rolling.thrust_senses, rolling)
+    held = isinstance(stiffness, MatrixStiffness) and stiffness.matrix[2][2] > 0.0
+    return AxialSupport(bearing.name, bearing.at, frozenset((1, -1)) if held else frozenset())
+
+
 def warnings_of(case: Case) -> tuple[str, ...]:
     """Return what is allowed in a sound case but likely not meant, a sentence each."""
     found = []
@@ -208,4 +244,20 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         held = rotor.saved is not None and rotor.saved.bearings
         if not held and not any(bearing.rotor == rotor.name for bearing in case.bearing):
             found.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
+    found += _seat_warnings(case)
+    if any(isinstance(bearing.stiffness, RollingStiffness) for bearing in case.bearing):
+        found += [text for location in axial_locations(case) for text in location.warnings]
     return tuple(found)
+
+
+def _seat_warnings(case: Case) -> list[str]:
+    """Return a sentence on bearings without a `seat` beside others that stand in the housing."""
+    loose = [bearing.name for bearing in case.bearing if "seat" not in bearing.model_fields_set]
+    if case.housing is None or not loose or all(bearing.grounded for bearing in case.bearing):
+        return []
+    names = ", ".join(f'"{name}"' for name in loose)
+    verb = "has no 'seat': it stands" if len(loose) == 1 else "have no 'seat': they stand"
+    return [
+        f"bearing{'s' * (len(loose) > 1)} {names} {verb} on the ground, not in [housing]; give the name of a "
+        '[[housing.seat]], or seat = "ground" where that is meant'
+    ]

@@ -319,7 +319,9 @@ class Plane(Table):
     """A plane at right angles to an axis, where it meets it [m]."""
 
     axis: Literal["x", "y", "z"]
+    """Axis normal to the plane."""
     at: Length
+    """Coordinate on this axis."""
 
 
 class Patch(Table):
@@ -329,8 +331,11 @@ class Patch(Table):
     """The keys that can say where; exactly one of them must."""
 
     box: tuple[Point, Point] | None = None
+    """Two opposite corners: the facets inside."""
     surface: Name | None = None
+    """Name of a surface."""
     plane: Plane | None = None
+    """Plane: the facets on it."""
 
     @model_validator(mode="after")
     def _one_place(self) -> Patch:

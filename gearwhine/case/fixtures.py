@@ -49,50 +49,70 @@ class Springs(Table):
     """Stiffness along x, y, z [N/m], in all, spread over the patch."""
 
     x: StiffnessFromZero = 0.0
+    """Stiffness along x."""
     y: StiffnessFromZero = 0.0
+    """Stiffness along y."""
     z: StiffnessFromZero = 0.0
+    """Stiffness along z."""
 
 
 class Dashpots(Table):
     """Damping along x, y, z [N s/m], in all, spread over the patch."""
 
     x: DampingFromZero = 0.0
+    """Damping along x."""
     y: DampingFromZero = 0.0
+    """Damping along y."""
     z: DampingFromZero = 0.0
+    """Damping along z."""
 
 
 class SixSprings(Springs):
     """Stiffness along x, y, z [N/m] and about them [N m/rad]."""
 
     rx: TiltStiffness = 0.0
+    """Stiffness about x."""
     ry: TiltStiffness = 0.0
+    """Stiffness about y."""
     rz: TiltStiffness = 0.0
+    """Stiffness about z."""
 
 
 class SixDashpots(Dashpots):
     """Damping along x, y, z [N s/m] and about them [N m s/rad]."""
 
     rx: TiltDamping = 0.0
+    """Damping about x."""
     ry: TiltDamping = 0.0
+    """Damping about y."""
     rz: TiltDamping = 0.0
+    """Damping about z."""
 
 
 class AxialSprings(Table):
     """Stiffness along an axis and across it [N/m], about lines across it and about itself [N m/rad]."""
 
     axial: StiffnessFromZero = 0.0
+    """Stiffness along the axis."""
     shear: StiffnessFromZero = 0.0
+    """Stiffness across the axis."""
     tilting: TiltStiffness = 0.0
+    """Stiffness about lines across the axis."""
     torsional: TiltStiffness = 0.0
+    """Stiffness about the axis."""
 
 
 class AxialDashpots(Table):
     """Damping along an axis and across it [N s/m], about lines across it and about itself [N m s/rad]."""
 
     axial: DampingFromZero = 0.0
+    """Damping along the axis."""
     shear: DampingFromZero = 0.0
+    """Damping across the axis."""
     tilting: TiltDamping = 0.0
+    """Damping about lines across the axis."""
     torsional: TiltDamping = 0.0
+    """Damping about the axis."""
 
 
 def _form(value: Any) -> str:
@@ -106,11 +126,7 @@ def amounts(table: SixSprings | SixDashpots | AxialSprings | AxialDashpots) -> t
 
 
 class Bushing(Table):
-    """Springs and dashpots in all six motions, along axes of their own or knowing one axis only.
-
-    `axis` goes with `axial`, `shear`, `tilting`, `torsional`; `axes`, the directions of the own x and y, with the six.
-    `center` is where the axes meet [m].
-    """
+    """Springs and dashpots in all six motions, along axes of their own or knowing one axis only."""
 
     stiffness: (
         Annotated[
@@ -119,6 +135,7 @@ class Bushing(Table):
         ]
         | None
     ) = None
+    """Springs, along one axis and across it or in six motions."""
     damping: (
         Annotated[
             Annotated[SixDashpots, Tag("~six")] | Annotated[AxialDashpots, Tag("~axial")],
@@ -126,9 +143,13 @@ class Bushing(Table):
         ]
         | None
     ) = None
+    """Dashpots, with the same keys as the springs."""
     axis: Direction | None = None
+    """Direction of `axial`, with the keys of one axis."""
     axes: tuple[Vector, Vector] | None = None
+    """Directions of the own x and y, with the keys of six motions. Default: the global ones."""
     center: Point | None = None
+    """Point where the axes meet. Default: the middle of the patch."""
 
     @model_validator(mode="after")
     def _holds(self) -> Bushing:
@@ -189,6 +210,7 @@ class Mount(Patch, Bushing):
     """`[[housing.mount]]`: the rigid motion of a patch on six springs and dashpots to the ground."""
 
     name: Name
+    """Name of the mount."""
 
     @property
     def holds(self) -> bool:
@@ -205,13 +227,16 @@ class Mount(Patch, Bushing):
 class Joint(Bushing):
     """`[[housing.joint]]`: six springs and dashpots between the rigid motions of two patches, such as a bolt.
 
-    The patches are two named `surfaces`, or the circles of a `diameter` [m] on the two faces that look at each other at
-    the `center`, at right angles to the `axis`.
+    The patches are two named surfaces, or the circles that a bolt clamps on two faces that meet.
     """
 
     name: Name
+    """Name of the joint."""
     surfaces: tuple[Name, Name] | None = None
+    """Names of the two surfaces. One of this and `diameter`."""
     diameter: PositiveLength | None = None
+    """Diameter that a bolt clamps: the circles on the two faces that meet at `center` across `axis`. One of this and
+    `surfaces`."""
 
     @model_validator(mode="after")
     def _two_patches(self) -> Joint:
@@ -247,11 +272,17 @@ class InertiaTensor(Table):
     """
 
     xx: Inertia = 0.0
+    """Moment of inertia about x."""
     yy: Inertia = 0.0
+    """Moment of inertia about y."""
     zz: Inertia = 0.0
+    """Moment of inertia about z."""
     xy: InertiaProduct = 0.0
+    """Entry xy of the tensor, -∫ x y dm."""
     xz: InertiaProduct = 0.0
+    """Entry xz of the tensor, -∫ x z dm."""
     yz: InertiaProduct = 0.0
+    """Entry yz of the tensor, -∫ y z dm."""
 
     @property
     def rows(self) -> Tensor:
@@ -277,18 +308,20 @@ class InertiaTensor(Table):
 
 
 class LumpedMass(Patch):
-    """`[[housing.mass]]`: a point mass at a position, or a rigid body on a patch [kg, m].
-
-    `offset` leads from the middle of the patch to the body's centre of gravity.
-    """
+    """`[[housing.mass]]`: a point mass at a position, or a rigid body on a patch [kg, m]."""
 
     places: ClassVar[tuple[str, ...]] = ("position", "box", "surface", "plane")
 
     name: Name
+    """Name of the mass."""
     mass: PositiveMass
+    """Mass."""
     position: Point | None = None
+    """Position of a point mass, in place of a patch."""
     inertia: InertiaTensor | None = None
+    """Inertia tensor about the centre of gravity, of a mass on a patch."""
     offset: Point | None = None
+    """Vector from the middle of the patch to the centre of gravity. Default: none."""
 
     @model_validator(mode="after")
     def _turns_with_a_patch(self) -> LumpedMass:

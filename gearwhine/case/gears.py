@@ -52,9 +52,13 @@ class Relief(Table):
     """
 
     amount: LengthFromZero
+    """Depth where the flank ends."""
     start_roll_angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=2.0 * math.pi)] | None = None
+    """Roll angle at which it begins. One of this and `length`."""
     length: PositiveLength | None = None
+    """Length along the line of action from the flank's end. One of this and `start_roll_angle`."""
     shape: Literal["linear", "parabolic"] = "linear"
+    """Course from its beginning to the flank's end."""
 
     @model_validator(mode="after")
     def _one_start(self) -> Relief:
@@ -76,18 +80,20 @@ class Relief(Table):
 
 
 class ProfileErrors(Table):
-    """Deviations along the profile [m], positive where there is too much material, as an inspection reports them.
-
-    `slope` from the foot to the tip, `form` the height of `waves` waves, `crowning` what is taken off at both ends;
-    `table`: rows of roll angle and deviation.
-    """
+    """Deviations along the profile [m], positive where there is too much material, as an inspection reports them."""
 
     slope: Deviation = 0.0
+    """Slope deviation from the foot to the tip."""
     form: LengthFromZero = 0.0
+    """Height of the waves."""
     waves: Waves = 3.0
+    """Number of waves along the profile."""
     phase: Angle = 0.0
+    """Phase of the waves."""
     crowning: Deviation = 0.0
+    """Relief at both ends of the profile."""
     table: Annotated[tuple[tuple[RollAngle, Deviation], ...], Field(max_length=2000)] = ()
+    """Rows of roll angle and deviation, the roll angles ascending."""
 
     @field_validator("table", mode="after")
     @classmethod
@@ -104,16 +110,16 @@ class ProfileErrors(Table):
 
 
 class HelixErrors(Table):
-    """Deviations across the face [m], positive where there is too much material.
-
-    `slope` from the end of smaller z to the other, `crowning` what is taken off at both ends, `end_relief` the same
-    over an `end_relief_length`.
-    """
+    """Deviations across the face [m], positive where there is too much material."""
 
     slope: Deviation = 0.0
+    """Slope deviation from the end of smaller z to the other."""
     crowning: Deviation = 0.0
+    """Relief at both ends of the face."""
     end_relief: LengthFromZero = 0.0
+    """Relief at both ends, over `end_relief_length`."""
     end_relief_length: LengthFromZero = 0.0
+    """Length of the end relief; needed with it."""
 
     @model_validator(mode="after")
     def _relief_has_length(self) -> HelixErrors:
@@ -129,21 +135,23 @@ class HelixErrors(Table):
 
 
 class GearErrors(Table):
-    """Manufacturing errors.
-
-    Eccentricity of the teeth [m], or the runout that it shows, twice as much, and its angle from x at rest [rad];
-    `pitch`: how far each tooth's working flank stands ahead of its ideal place along the pitch circle [m], tooth by
-    tooth as they come into mesh (cumulative), or `spacing`: from its predecessor to each tooth; `profile` and `helix`
-    of all flanks.
-    """
+    """Manufacturing errors."""
 
     eccentricity: LengthFromZero = 0.0
+    """Offset of the teeth from the shaft. One of this and `runout`."""
     runout: LengthFromZero = 0.0
+    """Runout, twice the eccentricity."""
     phase: Angle = 0.0
+    """Angle of the eccentricity from x at rest."""
     pitch: Annotated[tuple[Deviation, ...], Field(max_length=2000)] = ()
+    """One deviation for each tooth, from its ideal place along the pitch circle (cumulative). One of this and
+    `spacing`."""
     spacing: Annotated[tuple[Deviation, ...], Field(max_length=2000)] = ()
+    """One deviation for each tooth, from its predecessor. One of this and `pitch`."""
     profile: ProfileErrors | None = None
+    """Deviations along the profile of all flanks."""
     helix: HelixErrors | None = None
+    """Deviations across the face of all flanks."""
 
     @model_validator(mode="after")
     def _said_once(self) -> GearErrors:
@@ -182,21 +190,25 @@ _KEYS_OF_FAULTS = {
 
 
 class Fault(Table):
-    """A damaged tooth, numbered from 0 as the teeth come into mesh.
-
-    `wear` by `depth`, of one tooth or of all, in proportion to the sliding or uniform; `spall` by `depth` between two
-    roll angles, across the face or a `width` of it; `crack` of a `depth` at an `angle` to the tooth's axis;
-    `missing-tooth`.
-    """
+    """A damaged tooth, numbered from 0 as the teeth come into mesh."""
 
     kind: Literal["wear", "spall", "crack", "missing-tooth"]
+    """Kind of damage. `wear` needs `depth`; `spall` needs `tooth`, `depth`, `start_roll_angle`, `end_roll_angle`;
+    `crack` needs `tooth`, `depth`; `missing-tooth` needs `tooth`."""
     tooth: Annotated[int, Whole(0, 1999)] | None = None
+    """Number of the tooth, from 0 as the teeth come into mesh. Default: wear of all teeth."""
     depth: LengthFromZero | None = None
+    """Depth of wear, spall or crack."""
     shape: Literal["sliding", "uniform"] = "sliding"
+    """Distribution of wear: in proportion to the sliding, or uniform."""
     start_roll_angle: RollAngle | None = None
+    """Roll angle at which a spall begins."""
     end_roll_angle: RollAngle | None = None
+    """Roll angle at which a spall ends."""
     width: PositiveLength | None = None
+    """Width of a spall. Default: the face."""
     angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=math.pi / 2.0)] = math.radians(70.0)
+    """Angle of a crack to the tooth's axis."""
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Fault:
@@ -264,40 +276,66 @@ ToothHeight = Annotated[float, Quantity(units.RATIO, above=0.0, at_most=3.0)]
 class Gear(Table):
     """`[[gear]]`: an external spur or helical gear, by module, diametral pitch or base radius.
 
-    On a rotor at a station [m from its left end]; without rotor in a case that has no rotors. Module, diametral pitch,
-    pressure angle, profile shift, addendum, dedendum and the rack's corner `root_radius` are of the normal section,
-    `base_radius` is of the transverse plane; a positive `helix_angle` is a right-hand helix. `rim` [m] reaches from the
-    root circle inward, `web` [m] is the width of the disc within it. Its inertia comes from its geometry unless `mass`,
-    `polar_inertia` and `diametral_inertia` are all given.
+    Sizes are those of the normal section, `base_radius` is of the transverse plane.
     """
 
     name: Name
+    """Name of the gear."""
     rotor: Name | None = None
+    """Name of its rotor; left out in a case without rotors."""
     at: LengthFromZero | None = None
+    """Station on its rotor from the left end."""
     teeth: Annotated[int, Whole(5, 2000)]
+    """Number of teeth."""
     module: Module | None = None
+    """Normal module. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     diametral_pitch: DiametralPitch | None = None
+    """Normal diametral pitch. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     base_radius: PositiveLength | None = None
+    """Base radius in the transverse plane. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     face_width: PositiveLength | None = None
+    """Face width; needed unless the size is `base_radius`."""
     pressure_angle: PressureAngle = math.radians(20.0)
+    """Pressure angle of the normal section."""
     helix_angle: HelixAngle = 0.0
+    """Helix angle, positive for a right hand; gears in mesh have opposite hands. A shaft moves along its axis where a
+    bearing's 5x5 `matrix` or `rolling` holds it there; else it is held rigidly."""
     profile_shift: Annotated[float, Quantity(units.RATIO, at_least=-2.0, at_most=2.0)] = 0.0
+    """Profile shift in modules, positive outward."""
     addendum: ToothHeight = 1.0
+    """Addendum in modules."""
     dedendum: ToothHeight = 1.25
+    """Dedendum in modules."""
     root_radius: LengthFromZero | None = None
+    """Tip corner radius of the generating rack, which shapes the fillet. Default: the radius that ends the rack's flank
+    one addendum deep."""
     tooth_thinning: LengthFromZero = 0.0
+    """Reduction of the tooth thickness along the reference circle beside that of the profile shift; the rack cuts
+    deeper for it."""
     allow_undercut: StrictBool = False
+    """Accept undercut teeth, with the remaining flank; else they are an error."""
     bore: LengthFromZero = 0.0
+    """Diameter of the bore; 0 is a gear in one piece with its shaft."""
     rim: PositiveLength | None = None
+    """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
+    """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
     tip_relief: Relief | None = None
+    """Tip relief."""
     root_relief: Relief | None = None
+    """Root relief."""
     material: Name | None = None
+    """Name of the material. Default: that of its rotor, else the only one of the case."""
     mass: Mass | None = None
+    """Mass; with both inertias, or none of the three. Default: from the geometry."""
     polar_inertia: Inertia | None = None
+    """Moment of inertia about the axis. Default: from the geometry."""
     diametral_inertia: Inertia | None = None
+    """Moment of inertia across the axis. Default: from the geometry."""
     errors: GearErrors = GearErrors()
+    """Manufacturing errors."""
     fault: Annotated[tuple[Fault, ...], Field(max_length=100)] = ()
+    """Damaged teeth: one table, or a list."""
 
     @field_validator("fault", mode="before")
     @classmethod
@@ -412,8 +450,11 @@ class ToothStiffness(Table):
     model: Literal[
         "potential-energy", "elastic-ring", "cornell", "weber-banaschek", "iso6336", "constant", "square", "table"
     ] = "elastic-ring"
+    """Model of the tooth stiffness; see [gear stiffness](gear-stiffness.md)."""
     value: PositiveStiffness | None = None
+    """Mean stiffness, of models "constant" and "square"."""
     file: CaseFile | None = None
+    """File of a table, of model "table"."""
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> ToothStiffness:
@@ -426,14 +467,14 @@ class ToothStiffness(Table):
 
 
 class ReliefAim(Table):
-    """Objective of the tip-relief search, in place of the peak-to-peak transmission error.
-
-    `harmonics`: weights of the transmission error's amplitudes by the multiple of the mesh frequency. With `sensor` the
-    level there, by the transmissibility, of those multiples, or of all below the model's limit.
-    """
+    """Objective of the tip-relief search, in place of the peak-to-peak transmission error."""
 
     harmonics: Annotated[dict[str, HarmonicWeight], Field(default_factory=dict, max_length=32)]
+    """Weights w of the transmission error's amplitudes e by the multiple of the mesh frequency, √(Σ (w e)²), such as `{
+    1 = 1, 2 = 0.5 }`."""
     sensor: Name | None = None
+    """Sensor whose level is the objective, by the transmissibility: root mean square over the first eight multiples
+    below the housing's limit, or over those that `harmonics` weighs."""
 
     @model_validator(mode="after")
     def _has_an_aim(self) -> ReliefAim:
@@ -455,30 +496,34 @@ class ReliefAim(Table):
 
 
 class GearPair(Table):
-    """`[[gear_pair]]`: two gears by name, and their contact.
-
-    `damping` [N s/m] stands in place of `damping_ratio`. `corner_contact`: whether teeth touch beyond their path of
-    contact, where a load closes the gap to a corner; None: where the stiffness model is one of pairs of teeth.
-    `misalignment` [rad] is the angle between the flanks in the plane of action, open towards +z; "found": that of the
-    machine's operating point, by its shafts, bearings and housing.
-    `backlash` [m] is measured along the line of action; None: that of thicknesses and distance, and where these leave
-    none the back flanks never touch. `centre_distance`
-    [m] is checked against the rotors' axes, and needed only in a case without rotors where it is not nominal.
-    `friction` is the coefficient of friction between the teeth, in the transient. `relief_aim` is what `gears` seeks
-    the best tip relief for; None: the peak-to-peak transmission error.
-    """
+    """`[[gear_pair]]`: two gears by name, and their contact."""
 
     driver: Name
+    """Name of the driving gear."""
     driven: Name
+    """Name of the driven gear."""
     stiffness: ToothStiffness = ToothStiffness()
+    """Tooth stiffness model."""
     damping_ratio: DampingRatio = 0.05
+    """Damping ratio of the mesh."""
     damping: DampingFromZero | None = None
+    """Damping coefficient along the line of action, in place of `damping_ratio`."""
     corner_contact: StrictBool | None = None
-    misalignment: Misalignment = 0.0
+    """Teeth touch beyond their path of contact where the load closes the gap to a tip's corner. Default: true for
+    models of teeth; false for "constant", "square" and "table"."""
+    misalignment: Misalignment | None = None
+    """Angle between the flanks in the plane of action, open towards +z; or "found": the gap over the face by shafts,
+    bearings and housing at the static equilibrium. Default: "found" where that gives the load of a bearing; else 0."""
     backlash: LengthFromZero | None = None
+    """Backlash along the line of action. Default: that of tooth thicknesses and centre distance, where these leave more
+    than 0.001 modules; else the back flanks never meet. One that differs from it by more than 10 % is a warning."""
     centre_distance: PositiveLength | None = None
+    """Distance of the shafts, in a case without rotors; else checked against the rotors' axes. Default: without
+    backlash."""
     friction: FrictionCoefficient = 0.0
+    """Coefficient of friction between the teeth, in the transient; not with model "constant"."""
     relief_aim: ReliefAim | None = None
+    """Objective of the best tip relief of `gearwhine gears`. Default: the peak-to-peak transmission error."""
 
     @model_validator(mode="after")
     def _slides(self) -> GearPair:

@@ -46,9 +46,13 @@ class Region(Table):
     """The elements of a named volume of the mesh, or those whose middle is in a box [m], and their material."""
 
     name: Name
+    """Name of the region."""
     material: Name
+    """Name of its material."""
     volume: Name | None = None
+    """Name of a volume of the mesh. One of this and `box`."""
     box: tuple[Point, Point] | None = None
+    """Two opposite corners: the elements whose middle is inside. One of this and `volume`."""
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Region:
@@ -69,18 +73,18 @@ _STIFFEST_SHEAR = 5.0  # shear moduli over that of a Poisson ratio of 0, of comp
 
 
 class Material(Table):
-    """`[material.NAME]`: Young's modulus [Pa], Poisson ratio, density [kg/m³].
-
-    `shear_modulus` [Pa] where it is not E / (2 (1 + ν)), as of shafts that are drawn or wound; of shafts alone, since
-    the solids of a housing are isotropic.
-    """
+    """`[material.NAME]`: Young's modulus [Pa], Poisson ratio, density [kg/m³]."""
 
     model_config = ConfigDict(serialize_by_alias=True)
 
     youngs_modulus: ElasticModulus
+    """Young's modulus E."""
     poisson_ratio: Annotated[float, Quantity(units.RATIO, at_least=0.0, below=0.5)]
+    """Poisson's ratio ν."""
     density: Density
+    """Density ρ."""
     own_shear_modulus: ElasticModulus | None = Field(default=None, alias="shear_modulus")
+    """Shear modulus G of shafts that are drawn or wound; a housing's solids are isotropic. Default: E / (2 (1 + ν))."""
 
     @model_validator(mode="after")
     def _shears(self) -> Material:
@@ -113,7 +117,9 @@ class Turn(Table):
     """A rotation about an axis through the origin, counter-clockwise seen from its tip."""
 
     axis: Direction
+    """Axis of the rotation."""
     angle: Angle
+    """Angle, counter-clockwise seen from the tip of the axis."""
 
     @property
     def matrix(self) -> Rotation:
@@ -129,14 +135,13 @@ class Turn(Table):
 
 
 class Turned(Table):
-    """A geometry whose file has another frame than the machine, whose shafts lie along z.
-
-    `shafts_along` names the file's axis along which they lie there: y, z, x of the file become x, y, z for "x", and z,
-    x, y for "y". Or `turn` gives the rotation about the origin, { axis, angle }.
-    """
+    """A geometry whose file has another frame than the machine, whose shafts lie along z."""
 
     shafts_along: Literal["x", "y", "z"] | None = None
+    """Axis of the file along which the shafts lie there: its y, z, x become x, y, z for "x", and z, x, y for "y".
+    Default: "z"."""
     turn: Turn | None = None
+    """Rotation of the file\'s geometry about its origin, in place of `shafts_along`."""
 
     @model_validator(mode="after")
     def _turned_once(self) -> Turned:
@@ -154,17 +159,18 @@ class Turned(Table):
 
 
 class CadFile(Turned):
-    """`[housing.cad]`: a STEP, IGES or BREP file and the element size [m], if wanted a smaller one around the seats.
-
-    `unit` is that of the file's numbers where the file states none itself; then it is by default a millimetre. Solids
-    that touch are one piece with `glue`; without it they are apart but for joints.
-    """
+    """`[housing.cad]`: a STEP, IGES or BREP file and the element size [m], if wanted a smaller one around the seats."""
 
     file: CaseFile
+    """STEP, IGES or BREP file (`.step`, `.stp`, `.iges`, `.igs`, `.brep`), relative to the case file."""
     mesh_size: PositiveLength
+    """Edge length of the elements."""
     seat_mesh_size: PositiveLength | None = None
+    """Smaller edge length around the seats. Default: `mesh_size`."""
     unit: Literal["m", "mm", "cm", "in"] | None = None
+    """Unit of the file's numbers, where it states none or an implausible one. Default: the file's, else mm."""
     glue: bool = True
+    """Solids that touch share their nodes; without it joints alone connect them."""
 
     @model_validator(mode="after")
     def _finer_at_seats(self) -> CadFile:
@@ -177,23 +183,31 @@ class MeshFile(Turned):
     """`[housing.mesh]`: a finite-element mesh file and the unit of its coordinates."""
 
     file: CaseFile
+    """Mesh file of a format that meshio reads, or an Abaqus or CalculiX deck (`.inp`), relative to the case file."""
     unit: Literal["m", "mm", "cm", "in"] = "m"
+    """Unit of its coordinates."""
 
 
 class Boss(Table):
     """A cylinder on the outside of the wall, concentric with the bore [m]."""
 
     diameter: PositiveLength
+    """Diameter."""
     length: PositiveLength
+    """Length outside the wall."""
 
 
 class Seat(Table):
     """`[[housing.seat]]`: a bearing seat, a bore along z [m]."""
 
     name: Name
+    """Name, to which bearings refer; on a mesh or CAD file with named surfaces that of the surface."""
     center: Point
+    """Point on the axis of the bore, at most a diameter beyond its ends."""
     diameter: PositiveLength
+    """Diameter of the bore."""
     boss: Boss | None = None
+    """Boss outside the wall, on a box."""
 
     @field_validator("name")
     @classmethod
@@ -221,9 +235,13 @@ class Support(Patch):
     """`[[housing.support]]`: a patch of the surface, held fast, or on springs and dashpots."""
 
     name: Name
+    """Name of the support."""
     fixed: tuple[Literal["x", "y", "z"], ...] | None = Field(default=None, min_length=1, max_length=3)
+    """Fixed directions, some of "x", "y", "z"; in place of `stiffness` and `damping`."""
     stiffness: Springs | None = None
+    """Springs to the ground, in all, spread over the patch."""
     damping: Dashpots | None = None
+    """Dashpots to the ground, in all, spread over the patch."""
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Support:
@@ -262,8 +280,11 @@ class Sensor(Table):
     """`[[housing.sensor]]`: a point on the surface [m] and a direction; None: the outward normal there."""
 
     name: Name
+    """Name of the sensor."""
     position: Point
+    """Point on the surface or near it."""
     direction: Direction | None = None
+    """Measured direction: "x", "y", "z" or a vector. Default: the outward normal."""
 
     @property
     def unit_vector(self) -> UnitVector | None:
@@ -288,32 +309,44 @@ def _check_frequency_key(key: object) -> str:
 
 
 class Housing(Table):
-    """`[housing]`: geometry (exactly one of box, cad, mesh), material, damping and the modes wanted.
-
-    `damping_ratio` is one ratio for all modes, a ratio per mode, or a table from frequency (text with
-    unit, see `damping_points`) to ratio. `frequency_limit` is in Hz. `solver` is the eigensolver of the modes.
-    """
+    """`[housing]`: geometry (exactly one of box, cad, mesh), material, damping and the modes wanted."""
 
     material: Name
+    """Name of the material; a region may have another."""
     damping_ratio: Annotated[
         Annotated[DampingRatio, Tag("~scalar")]
         | Annotated[tuple[DampingRatio, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)]
         | Annotated[dict[str, DampingRatio], Tag("~table"), Field(min_length=1, max_length=MOST_ENTRIES)],
         Discriminator(_shape),
     ] = 0.01
+    """Modal damping ratio: one for all modes, a list with one for each mode, or a table from frequency to ratio such as
+    `{ "0 Hz" = 0.02, "3 kHz" = 0.01 }`, linear between."""
     frequency_limit: PositiveFrequency | None = None
+    """Every mode below this frequency is found. One of this and `modes`."""
     modes: Annotated[int, Whole(1, 5000)] | None = None
+    """Number of lowest modes to find. One of this and `frequency_limit`."""
     solver: Literal["lanczos", "eigsh"] = "lanczos"
+    """Eigensolver of the modes: block Lanczos, or scipy's ARPACK ("eigsh"); both have the same certificate."""
     box: Box | None = None
+    """Housing as a box. Exactly one of `box`, `cad` and `mesh`."""
     cad: CadFile | None = None
+    """Housing from a CAD file. Exactly one of `box`, `cad` and `mesh`."""
     mesh: MeshFile | None = None
+    """Housing from a mesh file. Exactly one of `box`, `cad` and `mesh`."""
     seat: tuple[Seat, ...] = Field(default=(), max_length=1000)
+    """Bearing seats, `[[housing.seat]]`."""
     support: tuple[Support, ...] = Field(default=(), max_length=1000)
+    """Supports, `[[housing.support]]`."""
     mount: tuple[Mount, ...] = Field(default=(), max_length=1000)
+    """Mounts, `[[housing.mount]]`."""
     joint: tuple[Joint, ...] = Field(default=(), max_length=1000)
+    """Joints, `[[housing.joint]]`."""
     mass: tuple[LumpedMass, ...] = Field(default=(), max_length=1000)
+    """Lumped masses, `[[housing.mass]]`."""
     sensor: tuple[Sensor, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    """Accelerometers, `[[housing.sensor]]`."""
     region: tuple[Region, ...] = Field(default=(), max_length=1000)
+    """Regions of another material, `[[housing.region]]`."""
 
     @field_validator("damping_ratio", mode="after")
     @classmethod

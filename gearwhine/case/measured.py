@@ -45,13 +45,16 @@ class Landmark(Table):
     """`[[measured.align.landmarks]]`: a point of the survey, by its label, and where it is on the model [m]."""
 
     point: Name
+    """Label of the point in the survey."""
     position: Point
+    """Its position on the model."""
 
 
 class Align(Table):
     """`[measured.align]`: the survey's frame in the model's, by three or more points."""
 
     landmarks: tuple[Landmark, ...] = Field(min_length=3, max_length=MOST_ENTRIES)
+    """Three points or more whose places on the model are known."""
 
     @model_validator(mode="after")
     def _each_once(self) -> Align:
@@ -65,16 +68,16 @@ class Pairing(Table):
     """`[measured.pairing]`: conditions for a pair of a measured shape and a model's.
 
     See `housing.correlation.pairing.PairingRule`.
-
-    `least_mac` is the MAC below which a measured mode stays alone, `frequency_spread` the relative spread of frequency
-    that a pair may well have, `closeness` within which neighbours are close modes, and `duplicate_mac` from which on
-    two measured modes may be one.
     """
 
     least_mac: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1.0)] = 0.5
+    """MAC below which a measured mode stays alone."""
     frequency_spread: Annotated[float, Quantity(units.RATIO, above=0.0)] = 0.2
+    """Relative spread of frequency; pairs are made within twice that."""
     closeness: Annotated[float, Quantity(units.RATIO, at_least=0.0, below=1.0)] = 0.01
+    """Relative distance within which neighbours are close modes."""
     duplicate_mac: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1.0)] = 0.9
+    """MAC from which on two measured modes may be one."""
 
 
 def _table_or_flag(value: Any) -> str:
@@ -93,20 +96,26 @@ _OF_A_FILE = ("unit", "shape_frame", "align", "tolerance", "pairing")
 class Measured(Table):
     """`[measured]`: frequencies of measured modes [Hz], ascending, and their damping ratios; or a `file` of them.
 
-    The file is a universal file or a table, see `housing.measured`; `unit` is that of its lengths where it states none
-    or a wrong one, `shape_frame` that of its shapes. With `align` the survey is brought on to the model, by the
-    surface (true) or by landmarks; else it stands in the model's frame. Points farther from the surface than the
-    `tolerance` [m] are named (None: 2 % of the housing's diagonal). `pairing` says what makes a pair of shapes.
+    The file is a universal file or a table, see `housing.measured`.
     """
 
     frequencies: tuple[PositiveFrequency, ...] | None = Field(default=None, min_length=1, max_length=MOST_ENTRIES)
+    """Frequencies of the measured modes, ascending. One of this and `file`."""
     damping_ratios: tuple[DampingRatio, ...] | None = Field(default=None, max_length=MOST_ENTRIES)
+    """Damping ratio of each measured mode."""
     file: CaseFile | None = None
+    """Survey: a universal file (`.uff`, `.unv`) or a table (`.csv`), relative to the case file. One of this and
+    `frequencies`."""
     unit: Literal["m", "mm", "cm", "in"] | None = None
+    """Unit of the file's lengths, in place of the stated one. Default: the stated one, else m."""
     shape_frame: Literal["local", "global"] = "local"
+    """Frame in which shapes (data set 55) stand at points with a displacement system of their own."""
     align: FlagOrAlign = False
+    """true: bring the survey on to the model's surface; or landmarks; false: it stands in the model's frame."""
     tolerance: PositiveLength | None = None
+    """Distance from the surface beyond which points are named in a warning. Default: 2 % of the housing's diagonal."""
     pairing: Pairing = Pairing()
+    """Conditions of a pair of a measured shape and one of the model."""
 
     _content: _Content | None = PrivateAttr(default=None)
 
@@ -185,18 +194,21 @@ KeyPath = Annotated[str, _KeyRule()]
 
 
 class UpdateParameter(Table):
-    """`[[update.parameter]]`: a number that is fitted, at one key path or several that take the same value.
-
-    `range` may not be left. The prior is `nominal` give or take `spread`: by default what the case has, and a third of
-    the larger distance from there to an end of the range. With `factor` the keys' own numbers are multiplied by it.
-    """
+    """`[[update.parameter]]`: a number that is fitted, at one key path or several that take the same value."""
 
     name: Name
+    """Name of the parameter."""
     keys: tuple[KeyPath, ...] = Field(min_length=1, max_length=1000)
+    """Key paths that take the value, `*` for any entry."""
     range: tuple[Amount, Amount]
+    """Two quantities that it stays between."""
     nominal: Amount | None = None
+    """Mean of the prior. Default: the case's own value."""
     spread: Amount | None = None
+    """Standard deviation of the prior. Default: a third of the larger distance from `nominal` to an end of the
+    range."""
     factor: StrictBool = False
+    """The keys' own numbers are multiplied by the parameter."""
 
     @model_validator(mode="after")
     def _of_one_kind(self) -> UpdateParameter:
@@ -230,8 +242,11 @@ class ModelModes(Table):
     """Number of model modes below a frequency [Hz]: from `least` to `most`."""
 
     below: PositiveFrequency
+    """Frequency below which modes are counted."""
     least: Annotated[int, Whole(0, MOST_ENTRIES)]
+    """Least number."""
     most: Annotated[int, Whole(0, MOST_ENTRIES)]
+    """Largest number."""
 
     @model_validator(mode="after")
     def _ascends(self) -> ModelModes:
@@ -241,26 +256,31 @@ class ModelModes(Table):
 
 
 class Update(Table):
-    """`[update]`: the parameters, how well frequencies were measured, and what else the model has to meet.
-
-    `frequency_noise` is the relative standard deviation of a measured frequency together with what a perfect model
-    would still miss; `shape_noise` that of each motion of a measured shape, as a part of the shape's root-mean-square.
-    The search is made with elements of `mesh_size` (None: the box's own), whose bias is taken off, and the box's own
-    judge. `gap` is the least gap of dominance, `modes` how many are taken along, `solves` how many designs are solved
-    on the search's mesh at most, `explore` how many starts there are beside the case's own, and `seed` that of their
-    draws and of the random starts on the surrogate.
-    """
+    """`[update]`: the parameters, how well frequencies were measured, and what else the model has to meet."""
 
     parameter: tuple[UpdateParameter, ...] = Field(min_length=1, max_length=200)
+    """Parameters that are fitted, `[[update.parameter]]`."""
     frequency_noise: Annotated[float, Quantity(units.RATIO, above=0.0, below=1.0)] = 0.005
+    """Relative standard deviation of a measured frequency, model error included."""
     shape_noise: Annotated[float, Quantity(units.RATIO, above=0.0, below=1.0)] = 0.05
+    """Standard deviation of each motion of a measured shape, as a part of the shape's root mean square; with shapes
+    modes are paired by MAC and `gap` is not used."""
     mesh_size: PositiveLength | None = None
+    """Element size of the search, coarser than the housing's own: its bias is learned and taken off, and the own mesh
+    judges. Default: that of the housing."""
     gap: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = 0.15
+    """Least gap of dominance, ln(strength of the last chosen mode / of the first left out)."""
     model_modes: ModelModes | None = None
+    """Number of modes that the model must have."""
     modes: Annotated[int, Whole(2, 1000)] = 48
+    """Number of modes in the surrogate: about twice those in the band."""
     solves: Annotated[int, Whole(1, 10_000)] = 40
+    """Largest number of designs solved on the search's mesh, shared by all starts; the own mesh takes some more."""
     explore: Annotated[int, Whole(0, 10_000)] = 0
+    """Number of starts beside the case's own, drawn from the prior and improved on its surrogate: three rounds, after
+    each the better half continues."""
     seed: Annotated[int, Whole(0, 2**31 - 1)] = 1
+    """Seed of the random starts; another may end in another basin."""
 
     @model_validator(mode="after")
     def _named_once(self) -> Update:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 import tomli_w
 from pydantic import Field, ValidationError
 
-from gearwhine.case.bearings import Bearing
+from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.box import Box
 from gearwhine.case.errors import NOTHING, CaseError, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table
@@ -52,38 +52,41 @@ def _named(entries: Iterable[NamedEntry], name: str) -> NamedEntry:
 class Case(Table):
     """A case: rotors only, a housing only, gears only, or all.
 
-    Attributes are named as the keys of the case file and hold SI floats: m, kg, s, N, rad, rad/s; frequencies
-    are in Hz. Entries of a list keep the order of the file.
-
-    Attributes
-    ----------
-    title, notes
-        Text for people.
-    material
-        Materials by name.
-    housing, operation, transient, sweep, rotor_analysis, measured, update
-        None where the case has no such table.
-    rotor, bearing, gear, gear_pair
-        Empty where the case has none.
-    provenance
-        From key path (`*` for any entry) to "published", "nominal" or "found", with text after a colon.
+    Attributes are named as the keys of the case file and hold SI floats: m, kg, s, N, rad, rad/s; frequencies are in
+    Hz. Entries of a list keep the order of the file. A table that the case has not is None, a list empty.
     """
 
     title: Annotated[str, Field(max_length=500)] = ""
+    """Title of the case, shown with its results."""
     notes: Text = ""
+    """Text for readers of the case."""
     material: dict[Name, Material] = Field(default={}, max_length=1000)
+    """Materials by name, `[material.NAME]`."""
     housing: Housing | None = None
+    """Housing; without it bearings stand on the ground."""
     rotor: tuple[Rotor, ...] = Field(default=(), max_length=1000)
+    """Shafts, `[[rotor]]`."""
     bearing: tuple[Bearing, ...] = Field(default=(), max_length=1000)
+    """Bearings, `[[bearing]]`."""
     gear: tuple[Gear, ...] = Field(default=(), max_length=1000)
+    """Gears, `[[gear]]`."""
     gear_pair: tuple[GearPair, ...] = Field(default=(), max_length=1000)
+    """Gear pairs, `[[gear_pair]]`."""
     operation: Operation | None = None
+    """Speed and torque."""
     transient: Transient | None = None
+    """Motion over time."""
     sweep: Sweep | None = None
+    """Speeds of a sweep."""
     rotor_analysis: RotorAnalysis | None = None
+    """Analyses of rotors alone."""
     measured: Measured | None = None
+    """Measured modes of the housing."""
     update: Update | None = None
+    """Parameters that are fitted to the measured modes."""
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
+    """Standing of each number: from key path (`*` for any entry) to "published", "nominal" or "found", with text after
+    a colon."""
 
     def rotor_named(self, name: str) -> Rotor:
         """Return the rotor of this name; KeyError where there is none."""
@@ -104,6 +107,33 @@ class Case(Table):
     def finds_load(self, bearing: Bearing) -> bool:
         """Whether the load of a rolling bearing follows from the machine's operating point."""
         return bearing.lacks_load and bool(self.gear_pair) and self.operation is not None
+
+    @property
+    def needs_operating_point(self) -> bool:
+        """Whether the load of a bearing or the misalignment of a gear pair is left to the machine's operating point."""
+        unaligned = any(pair.misalignment == "found" for pair in self.gear_pair)
+        return unaligned or any(self.finds_load(bearing) for bearing in self.bearing)
+
+    def finds_misalignment(self, pair: GearPair) -> bool:
+        """Whether the misalignment of a gear pair follows from the machine's operating point.
+
+        Where the case says nothing it does if a torque loads the flanks and the load of a bearing follows, too; else
+        it is 0.
+        """
+        if pair.misalignment is None:
+            loaded = self.operation is not None and self.operation.torque != 0.0
+            return loaded and any(self.finds_load(bearing) for bearing in self.bearing)
+        return pair.misalignment == "found"
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether torque, force, weight or preload loads the machine of the case, so that it has an operating point."""
+        operation = self.operation
+        if operation is None or not self.rotor or not self.bearing:
+            return False
+        rolling = [one.stiffness.rolling for one in self.bearing if isinstance(one.stiffness, RollingStiffness)]
+        preloaded = any(one.pressed or one.mounting is not None for one in rolling)
+        return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
     def material_of_gear(self, gear: Gear) -> Material | None:
         """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""

@@ -89,19 +89,24 @@ _SLENDEREST = 1000.0  # length over diameter of a piece of shaft
 
 
 class Segment(Table):
-    """A piece of shaft [m], a cone where `right_diameter` or `right_bore` differ from those at its left end.
-
-    `material`, `shear_coefficient` and `axial_force` [N, tension positive] where they differ from the rotor's.
-    """
+    """A piece of shaft [m], a cone where `right_diameter` or `right_bore` differ from those at its left end."""
 
     length: PositiveLength
+    """Length."""
     diameter: PositiveLength
+    """Outer diameter, of a cone at its left end."""
     bore: LengthFromZero = 0.0
+    """Inner diameter, of a cone at its left end."""
     right_diameter: PositiveLength | None = None
+    """Outer diameter at the right end of a cone. Default: `diameter`."""
     right_bore: LengthFromZero | None = None
+    """Inner diameter at the right end of a cone. Default: `bore`."""
     material: Name | None = None
+    """Name of the material. Default: that of the rotor."""
     shear_coefficient: ShearCoefficient | None = None
+    """Shear coefficient. Default: that of the rotor."""
     axial_force: Force | None = None
+    """Static axial force, tension positive. Default: that of the rotor."""
 
     @model_validator(mode="after")
     def _hollow(self) -> Segment:
@@ -138,28 +143,40 @@ class Segment(Table):
 class Coupling(Table):
     """A flexible coupling by its stiffness, damping, mass and inertia.
 
-    Stiffness across the axis and along it [N/m], against an angle between the axes and about them [N m/rad]; dashpots
-    beside these [N s/m, N m s/rad]; mass [kg] and inertias [kg m²] of the whole.
+    Dashpots stand beside the springs.
     """
 
     lateral_stiffness: PositiveStiffness
+    """Stiffness across the axis."""
     tilt_stiffness: PositiveTiltStiffness
+    """Stiffness against an angle between the axes."""
     torsional_stiffness: PositiveTiltStiffness
+    """Stiffness about the axis."""
     axial_stiffness: PositiveStiffness
+    """Stiffness along the axis."""
     lateral_damping: DampingFromZero = 0.0
+    """Damping across the axis; dashpots rotate with the shaft and act in the coupled system."""
     tilt_damping: TiltDampingFromZero = 0.0
+    """Damping against an angle between the axes."""
     torsional_damping: TiltDampingFromZero = 0.0
+    """Damping about the axis, also in the torsional response."""
     axial_damping: DampingFromZero = 0.0
+    """Damping along the axis."""
     mass: Mass = 0.0
+    """Mass of the whole."""
     polar_inertia: Inertia = 0.0
+    """Moment of inertia about the axis."""
     diametral_inertia: Inertia = 0.0
+    """Moment of inertia across the axis."""
 
 
 class CouplingSegment(Table):
     """A coupling in the row of segments: its length from hub to hub [m]."""
 
     length: PositiveLength
+    """Length from hub to hub."""
     coupling: Coupling
+    """Stiffness, damping and inertia of the coupling."""
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltCoupling:
         """Build the coupling; it takes no property from its rotor."""
@@ -172,9 +189,13 @@ class Disc(Table):
     """A rigid disc at a station [m from the left end]: mass [kg] and inertias [kg m²]; without these a point mass."""
 
     at: LengthFromZero
+    """Station from the rotor's left end."""
     mass: Mass
+    """Mass."""
     polar_inertia: Inertia = 0.0
+    """Moment of inertia about the axis; without inertias a point mass."""
     diametral_inertia: Inertia = 0.0
+    """Moment of inertia across the axis."""
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltDisc:
         """Build the disc; it takes no property from its rotor."""
@@ -187,11 +208,17 @@ class RoundDisc(Table):
     """A rigid disc by its sizes [m], its middle at a station: of a material (None: the rotor's) or density [kg/m³]."""
 
     at: LengthFromZero
+    """Station of its middle from the rotor's left end."""
     width: PositiveLength
+    """Width."""
     diameter: PositiveLength
+    """Outer diameter."""
     bore: LengthFromZero = 0.0
+    """Inner diameter."""
     material: Name | None = None
+    """Name of the material. Default: that of the rotor."""
     density: Density | None = None
+    """Density, in place of `material`."""
 
     @model_validator(mode="after")
     def _solid(self) -> RoundDisc:
@@ -237,16 +264,22 @@ class Unbalance(Table):
     """An unbalance at a station: mass times eccentricity [kg m] and its angle from x at rest [rad]."""
 
     at: LengthFromZero
+    """Station from the rotor's left end."""
     moment: Imbalance
+    """Mass times eccentricity."""
     phase: Angle = 0.0
+    """Angle from x when the rotor's mark points along x."""
 
 
 class Bow(Table):
     """A point of the residual bow: run-out of the unloaded centre line [m] and its angle from x [rad]."""
 
     at: LengthFromZero
+    """Station from the rotor's left end."""
     amplitude: LengthFromZero
+    """Runout of the unloaded centre line."""
     phase: Angle = 0.0
+    """Angle from x when the rotor's mark points along x."""
 
 
 _OF_THE_SHAFT = ("segments", "shear_coefficient", "axial_force")
@@ -256,27 +289,42 @@ _OF_THE_SHAFT = ("segments", "shear_coefficient", "axial_force")
 class Rotor(Table):
     """`[[rotor]]`: a shaft along z at `axis` (x, y), its left end at z = `start`, all in m.
 
-    `damping_ratio` is that of the shaft's own modes. `shear_coefficient` (a formula or a number) and `axial_force`
-    [N, tension positive] hold for segments that have none of their own. The coupled system keeps the lowest `modes` of
-    each kind, or those below a `frequency_limit` [Hz]. Where a `file` of ROSS holds the shaft, with its discs and
-    grounded bearings, there are no `segments` here.
+    Where a `file` of ROSS holds the shaft, with its discs and grounded bearings, there are no `segments` here.
     """
 
     name: Name
+    """Name of the rotor."""
     axis: tuple[Length, Length] = (0.0, 0.0)
+    """x and y of the shaft line."""
     start: Length = 0.0
+    """z of its left end."""
     file: CaseFile | None = None
+    """Rotor saved by ROSS (`.toml`, `.json`), relative to the case file, in place of `material` and `segments`: its
+    shaft, discs and bearings."""
     material: Name | None = None
+    """Name of the material; needed without `file`."""
     mass: Literal["distributed", "lumped"] = "distributed"
+    """Mass of the shaft, distributed or lumped at the ends of the segments."""
     damping_ratio: DampingRatio = 0.005
+    """Damping ratio of the shaft's own modes, in the coupled system."""
     shear_coefficient: ShearCoefficient = "cowper"
+    """Shear coefficient: the formula of Cowper or of Hutchinson, or the number itself."""
     axial_force: Force = 0.0
+    """Static axial force, tension positive."""
     modes: Annotated[int, Whole(1, 300)] | None = None
+    """Number of bending modes of each plane and of torsional modes in the coupled system, the rigid rotation included.
+    One of this and `frequency_limit`."""
     frequency_limit: PositiveFrequency | None = None
+    """Modes in the coupled system are those below this frequency, at least four of each kind. Default: 8 kHz, or 2.5
+    times the housing's limit where that is more."""
     segments: tuple[AnySegment, ...] = Field(default=(), min_length=1, max_length=MOST_ENTRIES)
+    """Shaft segments and couplings from the left end to the right; needed without `file`."""
     discs: tuple[AnyDisc, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    """Rigid discs."""
     unbalance: tuple[Unbalance, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    """Unbalances."""
     bow: tuple[Bow, ...] = Field(default=(), max_length=MOST_ENTRIES)
+    """Residual bow, by two points or more."""
 
     _saved: RossModel | None = PrivateAttr(default=None)
 
@@ -360,18 +408,20 @@ STANDARD_GRAVITY = 9.80665
 
 
 class StiffnessMap(Table):
-    """Bearing stiffnesses from `start` (key `from`) to `to` [N/m], both included, in `points` equal ratios.
-
-    At each, the lowest `modes` critical speeds of forward or backward `whirl`.
-    """
+    """Bearing stiffnesses from `start` (key `from`) to `to` [N/m], both included, in `points` equal ratios."""
 
     model_config = ConfigDict(serialize_by_alias=True)
 
     start: PositiveStiffness = Field(alias="from")
+    """Lowest stiffness."""
     to: PositiveStiffness
+    """Highest stiffness, included."""
     points: Annotated[int, Whole(2, 1000)] = 30
+    """Number of stiffnesses, in equal ratios."""
     modes: Annotated[int, Whole(1, 50)] = 4
+    """Number of critical speeds at each."""
     whirl: Literal["forward", "backward"] = "forward"
+    """Direction of whirl."""
 
     @model_validator(mode="after")
     def _ascends(self) -> StiffnessMap:
@@ -390,16 +440,22 @@ class Probe(Table):
     """A sensor of the shaft's displacement at a station [m from the rotor's left end], at an angle from x [rad]."""
 
     name: Name
+    """Name of the probe."""
     rotor: Name
+    """Name of the rotor."""
     at: LengthFromZero
+    """Station from the rotor's left end."""
     angle: Angle = 0.0
+    """Angle of the measured direction from x."""
 
 
 class UnbalanceResponse(Table):
     """Speeds of the response to unbalance and bow (None: over the Campbell diagram's, finer), and what reads it."""
 
     speed: Speeds | None = None
+    """Speeds: a list or a range. Default: the Campbell diagram's range in 300 steps."""
     probes: tuple[Probe, ...] = Field(default=(), max_length=MOST_PROBES)
+    """Probes of the shaft's displacement. Default: one at each bearing and each unbalance, along x."""
 
 
 class FrequencyRange(Table):
@@ -408,8 +464,11 @@ class FrequencyRange(Table):
     model_config = ConfigDict(serialize_by_alias=True)
 
     start: PositiveFrequency = Field(alias="from")
+    """Lowest frequency."""
     to: PositiveFrequency
+    """Highest frequency, included."""
     points: Annotated[int, Whole(2, 100_000)] = 400
+    """Number of frequencies, in equal steps."""
 
     @model_validator(mode="after")
     def _ascends(self) -> FrequencyRange:
@@ -428,57 +487,71 @@ class HarmonicTorque(Table):
     """A torque [N m] about the axis of a rotor at a station [m], that swings ahead by a phase [rad]."""
 
     rotor: Name
+    """Name of the rotor."""
     at: LengthFromZero
+    """Station from the rotor's left end."""
     amplitude: Annotated[float, Quantity(units.TORQUE, above=0.0)]
+    """Amplitude, zero to peak."""
     phase: Angle = 0.0
+    """Phase."""
 
 
 class TorsionSpring(Table):
     """Torsional support of a rotor at a station [m] against the ground: stiffness [N m/rad], damping [N m s/rad]."""
 
     rotor: Name
+    """Name of the rotor."""
     at: LengthFromZero
+    """Station from the rotor's left end."""
     stiffness: Annotated[float, Quantity(units.TILT_STIFFNESS, at_least=0.0)] = 0.0
+    """Stiffness to the ground."""
     damping: Annotated[float, Quantity(units.TILT_DAMPING, at_least=0.0)] = 0.0
+    """Damping to the ground."""
 
 
 class TorsionProbe(Table):
     """A station [m from the rotor's left end] at which angle and torque are wanted."""
 
     name: Name
+    """Name of the probe."""
     rotor: Name
+    """Name of the rotor."""
     at: LengthFromZero
+    """Station from the rotor's left end."""
 
 
 class TorsionalAnalysis(Table):
-    """Steady answer of each rotor's torsion to torques that swing at a frequency.
-
-    Without `frequency`, up to beyond the third elastic mode. `damping_ratio` is that of the shafts (None: each rotor's
-    own). Without probes, one stands at each torque and one at either end.
-    """
+    """Steady answer of each rotor's torsion to torques that swing at a frequency."""
 
     torques: tuple[HarmonicTorque, ...] = Field(min_length=1, max_length=MOST_PROBES)
+    """Harmonic torques."""
     frequency: FrequencyRange | None = None
+    """Frequencies. Default: up to 1.25 times the third elastic mode, in 400 steps and at the modes."""
     damping_ratio: DampingRatio | None = None
+    """Damping ratio of the shafts. Default: that of each rotor."""
     springs: tuple[TorsionSpring, ...] = Field(default=(), max_length=MOST_PROBES)
+    """Torsion springs to the ground."""
     probes: tuple[TorsionProbe, ...] = Field(default=(), max_length=MOST_PROBES)
+    """Stations at which angle and torque are read. Default: one at each torque and one at either end."""
 
 
 class RotorAnalysis(Table):
-    """`[rotor_analysis]`: speeds of the first driver's rotor, and what is wanted beside the modes.
-
-    `orders` are the multiples of the speed of rotation that the Campbell diagram shows with their critical speeds;
-    that of once a revolution is always among them. `modes` is how many lateral ones (None: 12, or all of a small lumped
-    rotor). Without `speed` the Campbell diagram has the speeds of `[sweep]`, else those up to one and a half times the
-    speed of operation. `gravity` is an acceleration along x, y, z [m/s²].
-    """
+    """`[rotor_analysis]`: speeds of the first driver's rotor, and what is wanted beside the modes."""
 
     speed: Speeds | None = None
+    """Speeds of the Campbell diagram: a list or a range. Default: those of `[sweep]`, else 50 steps up to 1.5 times the
+    speed of operation."""
     modes: Annotated[int, Whole(1, 200)] | None = None
+    """Number of lateral modes. Default: 12, or all of a small lumped rotor."""
     orders: tuple[Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1000.0)], ...] = Field(
         default=(), max_length=MOST_ORDERS
     )
+    """Further multiples of the speed whose lines and critical speeds the Campbell diagram shows; 1 is always there."""
     stiffness_map: StiffnessMap | None = None
+    """Critical speeds over the stiffness of all bearings."""
     torsional_response: TorsionalAnalysis | None = None
+    """Response to harmonic torques."""
     unbalance_response: UnbalanceResponse = UnbalanceResponse()
+    """Response to unbalance and bow."""
     gravity: tuple[Acceleration, Acceleration, Acceleration] = (0.0, -STANDARD_GRAVITY, 0.0)
+    """Acceleration of gravity along x, y, z, for static deflections."""

@@ -140,6 +140,20 @@ def _common() -> dict[str, _Unit]:
 COMMON_UNITS = _common()
 
 
+def _newton_metres() -> dict[str, _Unit]:
+    """Return newton metres written together, as catalogues have them; the registry takes Nm for a count of yarn."""
+    moment = (("kilogram", 1), ("meter", 2), ("second", -2))
+    return {
+        force + length: _Unit(COMMON_UNITS[force].factor * COMMON_UNITS[length].factor, moment)
+        for force in ("N", "kN", "MN", "mN")
+        for length in ("m", "mm")
+    }
+
+
+TOGETHER = _newton_metres()
+"""Products of units that are written without a sign between them."""
+
+
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[float]:
     """Return the one shared unit registry, made when the first uncommon unit is read (a second)."""
@@ -151,7 +165,7 @@ def _registry() -> pint.UnitRegistry[float]:
 @lru_cache(maxsize=256)
 def _symbol(symbol: str) -> _Unit | None:
     """Look up one unit symbol; None where there is no such (whole-power, multiplicative) unit."""
-    return COMMON_UNITS.get(symbol) or registered_unit(symbol)
+    return COMMON_UNITS.get(symbol) or TOGETHER.get(symbol) or registered_unit(symbol)
 
 
 def registered_unit(symbol: str) -> _Unit | None:
@@ -263,14 +277,9 @@ def _parse_text(text: str, dimension: Dimension, expected: str) -> float:
     if unit is None:
         raise QuantityError(f"{expected} (the unit {unit_text!r} is not known)")
     if not _matches(unit, dimension):
-        raise QuantityError(expected + _unit_advice(unit_text), note=_name_of(unit))
+        raise QuantityError(expected, note=_name_of(unit))
     turn = 2.0 * math.pi if dimension is SPEED and ("cycle", 1) in unit.powers else 1.0
     return float(number * unit.factor) * turn
-
-
-def _unit_advice(unit_text: str) -> str:
-    """Say how products are written, where that is the likely slip."""
-    return " (write 'N*m' for newton metres)" if unit_text == "Nm" else ""
 
 
 def split_quantity(text: str) -> tuple[Decimal, str] | None:

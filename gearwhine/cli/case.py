@@ -1,5 +1,6 @@
-"""Commands on a case as a whole: run, check, examples, report."""
+"""Commands on a case as a whole: run, check, examples, report, export."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -64,14 +65,87 @@ def examples(
         hand_over(copy_example(name, common.output or Path()), common, show_files)
 
 
-def report(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
-    """Write the results in OUT (default: ./<case>-results) as one HTML page, report.html."""
-    from gearwhine.analyses.case import report_case
+_Results = Annotated[str, Parameter(help="A results folder; or a case, for its OUT.")]
+
+
+def report(
+    results: _Results,
+    *,
+    interactive: Annotated[
+        bool,
+        Parameter(
+            name="--interactive",
+            negative=(),
+            help="Write report-interactive.html: shapes move, curves can be zoomed and tables sorted.",
+        ),
+    ] = False,
+    common: Common = NONE_GIVEN,
+) -> None:
+    """Write all results in a folder as one HTML page without scripts, report.html: of a folder, or of a case's OUT.
+
+    OUT is ./<case>-results by default. Results that do not fit the case, or that of the newest result, are marked.
+    """
+    from gearwhine.analyses.case import write_report
     from gearwhine.output.terminal import shown_by
 
-    on_case(
-        case,
-        common,
-        lambda given, progress: report_case(given, results_folder(case, common)),
-        shown_by(lambda document: ()),
-    )
+    def work(folder: Path, given: "Case | None", progress: "Progress") -> dict[str, Any]:
+        return write_report(folder, given, interactive=interactive, progress=progress)
+
+    _on_results(results, common, work, shown_by(lambda document: ()))
+
+
+def _on_results(
+    results: str,
+    common: Common,
+    work: Callable[[Path, "Case | None", "Progress"], dict[str, Any]],
+    show: Callable[[dict[str, Any]], None],
+) -> None:
+    """Do work on a results folder, or on that of a case, and hand its document over."""
+    from gearwhine.case import CaseError, Problem
+    from gearwhine.progress import shown
+
+    if not Path(results).is_dir():
+        on_case(results, common, lambda given, progress: work(results_folder(results, common), given, progress), show)
+        return
+    if common.output is not None:
+        raise CaseError([Problem("--output", str(common.output), f"none beside the results folder {results!r}")])
+    if common.settings:
+        raise CaseError([Problem("--set", common.settings[0], f"none beside the results folder {results!r}")])
+    with shown(quiet=common.quiet) as progress:
+        document = work(Path(results), None, progress)
+    hand_over(document, common, show)
+
+
+def export(
+    results: _Results,
+    *,
+    csv: Annotated[bool, Parameter(name=["--csv"], negative=(), help="The report's tables, one file each.")] = False,
+    uff: Annotated[
+        bool,
+        Parameter(
+            name=["--uff"], negative=(), help="Histories, spectra and transmissibilities as universal files (58)."
+        ),
+    ] = False,
+    wav: Annotated[
+        bool, Parameter(name=["--wav"], negative=(), help="The sensors' acceleration as sound, with its full scale.")
+    ] = False,
+    all_signals: Annotated[
+        bool,
+        Parameter(name=["--all-signals"], negative=(), help="With --uff: forces and motions of the machine, too."),
+    ] = False,
+    common: Common = NONE_GIVEN,
+) -> None:
+    """Write the results in a folder in formats of other programs: of a folder, or of a case's OUT.
+
+    OUT is ./<case>-results by default; the files go to OUT/exports. Without --csv, --uff or --wav all three are written.
+    """
+    from gearwhine.analyses.case import Format, export_results, export_sections
+    from gearwhine.output.terminal import shown_by
+
+    asked: dict[Format, bool] = {"csv": csv, "uff": uff, "wav": wav}
+    formats = [name for name, wanted in asked.items() if wanted] or list(asked)
+
+    def work(folder: Path, given: "Case | None", progress: "Progress") -> dict[str, Any]:
+        return export_results(folder, given, formats, signals="all" if all_signals else "sensors")
+
+    _on_results(results, common, work, shown_by(export_sections))

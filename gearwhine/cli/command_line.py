@@ -35,6 +35,7 @@ for _command in (
     housing.render,
     case.examples,
     case.report,
+    case.export,
 ):
     app.command(_command)
 

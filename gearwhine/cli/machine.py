@@ -61,8 +61,20 @@ def load(
         Parameter(
             name=["--sensitivity"],
             negative=(),
-            help="Also rank walls, bearing stiffness and bearing positions by their influence on the gear pairs.",
+            help="Also rank walls, bearing stiffness and positions by their influence on gear pairs and sensors' lines.",
         ),
+    ] = False,
+    line: Annotated[
+        str | None,
+        Parameter(
+            name=["--line"],
+            help="Line that --sensitivity ranks and draws: a sensor, or with its frequency in Hz, 'roof@1377'. "
+            "By default the highest.",
+        ),
+    ] = None,
+    rigid_seats: Annotated[
+        bool,
+        Parameter(name=["--rigid-seats"], negative=(), help="Hold the bearings in rigid seats; leave the housing out."),
     ] = False,
     fresh: Fresh = False,
     common: Common = NONE_GIVEN,
@@ -77,6 +89,8 @@ def load(
             given,
             over_torque=over_torque,
             sensitivity=sensitivity,
+            line=line,
+            rigid_seats=rigid_seats,
             folder=common.output,
             fresh=fresh,
             progress=progress,

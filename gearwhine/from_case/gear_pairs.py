@@ -1,7 +1,7 @@
 """Gear pairs of a case: geometry, contact law, and static transmission error under the mean torque."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ from coupling.gears.errors import ThinTipError
 from coupling.gears.geometry.gear import require_tip_thickness
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.machine.parts import inertia_with_discs
+from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.from_case.rotors import build_gear, gear_inertia, shaft_gears
@@ -39,7 +40,7 @@ def solve_gears(
     for number, (given, torque) in enumerate(zip(case.gear_pair, torques, strict=True)):
         progress(f"gear pair {given.driver} -> {given.driven}")
         loaded = load_gear_pair(
-            aligned_pair(build_pair(given, number), gaps or {}),
+            aligned_pair(build_pair(case, given, number), gaps or {}),
             pair_geometry(case, given),
             torque=torque,
             inertias=(_inertia(case, given.driver), _inertia(case, given.driven)),
@@ -49,8 +50,42 @@ def solve_gears(
     return tuple(solved)
 
 
-def build_pair(given: GivenPair, number: int = 0) -> GearPair:
+@dataclass(frozen=True)
+class TakenMisalignment:
+    """Misalignment that mesh stiffness and motion of a gear pair take.
+
+    Attributes
+    ----------
+    taken : float or None
+        [rad]; None where the operating point gives it and is not solved.
+    origin : str
+        ``operating point``; ``case``, whose word it is; or ``default``, 0 for want of a word.
+    found : float or None
+        Misalignment at the operating point [rad]; None where that is not solved.
+    """
+
+    taken: float | None
+    origin: str
+    found: float | None
+
+
+def taken_misalignments(case: Case, point: OperatingPoint | None) -> tuple[TakenMisalignment, ...]:
+    """Misalignment of every gear pair of the case, beside that of its operating point where it is solved."""
+    taken = []
+    for number, given in enumerate(case.gear_pair):
+        found = None if point is None or not point.pairs else point.pairs[number].misalignment
+        if case.finds_misalignment(given):
+            taken.append(TakenMisalignment(found, "operating point", found))
+        elif isinstance(given.misalignment, float | int):
+            taken.append(TakenMisalignment(given.misalignment, "case", found))
+        else:
+            taken.append(TakenMisalignment(0.0, "default", found))
+    return tuple(taken)
+
+
+def build_pair(case: Case, given: GivenPair, number: int = 0) -> GearPair:
     """Build a gear pair of the case for `coupling.gears`; ``number`` is its place in the list, for messages."""
+    angle = None if case.finds_misalignment(given) or given.misalignment == "found" else given.misalignment or 0.0
     stiffness: StiffnessModel | str = given.stiffness.model
     if given.stiffness.file is not None:
         position, values = _table(given.stiffness.file, f"gear_pair[{number}].stiffness.file")
@@ -65,7 +100,7 @@ def build_pair(given: GivenPair, number: int = 0) -> GearPair:
         damping=given.damping,
         backlash=given.backlash,
         friction=given.friction,
-        misalignment=None if given.misalignment == "found" else given.misalignment,
+        misalignment=angle,
         corner_contact=given.corner_contact,
     )
 

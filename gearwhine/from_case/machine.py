@@ -21,6 +21,7 @@ from coupling.machine.description import LATERAL_LIMIT_HZ
 from coupling.machine.gear_train import AppliedTorque
 from coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
 from coupling.machine.parts import Driving
+from coupling.statics.operating_point import OperatingPoint
 from coupling.time.speed_profile import free_speed
 from gearwhine.case import Case, Rotor, TorqueLine, applied_torques, require, speed_ratios
 from gearwhine.from_case.gear_pairs import build_pair, solve_gears
@@ -97,11 +98,13 @@ def build_machine(
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
     *,
+    point: OperatingPoint | None = None,
     limit_factor: float = 1.0,
 ) -> CoupledMachine:
     """Assemble the machine of a case at its operating speed.
 
-    ``limit_factor`` multiplies the frequency, or the number, up to which modes of the shafts are retained.
+    ``point`` is its operating point where that is known already. ``limit_factor`` multiplies the frequency, or the
+    number, up to which modes of the shafts are retained.
 
     Raises
     ------
@@ -114,8 +117,9 @@ def build_machine(
         housing = reduce_housing(case, housing, progress)
     machine = describe_machine(case, None if housing is None else housing.component)
     if any(mounted.needs_load for mounted in machine.bearings):
-        progress("static equilibrium of the machine under its mean load")
-        machine = machine.at_operating_point(gravity=_gravity(case))
+        if point is None:
+            progress("static equilibrium of the machine under its mean load")
+        machine = machine.at_operating_point(point, gravity=_gravity(case))
     components = machine.rotor_components(limit_factor=limit_factor, progress=progress)
     return machine.assemble(pairs, components, driving(case, components))
 
@@ -166,7 +170,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
         shafts=[_shaft(case, given) for given in case.rotor],
         bearings=bearings,
         gears=[gear for given in case.rotor for gear in shaft_gears(case, given.name)],
-        gear_pairs=[build_pair(given, number) for number, given in enumerate(case.gear_pair)],
+        gear_pairs=[build_pair(case, given, number) for number, given in enumerate(case.gear_pair)],
         speed=operation.speed,
         torque=operation.torque,
         outputs=[output.build() for output in operation.output],
@@ -197,27 +201,32 @@ def solve_machine(
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
+    point: OperatingPoint | None = None,
 ) -> tuple[SolvedHousing | None, tuple[LoadedGearPair, ...], CoupledMachine]:
     """Solve the housing and the gears of the case, and assemble the machine.
 
-    ``housing`` is one that is solved already; ``folder`` and ``fresh`` are those of
-    :func:`gearwhine.solve.housing_modes.solve_housing`.
+    ``housing`` and ``point`` are its housing and its operating point where they are solved already; ``folder`` and
+    ``fresh`` are those of :func:`gearwhine.solve.housing_modes.solve_housing`.
     """
     require(case, "rotor", "operation", command="system")
     require_machine(case)
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    pairs = solve_pairs(case, housing, progress)
-    return housing, pairs, build_machine(case, housing, pairs, progress)
+    pairs = solve_pairs(case, housing, progress, point=point)
+    return housing, pairs, build_machine(case, housing, pairs, progress, point=point)
 
 
 def solve_pairs(
-    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+    case: Case,
+    housing: SolvedHousing | ReducedHousing | None,
+    progress: Progress = silent,
+    *,
+    point: OperatingPoint | None = None,
 ) -> tuple[LoadedGearPair, ...]:
     """Solve the gear pairs of a case; none for one without.
 
     The gap of flanks whose misalignment is to be found is that of the operating point, on rigid seats where there is no
-    housing.
+    housing; ``point`` is that point where it is known already.
 
     Raises
     ------
@@ -226,14 +235,32 @@ def solve_pairs(
     """
     if not case.gear_pair:
         return ()
-    if all(pair.misalignment != "found" for pair in case.gear_pair):
-        return solve_gears(case, progress)
+    point = point or point_of_pairs(case, housing, progress)
+    unaligned = [
+        f"gear pair {pair.driver!r} -> {pair.driven!r}" for pair in case.gear_pair if case.finds_misalignment(pair)
+    ]
+    return solve_gears(case, progress, {} if point is None else point.flank_gaps(unaligned))
+
+
+def point_of_pairs(
+    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+) -> OperatingPoint | None:
+    """Solve the operating point that gives gear pairs their misalignment, on rigid seats where there is no housing.
+
+    None where no pair is left to it.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError
+        Where the machine has no operating point.
+    """
+    if not any(case.finds_misalignment(pair) for pair in case.gear_pair):
+        return None
     progress("misalignment of the flanks at the operating point")
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
     component = None if housing is None else housing.component
-    point = describe_machine(case, component, grounded=component is None).operating_point(_gravity(case))
-    return solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
+    return describe_machine(case, component, grounded=component is None).operating_point(_gravity(case))
 
 
 def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str, RollingState]]]:
@@ -285,10 +312,13 @@ def basis_error(
     housing: SolvedHousing | ReducedHousing | None,
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
+    *,
+    point: OperatingPoint | None = None,
 ) -> BasisError | None:
     """Estimate the modal truncation error: compare with a machine of other residual attachments and more shaft modes.
 
-    None where there is no housing, and so no sensor.
+    ``point`` is the operating point about which both are linearised, where it is known already. None where there is no
+    housing, and so no sensor.
     """
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
@@ -296,18 +326,29 @@ def basis_error(
         return None
     progress("comparing with another modal basis")
     other = replace(housing, component=housing.coarser)
-    return BasisError(machine, build_machine(case, other, pairs, limit_factor=_MORE_MODES))
+    return BasisError(machine, build_machine(case, other, pairs, point=point, limit_factor=_MORE_MODES))
+
+
+def full_housing_component(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
+    """Return the housing with all its residual modes."""
+    participation = _participation(case, solved, progress)
+    return _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
+
+
+def _participation(case: Case, solved: SolvedHousing, progress: Progress) -> FloatArray | None:
+    """Participation in the motions of the ground, where its motion or weight asks for it."""
+    assert case.operation is not None
+    if case.operation.base is None and case.operation.gravity is None:
+        return None
+    progress("taking the housing's mass for the motion of its base and its weight")
+    return base_participation(case, solved.mesh, solved.modes)
 
 
 def _housing_components(
     case: Case, solved: SolvedHousing, progress: Progress
 ) -> tuple[HousingComponent, HousingComponent | None]:
     """Return the housing with all its attachments, and with those of one order of response less."""
-    assert case.operation is not None
-    participation = None
-    if case.operation.base is not None or case.operation.gravity is not None:
-        progress("taking the housing's mass for the motion of its base and its weight")
-        participation = base_participation(case, solved.mesh, solved.modes)
+    participation = _participation(case, solved, progress)
     component = _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
     attached = solved.modes.residual_modes
     if attached is None or not solved.loaded:

@@ -3,7 +3,7 @@
 * :mod:`~gearwhine.output.quantity`: a quantity of a result, declared once; the JSON document.
 * :mod:`~gearwhine.output.dataset`: labelled arrays, in memory and as NetCDF.
 * :mod:`~gearwhine.output.sections`: sentences and tables over a document, for terminal and report alike.
-* :mod:`~gearwhine.output.terminal`, :mod:`~gearwhine.output.html`: these on the terminal, and as a page.
+* :mod:`~gearwhine.output.terminal`, :mod:`~gearwhine.output.report`: these on the terminal, and as a page.
 * :mod:`~gearwhine.output.files`: files that appear whole or not at all.
 """
 

@@ -16,8 +16,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 
@@ -108,23 +108,51 @@ def installed(library: str) -> str | None:
         return None
 
 
-def source_digest(*packages: ModuleType) -> str:
-    """SHA-256 of the text of whole packages, which changes between releases under one version number.
-
-    What does not bear on the result counts too: that costs a solution now and then, and forgets nothing.
-    """
-    return _source_digest(tuple(str(package.__file__) for package in packages))
+PRESENTATION = (
+    "gearwhine.cli",
+    "gearwhine.drawing_process",
+    "gearwhine.figures",
+    "gearwhine.mode_pictures",
+    "gearwhine.output.export",
+    "gearwhine.output.report",
+    "gearwhine.output.terminal",
+    "housing.pictures",
+)
+"""Code that shows numbers and makes none."""
 
 
 @cache
-def _source_digest(files: tuple[str, ...]) -> str:
+def source_digest(*names: str, without: tuple[str, ...] = ()) -> str:
+    """SHA-256 of the text of packages and modules, which changes between releases under one version number.
+
+    Code in them that does not bear on the result counts too: that costs a solution now and then, and forgets nothing.
+
+    Parameters
+    ----------
+    *names : str
+        Dotted names of packages, with all that they hold, and of modules.
+    without : tuple of str
+        Dotted names of what is left out.
+    """
     total = hashlib.sha256()
-    for file in files:
-        folder = Path(file).parent
-        for path in sorted(folder.rglob("*.py")):
-            total.update(f"{path.relative_to(folder.parent).as_posix()}\0".encode())
-            total.update(path.read_bytes())
+    left_out = {file for name in without for _, file in _source_files(name)}
+    for name in names:
+        for place, file in _source_files(name):
+            if file not in left_out:
+                total.update(f"{place}\0".encode())
+                total.update(file.read_bytes())
     return total.hexdigest()
+
+
+def _source_files(name: str) -> list[tuple[str, Path]]:
+    """Return the files of a package or a module, each with its place in the tree."""
+    found = find_spec(name)
+    if found is None or found.origin is None:
+        raise ModuleNotFoundError(f"no package or module {name!r}")
+    file = Path(found.origin)
+    top = file.parents[name.count(".") + (file.name == "__init__.py")]
+    files = sorted(file.parent.rglob("*.py")) if file.name == "__init__.py" else [file]
+    return [(one.relative_to(top).as_posix(), one) for one in files]
 
 
 def _paths(value: Any) -> set[Path]:

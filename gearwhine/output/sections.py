@@ -5,7 +5,7 @@ folder.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from gearwhine.output.quantity import Quantity
@@ -32,42 +32,130 @@ class Column:
         Format of a number.
     scale : float
         Of a number.
+    link : callable, optional
+        Takes from the row the names of places in the report: the cell leads to the first of them that is there.
     """
 
     heading: str
     of: str | Callable[[Row], str]
     form: str = ".4g"
     scale: float = 1.0
+    link: Callable[[Row], Sequence[str]] | None = None
 
     def text(self, row: Row) -> str:
         """Return the cell of a row; empty where there is no value."""
+        value = self.value(row)
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        if isinstance(value, int | float):
+            return format(value, self.form)
+        if isinstance(value, list):
+            return ", ".join(format(entry, self.form) if isinstance(entry, float) else str(entry) for entry in value)
+        return NOTHING if value is None else str(value)
+
+    def value(self, row: Row) -> Any:
+        """Return the value of a row in the unit of the heading, with all its digits; None where there is none."""
         if not isinstance(self.of, str):
             return self.of(row)
         value: Any = row
         for step in self.of.split("."):
             value = value.get(step) if isinstance(value, Mapping) else None
-        if isinstance(value, bool):
-            return "yes" if value else "no"
-        if isinstance(value, int | float):
-            return format(value * self.scale if self.scale != 1.0 else value, self.form)
-        if isinstance(value, list):
-            return ", ".join(format(entry, self.form) if isinstance(entry, float) else str(entry) for entry in value)
-        return NOTHING if value is None else str(value)
+        is_scaled = self.scale != 1.0 and isinstance(value, int | float) and not isinstance(value, bool)
+        return value * self.scale if is_scaled else value
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under columns; columns in which no row has anything are left out."""
+    """Rows under columns; columns in which no row has anything are left out.
+
+    Attributes
+    ----------
+    columns : tuple of Column
+    rows : tuple of mapping
+    caption : str
+    anchor : callable, optional
+        Takes from a row the name of its place in the report, for links to it.
+    """
 
     columns: tuple[Column, ...]
     rows: tuple[Row, ...]
     caption: str = ""
+    anchor: Callable[[Row], str] | None = None
 
     def filled(self) -> tuple[tuple[Column, ...], list[list[str]]]:
         """Return the columns that hold a value in any row, and the text of each row in them."""
         texts = {column: [column.text(row) for row in self.rows] for column in self.columns}
         filled = tuple(column for column in self.columns if any(text != NOTHING for text in texts[column]))
         return filled, [[texts[column][number] for column in filled] for number in range(len(self.rows))]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Sentence that passes or fails.
+
+    Attributes
+    ----------
+    text : str
+    passed : bool
+    link : tuple of str
+        Names of places in the report, of which the first that is there shows more.
+    """
+
+    text: str
+    passed: bool
+    link: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Return the sentence."""
+        return self.text
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Pictures of a section in the report.
+
+    Attributes
+    ----------
+    begins : str
+        Beginning of the file names, before ``.png``.
+    caption : str
+        One sentence that names what is shown and what to look for.
+    small : bool
+        Whether it stands in a row with others of its kind.
+    sheet_of : str
+        Beginning of the names of pictures that this one repeats on one sheet: it is left out where they are there.
+    """
+
+    begins: str
+    caption: str = ""
+    small: bool = False
+    sheet_of: str = ""
+
+    @property
+    def place(self) -> str:
+        """Name of its place in the report, for links to it."""
+        return f"picture {self.begins}"
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Array of the results file that the interactive report draws: curves, or colours over two axes.
+
+    Attributes
+    ----------
+    variable : str
+        Name of the array.
+    along : tuple of str
+        Its axes: the abscissa, and for colours the ordinate; its other dimension, if any, makes one drawing each.
+    caption : str
+    logarithmic : bool
+        Whether values are shown on a logarithmic scale.
+    """
+
+    variable: str
+    along: tuple[str, ...]
+    caption: str
+    logarithmic: bool = True
 
 
 @dataclass(frozen=True)
@@ -78,20 +166,28 @@ class Section:
     ----------
     title : str
         Empty where the sentences need none.
-    content : tuple of str or Table
+    content : tuple of str, Finding or Table
     note : str
         Beside the title.
-    pictures : tuple of str
-        Words with which the file names of its pictures begin, for the report.
+    pictures : tuple of Picture
+        For the report, in their order there.
     inner : tuple of Section
         Behind its own content.
+    curves : tuple of Curves
+        For the interactive report.
     """
 
     title: str
-    content: tuple[str | Table, ...] = ()
+    content: tuple[str | Finding | Table, ...] = ()
     note: str = ""
-    pictures: tuple[str, ...] = field(default=())
+    pictures: tuple[Picture, ...] = ()
     inner: tuple["Section", ...] = ()
+    curves: tuple[Curves, ...] = ()
+
+    @property
+    def place(self) -> str:
+        """Name of its place in the report, for links to it."""
+        return f"section {self.title}"
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -113,9 +209,14 @@ def columns_of(fields: Iterable[object]) -> tuple[Column, ...]:
     )
 
 
-def table_of(columns: tuple[Column, ...], rows: Sequence[Row], caption: str = "") -> tuple[Table, ...]:
+def table_of(
+    columns: tuple[Column, ...],
+    rows: Sequence[Row],
+    caption: str = "",
+    anchor: Callable[[Row], str] | None = None,
+) -> tuple[Table, ...]:
     """Return a table, or none where there are no rows."""
-    return (Table(columns, tuple(rows), caption),) if rows else ()
+    return (Table(columns, tuple(rows), caption, anchor),) if rows else ()
 
 
 def counted(number: int, what: str) -> str:

@@ -6,7 +6,8 @@ housing's modes are shared by all.
 """
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,29 @@ from gearwhine.output.files import (
     staging,
 )
 from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, write_mode_cache
+from housing.storage.netcdf import Variables
 
 _FOREMOST = "run"
 _ADDING = "render"  # draws what it is asked for, beside what it drew before
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Parts of an earlier result of the same analysis in a folder, which a new result there keeps.
+
+    Attributes
+    ----------
+    document : mapping
+        Keys of the document.
+    variables : mapping
+        Arrays of the file, as :class:`gearwhine.output.dataset.LabelledArrays` has them.
+    files : sequence of path
+        Drawings.
+    """
+
+    document: Mapping[str, Any] = field(default_factory=dict)
+    variables: Variables = field(default_factory=dict)
+    files: Sequence[Path] = ()
 
 
 def store_results(
@@ -82,6 +103,12 @@ def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
     found = [(own, summary) for own in places if (summary := read_summary(folder / own)) is not None]
     return sorted(found, key=lambda one: str(one[1].get("made_at", "")), reverse=True)
+
+
+def earlier_result(folder: Path, command: str) -> tuple[Path, Mapping[str, Any]] | None:
+    """Return the place of a command's results in a folder, and their document; None where there are none."""
+    found = [(folder / own, summary) for own, summary in stored_results(folder) if summary.get("command") == command]
+    return found[0] if found else None
 
 
 def _place_of(folder: Path, command: str) -> Path:

@@ -12,6 +12,7 @@ from rich.text import Text
 from gearwhine.output.sections import Document, Section, Table, is_number
 
 _WIDTH = 120
+_LISTED = 12  # files that are named
 
 
 def open_console() -> Console:
@@ -66,11 +67,12 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
 
 
 def show_written(console: Console, document: Document) -> None:
-    """Show the files written; a mode file that was only read is not among them."""
+    """Show the files written, many as their number; a mode file that was only read is not among them."""
     read = document["modes_read_from"].rpartition("/")[2] if document.get("reused") else None
     written = [name for name in document.get("files", ()) if name != read]
     if written:
-        console.print(f"Written to {document['folder']}: {', '.join(written)}")
+        listed = ", ".join(written) if len(written) <= _LISTED else f"{len(written)} files"
+        console.print(f"Written to {document['folder']}: {listed}")
 
 
 def show_origin(console: Console, document: Document) -> None:

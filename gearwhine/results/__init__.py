@@ -16,6 +16,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
 
     if document.get("command") == "check":
         return check.sections(document)
+    load = document.get("load", document if "gear_pairs" in document and "seats" in document else {})
     modes = document.get("housing", document if "certificate" in document and "mesh" in document else {})
     makers: tuple[tuple[Callable[[Document], Section], Any], ...] = (
         (housing.report, modes),
@@ -23,10 +24,11 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (update.report, document if "parameters" in document else {}),
         (rotors.report, document if document.get("rotors") else {}),
         (gears.report, document if any("contact_ratio" in pair for pair in document.get("pairs", ())) else {}),
-        (operating_point.report, document if "gear_pairs" in document and "seats" in document else {}),
+        (operating_point.report, load),
         (system.report, document.get("system", document if "stability" in document else {})),
         (run.report, document if "steps" in document else {}),
         (sweep.report, document if "points" in document and "axes" in document else {}),
+        (housing.render_report, document if document.get("command") == "render" else {}),
         (steady.report, document if "motions" in document else {}),
     )
     return tuple(make(given) for make, given in makers if given)

@@ -6,14 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coupling.machine.axial_location import ARRANGEMENTS
 from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
 from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
 from gearwhine.progress import Progress, silent
-from gearwhine.results.gears import GEOMETRY
+from gearwhine.results.gears import GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, kinds_of_elements
+from gearwhine.results.operating_point import misalignment_words
 from gearwhine.solve.case_summary import check_case
 
 if TYPE_CHECKING:
@@ -165,6 +167,17 @@ BEARING = (
 )
 """Of a bearing of the case."""
 
+LOCATION = (
+    Quantity("rotor", lambda one: one.shaft),
+    Quantity("arrangement", lambda one: one.arrangement),
+    Quantity("thrust_plus_z", lambda one: one.carrying(1)),
+    Quantity("thrust_minus_z", lambda one: one.carrying(-1)),
+    Quantity(
+        "rows", lambda one: {bearing.name: bearing.arrangement for bearing in one.bearings if bearing.arrangement}
+    ),
+)
+"""Of a rotor: the bearings that take its thrust towards +z and -z, and how rows stand to each other (O or X)."""
+
 PAIR = (
     Quantity("driver", lambda pair: pair.given.driver),
     Quantity("driven", lambda pair: pair.given.driven),
@@ -179,10 +192,13 @@ PAIR = (
         lambda pair: {
             "circumferential": pair.geometry.circumferential_backlash,
             "normal": pair.geometry.normal_backlash,
+            "along_line_of_action": pair.geometry.backlash,
         },
     ),
     Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
     Quantity("mean_force_n", lambda pair: pair.mean_force),
+    Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
+    Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
     Quantity("stiffness_model", lambda pair: pair.given.stiffness.model),
     Part("geometry", lambda pair: pair.geometry, GEOMETRY),
 )
@@ -291,6 +307,7 @@ CHECK = (
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
     Rows("rotor_analysis", lambda checked: [(checked.case, one) for one in checked.case.rotor] or ABSENT, ANALYSIS),
     _given("bearings", lambda checked: _bearings(checked.case) or None),
+    Rows("axial_location", lambda checked: [one for one in checked.locations if one.bearings] or ABSENT, LOCATION),
     Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
     _part("operation", lambda checked: None if checked.case.operation is None else checked.case, OPERATION),
     _part("transient", lambda checked: checked.case.transient, TRANSIENT),
@@ -339,6 +356,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
+        "location": [_location_line(one) for one in document.get("axial_location", ())],
         "analysis": [line for one in document.get("rotor_analysis", ()) for line in _analysis_lines(one)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair)],
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
@@ -456,6 +474,27 @@ def _bearing_line(bearing: Document) -> str:
     return line
 
 
+def _location_line(location: Document) -> str:
+    """Return a rotor's arrangement of bearings, and which of them takes its thrust in which sense."""
+    plus, minus = (
+        [
+            f"{name} ({one}, {ARRANGEMENTS[one]})" if (one := location["rows"].get(name)) else name
+            for name in location[key]
+        ]
+        for key in ("thrust_plus_z", "thrust_minus_z")
+    )
+    line = f"{location['rotor']}: "
+    if not plus and not minus:
+        return f"{line}no bearing holds it along its axis"
+    if plus == minus:
+        return f"{line}thrust both ways on {', '.join(plus)}"
+    if arrangement := location["arrangement"]:
+        line += f"{arrangement} arrangement, {ARRANGEMENTS[arrangement]}; "
+    sides = [f"{way} on {', '.join(names)}" for way, names in (("+z", plus), ("-z", minus)) if names]
+    missing = "" if plus and minus else f"; nothing holds it towards {'-z' if plus else '+z'}"
+    return f"{line}thrust towards {', towards '.join(sides)}{missing}"
+
+
 def _analysis_lines(analysis: Document) -> Iterator[str]:
     for key, what in (("campbell_rpm", "Campbell diagram"), ("response_rpm", "response to unbalance and bow")):
         if analysis[key] is not None:
@@ -471,11 +510,18 @@ def _pair_lines(pair: Document) -> list[str]:
         f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, {_contact_ratios(pair)}, "
         f"stiffness {pair['stiffness_model']}",
         f"shafts {1e3 * pair['centre_distance_m']:.6g} mm apart, working pressure angle "
-        f"{pair['working_pressure_angle_deg']:.4g}°{_backlash(pair['backlash_m'])}",
+        f"{pair['working_pressure_angle_deg']:.4g}°",
     ]
+    # By centre distance and thickness, where there is any that could be measured.
+    if abs(pair["backlash_m"]["circumferential"]) >= 1e-9:
+        lines.append(f"backlash {backlash_words(pair['backlash_m'])}")
     lines += [_tooth_line(gear) for gear in pair["geometry"]["gears"]]
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
+    origin = pair.get("misalignment_from", "default")
+    if origin != "default" or pair["mean_force_n"]:
+        words = misalignment_words(pair.get("misalignment_rad"), origin, None)
+        lines.append(words + ("" if origin == "case" else "; `gearwhine load` finds it"))
     return lines
 
 
@@ -496,9 +542,3 @@ def _tooth_line(gear: Document) -> str:
     measured = "" if span is None else f"; span of {span['teeth']}: {1e3 * span['length_m']:.6g} mm"
     cut = " (undercut)" if gear["undercut"] else ""
     return f"{gear['name']}: {gear['teeth']} teeth{helix}, diameters {circles} mm{cut}{measured}"
-
-
-def _backlash(backlash: dict[str, float]) -> str:
-    """Return the backlash by centre distance and thickness, where there is any that could be measured."""
-    clearance = 1e3 * backlash["circumferential"]
-    return "" if abs(clearance) < 1e-6 else f", backlash of the teeth {clearance:.4g} mm"

@@ -3,13 +3,15 @@
 import csv
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, columns_of, counted, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, columns_of, counted, table_of
+from gearwhine.results.housing import shape_places
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -242,9 +244,27 @@ def report(document: Document) -> Section:
     if document.get("gap") is not None:
         agree = "agree" if document.get("measures_agree") else "do not agree"
         sentences.append(f"Gap of dominance {document['gap']:.3f}; the three measures {agree}.")
-    pictures = ("comparison", "mac", "auto-mac", "comac", "cross-orthogonality")
-    tables = table_of(columns_of(PAIR), document.get("pairs", ()))
-    return Section("Measured and modelled", (*sentences, *tables), pictures=pictures)
+    tables = table_of(LINKED_PAIR, document.get("pairs", ()))
+    return Section("Measured and modelled", (*sentences, *tables), pictures=_PICTURES)
+
+
+LINKED_PAIR = tuple(
+    replace(column, link=lambda pair: shape_places(pair["mode"])) if column.of == "mode" else column
+    for column in columns_of(PAIR)
+)
+"""Columns of a measured mode and its partner, with a link to the partner's shape."""
+_PICTURES = (
+    Picture(
+        "comparison",
+        "Frequencies of the model over measured ones, the grey band within 5 %, and their errors; ticks: modes of the "
+        "model without a partner.",
+    ),
+    Picture("mac", "MAC of model and measured shapes: dark where they are alike, pairs outlined in red."),
+    Picture("auto-mac", "MAC of measured shapes with each other: dark off the diagonal where modes look alike."),
+    Picture("cross-orthogonality", "Cross-orthogonality in the model's mass: close to 1 for pairs, to 0 elsewhere."),
+    Picture("comac", "COMAC by measured direction: low where the model's shapes and the measured ones differ."),
+    Picture("measured-and-model", "Measured shapes, left, and their partners in the model, right."),
+)
 
 
 _PAIRS = (

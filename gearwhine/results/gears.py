@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,10 @@ from coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of
 from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
 from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
 from gearwhine.from_case.gear_pairs import geometry_warnings
+from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, percent, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, percent, table_of
+from gearwhine.results.operating_point import misalignment_words
 
 if TYPE_CHECKING:
     from gearwhine.solve.gear_pairs import PairAnalysis
@@ -234,7 +237,7 @@ CURVES = (
         "line_load",
         (*_TOOTH, "slice"),
         "N/m",
-        "transverse load per face width",
+        "line load of the tooth pair: transverse load per face width",
     ),
 )
 """Of a pair at even phases of the mesh period."""
@@ -315,6 +318,18 @@ PRESSURE = (
 )
 
 
+BACKLASH = (
+    Quantity("along_line_of_action", lambda pair: pair.solved.backlash),
+    Quantity(
+        "circumferential",
+        lambda pair: pair.solved.backlash / math.cos(pair.solved.geometry.working_pressure_angle),
+    ),
+    Quantity("normal", lambda pair: pair.solved.backlash * math.cos(pair.solved.geometry.driver.base_helix_angle)),
+)
+"""Backlash that acts (ISO 21771): gap of the back flanks along their line of action in the transverse plane; j_wt on
+the working pitch circles; j_bn, the shortest distance of the flanks."""
+
+
 def _aim(pair: "PairAnalysis") -> dict[str, Any]:
     """Return the aim of the relief search."""
     given, optimum = pair.given.relief_aim, pair.optimum
@@ -367,9 +382,11 @@ PAIR = (
     Quantity("total_contact_ratio", lambda pair: pair.solved.geometry.total_contact_ratio),
     Quantity("centre_distance_m", lambda pair: pair.solved.geometry.working_centre_distance),
     Quantity("working_pressure_angle_rad", lambda pair: pair.solved.geometry.working_pressure_angle),
-    Quantity("backlash_m", lambda pair: pair.solved.backlash),
+    Part("backlash_m", lambda pair: _where(pair.solved.backlash, pair), BACKLASH),
     Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
     Quantity("torque_n_m", lambda pair: pair.solved.torque),
+    Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
+    Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
     Quantity("mean_force_n", lambda pair: pair.solved.static.force),
     Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
     Quantity("path_of_contact", lambda pair: _points(path_of_contact(pair.solved.geometry))),
@@ -458,7 +475,25 @@ def report(document: Document) -> Section:
     """Chapter of the report: all pairs beside each other, then each as the terminal shows it."""
     overview = table_of(OVERVIEW, document["pairs"])
     inner = sections(document) if all("path_of_contact" in pair for pair in document["pairs"]) else ()
-    return Section("Gears", overview, pictures=("gears-",), inner=inner)
+    stems = file_stems([f"{pair['driver']}-{pair['driven']}" for pair in document["pairs"]], "gears-")
+    inner = tuple(
+        replace(section, pictures=tuple(Picture(f"{stem}-{kind}", caption) for kind, caption in _PICTURES.items()))
+        for section, stem in zip(inner, stems, strict=False)
+    )
+    return Section("Gears", overview, pictures=(Picture("gears-", "Gear pair."),), inner=inner)
+
+
+_PICTURES = {
+    "teeth": "Teeth in mesh, to scale: circles, line of action and the points where contact begins and ends.",
+    "stiffness": "Mesh stiffness over a mesh period: it drops where a pair of teeth leaves, which excites the machine.",
+    "transmission-error": "Transmission error over a mesh period without load and under it, and its harmonics: the "
+    "less it varies, the quieter the pair.",
+    "path": "Share of the load, contact pressure and sliding along the path of contact.",
+    "pattern": "Contact pattern over the face and the path of contact.",
+    "flanks": "Flanks against the perfect involute, from the form circle to the tip, and errors of pitch by tooth.",
+    "harris-map": "Harris map: transmission error over a mesh period by torque: least where the pair is quiet.",
+}
+"""Captions of a pair's figures, by the last part of their names."""
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -520,10 +555,15 @@ def _mesh(pair: Document) -> list[str]:
     ratio += f", working pressure angle {_degrees(pair['working_pressure_angle_rad'], '.6g')}"
     lines = [ratio]
     if pair["backlash_m"] is not None:
-        lines[0] += f", backlash {_MM * pair['backlash_m']:.4g} mm"
+        lines.append(f"Backlash {backlash_words(pair['backlash_m'])}")
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"Mesh frequency {pair['mesh_frequency_hz']:.2f} Hz")
         lines[-1] += f", torque on the driver {pair['torque_n_m']:.5g} N·m, mesh force {pair['mean_force_n']:.1f} N"
+    origin = pair.get("misalignment_from", "default")
+    if origin != "default" or pair["mean_force_n"]:
+        taken = pair.get("misalignment_rad")
+        words = misalignment_words(taken, origin, taken if origin == "operating point" else None)
+        lines.append(words[0].upper() + words[1:])
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     lines.append(
         f"Mesh stiffness {_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "
@@ -540,6 +580,15 @@ def _mesh(pair: Document) -> list[str]:
         named = ", ".join(f"{_MICRO * amplitude:.3f}" for amplitude in error["harmonics"][:_HARMONICS])
         lines.append(f"  at the mesh frequency and its multiples: {named} µm")
     return lines
+
+
+def backlash_words(backlash: Document) -> str:
+    """Return a backlash by its names (ISO 21771)."""
+    around, normal, along = (
+        f"{_MM * backlash[key]:.4g} mm" for key in ("circumferential", "normal", "along_line_of_action")
+    )
+    places = ("on the working pitch circle", "normal to the flanks", "along the line of action")
+    return f"j_wt {around} {places[0]}, j_bn {normal} {places[1]}, {along} {places[2]}"
 
 
 def _error(error: Document) -> str:

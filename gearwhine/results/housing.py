@@ -5,11 +5,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
 
     from gearwhine.solve.housing_modes import SolvedHousing
@@ -157,6 +158,7 @@ HOUSING: Fields = (
     Rows("modes", _modes, MODE, "housing_mode"),
     Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
     Part("mesh", lambda solved: solved.mesh, MESH_SIZE),
+    Quantity("size_m", lambda solved: np.ptp(solved.mesh.points, axis=0)),
     Quantity("mass_kg", lambda solved: solved.mass),
     Quantity("center_of_mass_m", lambda solved: solved.checks["health"]["center_of_gravity_m"]),
     Quantity("attached_mass_kg", lambda solved: solved.attached_mass),
@@ -229,8 +231,72 @@ def report(document: Document) -> Section:
         sentences.append(
             f"{mesh['elements']} elements, {mesh['dofs']} degrees of freedom, {document.get('mass_kg', 0.0):.2f} kg."
         )
-    tables = table_of(columns_of(MODE), document.get("modes", ()))
-    return Section("Housing modes", (*sentences, *tables), pictures=("modes", "mode-", "gallery"))
+    modes = document.get("modes", ())
+    tables = table_of(_LINKED, modes, anchor=lambda mode: mode_place(mode["number"]))
+    pictures = (
+        Picture("modes", "Modes side by side, each to a scale of its own; grey lines: at rest.", sheet_of="mode-"),
+        *(mode_picture(mode["number"], mode["frequency_hz"], mode.get("damping_ratio")) for mode in modes),
+        Picture("mode-", "Mode shape, deformed; grey lines: at rest.", small=True),
+    )
+    return Section("Housing modes", (*sentences, *tables), pictures=pictures)
+
+
+def render_report(document: Document) -> Section:
+    """Chapter of the report on pictures that were asked for: modes, operating shapes, measured shapes."""
+    lines = document.get("lines", ())
+    pictures = (
+        Picture("modes", "Modes side by side, each to a scale of its own; grey: at rest.", sheet_of="mode-"),
+        Picture("mode-", "Mode shape; grey: at rest, colour: displacement over the largest.", small=True),
+        *(line_picture(line["frequency_hz"], line["name"]) for line in lines),
+        Picture("line-", "Operating shape; grey: at rest, colour: displacement.", small=True),
+        Picture("measured-and-model", "Measured shapes, left, and their partners in the model, right."),
+    )
+    return Section("Shapes", table_of(_LINES, lines, "Operating shapes"), pictures=pictures)
+
+
+def line_picture(frequency_hz: float, name: str | None) -> Picture:
+    """Return the picture of an operating shape with its caption."""
+    named = f", {name}" if name else ""
+    caption = f"Operating shape at {frequency_hz:.1f} Hz{named}; grey: at rest, colour: displacement."
+    return Picture(f"line-{frequency_hz:.1f}Hz", caption, small=True)
+
+
+_LINES = (
+    Column("line [Hz]", "frequency_hz", ".1f", link=lambda line: (line_picture(line["frequency_hz"], None).place,)),
+    Column("what it is", "name"),
+    Column("largest [µm, peak]", "largest_displacement_m", ".3g", 1e6),
+    Column("largest [m/s², peak]", "largest_acceleration_m_per_s2", ".3g"),
+    Column(
+        "kinetic energy by mode",
+        lambda line: ", ".join(
+            f"{mode['number']} ({mode['frequency_hz']:.0f} Hz) {100.0 * mode['kinetic_energy_share']:.0f} %"
+            for mode in line["modes"][:3]
+        ),
+    ),
+)
+
+
+def mode_place(number: int) -> str:
+    """Return the name of a housing mode's place in the report."""
+    return f"housing mode {number}"
+
+
+def mode_picture(number: int, frequency_hz: float, damping_ratio: float | None) -> Picture:
+    """Return the picture of a housing mode with its caption."""
+    damped = "" if damping_ratio is None else f", damping ratio {damping_ratio:.3g}"
+    caption = f"Mode {number}, {frequency_hz:.0f} Hz{damped}; grey: at rest, colour: displacement over the largest."
+    return Picture(f"mode-{number:02d}-", caption, small=True)
+
+
+def shape_places(number: int) -> tuple[str, str]:
+    """Return the names of a housing mode's places in the report: its picture, else its row."""
+    return f"picture mode-{number:02d}-", mode_place(number)
+
+
+_LINKED = (
+    Column("mode", "number", "d", link=lambda mode: shape_places(mode["number"])[:1]),
+    *columns_of(MODE)[1:],
+)
 
 
 _MODES = (

@@ -5,6 +5,7 @@ from typing import Any
 
 from gearwhine.output.quantity import Quantity
 from gearwhine.output.sections import Column, Document, Table, percent, table_of
+from gearwhine.results.housing import shape_places
 
 _TOLD = 0.03  # an error of a line that is worth its place
 _LINES_OF_A_SENSOR = 6  # in the report
@@ -33,14 +34,36 @@ SENSOR_COLUMNS = (
         lambda row: "  ".join(_line(line) for line in row.get("peaks", row.get("lines", ()))[:_HIGHEST]),
     ),
 )
+
+
+def path_place(sensor: str, frequency_hz: float) -> str:
+    """Return the name of the place in the report that shows the path of a sensor's line."""
+    return f"path {sensor} {frequency_hz:.1f} Hz"
+
+
+def _paths_of(row: Document) -> tuple[str, ...]:
+    return (path_place(row["sensor"], row["frequency_hz"]),)
+
+
+def _shapes_of(row: Document) -> tuple[str, ...]:
+    """Return places that show the housing moving at a line: its operating shape, or the mode that has most of it."""
+    shape = f"picture line-{row['frequency_hz']:.1f}Hz"
+    return (shape, *shape_places(row["by_mode"])) if row["by_mode"] is not None else (shape,)
+
+
+def shape_column(heading: str) -> Column:
+    """Return the column of :func:`leading_lines` that names the leading housing mode and links to a picture of it."""
+    return Column(heading, "by", link=_shapes_of)
+
+
 LINE_COLUMNS = (
     Column("sensor", "sensor"),
-    Column("line [Hz]", "frequency_hz", ".1f"),
+    Column("line [Hz]", "frequency_hz", ".1f", link=_paths_of),
     Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
     Column("level [dB re 1e-6 m/s²]", "level_db", ".1f"),
     Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
     Column("what it is", "name"),
-    Column("mostly by", "by"),
+    shape_column("mostly by"),
 )
 
 
@@ -53,14 +76,20 @@ def mesh_sentence(pair: Document) -> str:
     )
 
 
-def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
-    """Return the highest lines of each sensor, with the housing mode that has most of each."""
+def leading_lines(sensors: Iterable[Document], key: str, most: int = _LINES_OF_A_SENSOR) -> list[dict[str, Any]]:
+    """Return the highest lines of each sensor as rows, with the housing mode that has most of each, ``by``."""
     rows: list[dict[str, Any]] = []
     for sensor in sensors:
-        for line in sensor.get(key, ())[:_LINES_OF_A_SENSOR]:
+        for line in sensor.get(key, ())[:most]:
             parts = line.get("contributions", {}).get("housing_modes", ())
-            rows.append({**line, "sensor": sensor["name"], "by": parts[0]["name"] if parts else None})
-    return table_of(LINE_COLUMNS, rows, "Highest lines of each sensor")
+            by = {"by": parts[0]["name"], "by_mode": parts[0].get("number")} if parts else {"by": None, "by_mode": None}
+            rows.append({**line, "sensor": sensor["name"]} | by)
+    return rows
+
+
+def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
+    """Return the highest lines of each sensor, linked to their paths and to the housing's motion."""
+    return table_of(LINE_COLUMNS, leading_lines(sensors, key), "Highest lines of each sensor")
 
 
 def _line(line: Document) -> str:

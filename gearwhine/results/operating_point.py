@@ -1,20 +1,27 @@
 """Operating point: quantities of bearings, gear pairs and shafts under the mean load, and how they are shown."""
 
-from collections.abc import Callable, Iterator
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coupling.statics.operating_point import CAUSES, PairLoad
+from gearwhine.output.files import finite, json_text
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, table_of
+from gearwhine.output.sections import Column, Document, Picture, Row, Section, Table, columns_of, table_of
+from gearwhine.output.store import Kept
+from housing.storage.netcdf import read_netcdf
 
 if TYPE_CHECKING:
-    from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.bearing_lives import BearingLife
+    from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6
-_DIRECTION, _ROTATION, _MOTION = ("direction",), ("rotation",), ("motion", "other_motion")
+_DIRECTION, _ROTATION, _MOTION = ("direction",), ("rotation",), ("bearing_motion", "other_bearing_motion")
 _MOTIONS = (*_AXES, *_TILTS)
 
 
@@ -46,11 +53,29 @@ def _force(axis: int) -> Column:
     return Column(f"{_AXES[axis]} [N]", lambda row: f"{row['force_n'][axis]:z.0f}")
 
 
+def _moment(axis: int) -> Column:
+    return Column(f"{_TILTS[axis]} [N m]", lambda row: f"{row['moment_n_m'][axis]:z.1f}")
+
+
+def _rated(of: "Callable[[BearingLife], Any]") -> "Callable[[LoadedBearing], Any]":
+    """Take a value of a rolling bearing's ratings; other bearings have none."""
+    return lambda one: None if one.rated is None else of(one.rated)
+
+
 BEARING = (
     Quantity("name", lambda one: one.load.name, "loaded_bearing", heading="bearing"),
     Quantity("shaft", lambda one: one.load.mounted.rotor),
     Quantity("seat", lambda one: one.load.mounted.seat or "ground"),
     _of_bearing("force_n", "force", "bearing_mean_force", "N", "force of the shaft on the bearing"),
+    Quantity(
+        "given_load_n",
+        lambda one: ABSENT if one.given_load is None else _along(one.given_load),
+        "bearing_given_load",
+        _DIRECTION,
+        "N",
+        "force on the bearing for which the case has its stiffness made",
+        document=_list,
+    ),
     _turns_of_bearing("moment_n_m", "force", "bearing_mean_moment", "N m", "moment of the shaft on the bearing"),
     _of_bearing("displacement_m", "deflection", "bearing_displacement", "m", "displacement of the shaft in its seat"),
     _turns_of_bearing("rotation_rad", "deflection", "bearing_rotation", "rad", "rotation of the shaft in its seat"),
@@ -63,7 +88,7 @@ BEARING = (
         (),
         "rad",
         "angle between the shaft and its seat",
-        heading="tilt [µrad]",
+        heading="tilt\n[µrad]",
         shown=".0f",
         scale=_MICRO,
     ),
@@ -82,9 +107,19 @@ BEARING = (
         (),
         "Pa",
         "greatest pressure of the rolling elements",
-        heading="pressure [GPa]",
+        heading="pressure\n[GPa]",
         shown=".3g",
         scale=1e-9,
+    ),
+    Quantity(
+        "preload_n",
+        lambda one: one.preload,
+        "bearing_preload",
+        (),
+        "N",
+        "axial force with which the rows are pressed without torque and weight",
+        heading="preload [N]",
+        shown=".0f",
     ),
     Quantity("most_loaded_element", lambda one: one.most_loaded),
     Quantity(
@@ -95,40 +130,47 @@ BEARING = (
         "N",
         "load of the rolling element on the outer ring, row after row",
     ),
-    Quantity("equivalent_load_n", lambda one: one.equivalent_load),
-    Quantity("dynamic_rating_n", lambda one: one.rating),
-    Quantity(
-        "dynamic_rating_from",
-        lambda one: None if one.rating is None else "geometry" if one.given_rating is None else "case",
-    ),
+    Quantity("equivalent_load_n", _rated(lambda rated: rated.equivalent_load)),
+    Quantity("dynamic_rating_n", _rated(lambda rated: rated.rating)),
+    Quantity("dynamic_rating_from", _rated(lambda rated: rated.rating_from)),
     Quantity(
         "life_h",
-        lambda one: one.life,
+        _rated(lambda rated: rated.life),
         "bearing_life",
         (),
         "h",
         "basic rating life L10 by ISO 281 at the speed of operation",
-        heading="L10 [h]",
+        heading="L10\n[h]",
         shown=".3g",
     ),
     Quantity(
         "reference_life_h",
-        lambda one: one.reference_life,
+        _rated(lambda rated: rated.reference_life),
         "bearing_reference_life",
         (),
         "h",
         "basic reference rating life L10r by ISO/TS 16281 of the elements' loads, at the speed of operation",
-        heading="L10r [h]",
+        heading="L10r\n[h]",
         shown=".3g",
     ),
 )
 """Of a bearing at the operating point."""
 
+
+def _stiffness(row: Row) -> str:
+    """Tangent stiffness along x, y and z of a rolling bearing [N/µm]."""
+    diagonal = [_MEGA * row["stiffness"][axis][axis] for axis in range(3)]
+    return "" if row["peak_pressure_pa"] is None else ", ".join(f"{value:.4g}" for value in diagonal)
+
+
+_NAME, _TILT, *_OF_ELEMENTS = columns_of(BEARING)
 _BEARING_COLUMNS = (
-    columns_of(BEARING)[0],
+    _NAME,
     *(_force(axis) for axis in range(3)),
-    *columns_of(BEARING)[1:],
+    *(_moment(axis) for axis in range(2)),
+    _TILT,
 )
+_ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness))
 
 _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 
@@ -136,6 +178,11 @@ _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 def _of_loaded(value: Callable[[PairLoad], Any]) -> Callable[[PairLoad], Any]:
     """Take a value of a pair that carries load; an idle one has none."""
     return lambda one: value(one) if one.force > 0.0 else None
+
+
+def _line_load(key: str, name: str, of: Callable[[PairLoad], float], what: str) -> Quantity:
+    """Declare a line load of a pair: transverse load, along the line of action, per face width."""
+    return Quantity(key, of, name, (), "N/m", what)
 
 
 PAIR = (
@@ -149,7 +196,7 @@ PAIR = (
         (),
         "N",
         "mean mesh force along the line of action",
-        heading="force [N]",
+        heading="force\n[N]",
         shown=".0f",
     ),
     Quantity("thrust_n", lambda one: one.thrust, "mesh_thrust", (), "N", "axial force on the driven gear along z"),
@@ -173,7 +220,7 @@ PAIR = (
     Quantity(
         "misalignment_over_face_m",
         lambda one: one.misalignment * one.pair.geometry.face_width,
-        heading="misaligned [µm]",
+        heading="misaligned\n[µm]",
         shown="z.2f",
         scale=_MICRO,
     ),
@@ -194,7 +241,7 @@ PAIR = (
         (),
         "N/m",
         "mean mesh stiffness under load over the mesh period",
-        heading="stiffness [N/µm]",
+        heading="stiffness\n[N/µm]",
         shown=".1f",
         scale=_MEGA,
     ),
@@ -210,9 +257,25 @@ PAIR = (
         "line_load_n_per_m",
         _of_loaded(lambda one: one),
         (
-            Quantity("mean", lambda one: one.line_load.mean()),
-            Quantity("max_of_mean", lambda one: one.line_load.max()),
-            Quantity("max", lambda one: one.fine.peak_line_load),
+            _line_load("mean", "mean_line_load", lambda one: one.line_load.mean(), "mean line load F / b"),
+            _line_load(
+                "maximum",
+                "maximum_line_load",
+                lambda one: one.line_load.max(),
+                "maximum line load: largest over the face of the mean over the mesh period, K_Hbeta times the mean",
+            ),
+            _line_load(
+                "peak",
+                "peak_line_load",
+                lambda one: one.fine.line_load.max(),
+                "peak line load: largest over face and mesh period, all tooth pairs together",
+            ),
+            _line_load(
+                "peak_of_tooth_pair",
+                "peak_line_load_of_tooth_pair",
+                lambda one: one.fine.peak_line_load,
+                "peak line load of one tooth pair over its face and the mesh period",
+            ),
         ),
     ),
     Quantity("contact_pressure_max_pa", _of_loaded(lambda one: one.peak_pressure)),
@@ -237,7 +300,7 @@ PAIR = (
         "face_mean_line_load",
         _SLICE,
         "N/m",
-        "transverse load per face width, all tooth pairs together, mean over the mesh period",
+        "line load: transverse load per face width, all tooth pairs together, mean over the mesh period",
     ),
     Quantity(
         "",
@@ -245,7 +308,7 @@ PAIR = (
         "face_line_load",
         (*_PHASE, *_SLICE),
         "N/m",
-        "transverse load per face width, all tooth pairs together",
+        "line load: transverse load per face width, all tooth pairs together",
     ),
     Quantity("", lambda one: one.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
     Quantity(
@@ -259,14 +322,27 @@ PAIR = (
 )
 """Of a gear pair at the operating point."""
 
+TAKEN = (
+    Quantity(
+        "misalignment_taken_rad",
+        lambda one: one.misalignment.taken,
+        "misalignment_taken",
+        (),
+        "rad",
+        "misalignment that mesh stiffness and motion take",
+    ),
+    Quantity("misalignment_taken_from", lambda one: one.misalignment.origin, "misalignment_taken_from"),
+)
+"""Of a gear pair at the operating point and in the case."""
+
 _PAIR_COLUMNS = (
     *columns_of(PAIR),
-    Column("TE p-p [µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
+    Column("TE p-p\n[µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
 )
 _CAUSE_COLUMNS = (
     *columns_of(PAIR)[:2],
-    Column("misaligned [µrad]", "misalignment_rad", "z.2f", _MICRO),
-    *(Column(f"by {cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
+    Column("misaligned\n[µrad]", "misalignment_rad", "z.2f", _MICRO),
+    *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
 )
 
 _PLACE = ("shaft_place",)
@@ -311,18 +387,57 @@ TORQUE = (
             Quantity("driver", lambda one: one.pair.driver.name),
             Quantity("driven", lambda one: one.pair.driven.name),
             Quantity("misalignment_rad", lambda one: one.misalignment),
-            Quantity("k_h_beta", lambda one: one.k_h_beta),
-            Quantity("mean_stiffness_n_per_m", lambda one: one.mean_stiffness),
-            Quantity("transmission_error_peak_to_peak_m", lambda one: np.ptp(one.transmission_error)),
+            Quantity("k_h_beta", _of_loaded(lambda one: one.k_h_beta)),
+            Quantity("mean_stiffness_n_per_m", _of_loaded(lambda one: one.mean_stiffness)),
+            Quantity("transmission_error_peak_to_peak_m", _of_loaded(lambda one: np.ptp(one.transmission_error))),
         ),
     ),
 )
 """Of a torque and the operating point under it."""
 
+_HZ = 0.5 / np.pi
+
+SENSOR_LINE = (
+    Quantity("sensor", lambda one: one[0].sensor, "line_sensor", heading="sensor"),
+    Quantity("excitation", lambda one: one[1], "line_excitation", heading="excitation"),
+    Quantity(
+        "frequency_hz",
+        lambda one: one[0].frequency * _HZ,
+        "line_frequency",
+        (),
+        "Hz",
+        "frequency of the line",
+        heading="[Hz]",
+        shown=".1f",
+    ),
+    Quantity(
+        "amplitude_m_per_s2",
+        lambda one: one[0].amplitude,
+        "line_amplitude",
+        (),
+        "m/s2",
+        "amplitude of acceleration of the line, linear about the operating point",
+        heading="[m/s²]",
+        shown=".3g",
+    ),
+    Quantity("ranked", lambda one: one[2]),
+)
+"""Of a sensor's line, the mesh harmonics that drive it, and whether parameters are ranked by it."""
+
 INFLUENCE = (
     Quantity("parameter", lambda row: row[0].parameter),
     Quantity("kind", lambda row: row[0].kind),
     Quantity("step", lambda row: row[0].step_text),
+    Rows(
+        "lines",
+        lambda row: row[2].line_changes(row[0]) if row[2].sensor_lines else ABSENT,
+        (
+            Quantity("sensor", lambda one: one.line.sensor),
+            Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
+            Quantity("amplitude_m_per_s2", lambda one: one.change),
+            Quantity("level_db", lambda one: one.level),
+        ),
+    ),
     Rows(
         "gear_pairs",
         lambda row: zip(row[1], row[0].changes.tolist(), strict=True),
@@ -335,7 +450,7 @@ INFLUENCE = (
         ),
     ),
 )
-"""Of a parameter's influence, and the gear pairs: their change by a step of it, to first order."""
+"""Of a parameter's influence, the gear pairs and the sensitivity: their changes by a step of it, to first order."""
 
 
 def _unless_idle(value: float) -> Any:
@@ -354,13 +469,29 @@ def _influence(name: str, unit: str, what: str, column: int) -> Quantity:
     return Quantity("", taken, f"{name}_change", ("influence", "loaded_pair"), unit, what)
 
 
+def _line_changes(solved: "SolvedLoad") -> Any:
+    """Changes of every line's amplitude by every parameter's step, for the file."""
+    if solved.sensitivity is None or not solved.sensitivity.sensor_lines:
+        return None
+    return np.array([one.lines for one in solved.sensitivity.influences])
+
+
+def _sensor_lines(solved: "SolvedLoad") -> Any:
+    """Lines of the sensors with their causes, where there are any."""
+    found = solved.sensitivity
+    if found is None or found.lines is None:
+        return ABSENT
+    return [(one, found.lines.cause(one), n == found.line) for n, one in enumerate(found.sensor_lines)]
+
+
 def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
     """Declare a quantity of every gear pair over torque, for the file."""
 
     def taken(solved: "SolvedLoad") -> Any:
         if not solved.over_torque or not solved.point.pairs:
             return None
-        return np.array([[of(pair) for pair in point.pairs] for point in solved.over_torque.values()])
+        rows = [[of(pair) for pair in point.pairs] for point in solved.over_torque.values()]
+        return np.array(rows, dtype=np.float64)  # NaN of pairs that carry nothing
 
     return Quantity("", taken, f"{name}_over_torque", ("load_torque", "loaded_pair"), unit, f"{what} over torque")
 
@@ -369,22 +500,27 @@ LOAD = (
     Quantity("speed_rpm", lambda solved: solved.machine.speed * 30.0 / np.pi),
     Quantity("torque_n_m", lambda solved: solved.machine.torque),
     Quantity("gravity_m_per_s2", lambda solved: ABSENT if solved.gravity is None else solved.gravity),
-    Quantity("seats", lambda solved: "rigid" if solved.housing is None else "housing"),
+    Quantity("seats", lambda solved: "housing" if solved.on_housing else "rigid"),
     Quantity("residual", lambda solved: solved.point.residual),
     Quantity("iterations", lambda solved: solved.point.iterations),
     Quantity("free_motions", lambda solved: solved.point.free),
-    Quantity("", lambda solved: list(_MOTIONS), "motion", ("motion",)),
-    Quantity("", lambda solved: list(_MOTIONS), "other_motion", ("other_motion",)),
+    Quantity("", lambda solved: list(_MOTIONS), _MOTION[0], _MOTION[:1]),
+    Quantity("", lambda solved: list(_MOTIONS), _MOTION[1], _MOTION[1:]),
     Rows("shafts", lambda solved: solved.shafts, SHAFT, "deflected_shaft"),
     Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
-    Rows("gear_pairs", lambda solved: solved.point.pairs, PAIR, "loaded_pair"),
+    Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda one: one.load, PAIR), *TAKEN), "loaded_pair"),
     Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
+    Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
+    Quantity(
+        "lines_without",
+        lambda solved: ABSENT if not _sensor_lines(solved) else solved.sensitivity.lines.held,
+    ),
     Rows(
         "sensitivity",
         lambda solved: (
             ABSENT
             if solved.sensitivity is None
-            else [(one, solved.point.pairs) for one in solved.sensitivity.influences]
+            else [(one, solved.point.pairs, solved.sensitivity) for one in solved.sensitivity.influences]
         ),
         INFLUENCE,
     ),
@@ -403,6 +539,14 @@ LOAD = (
     _influence("transmission_error_peak_to_peak", "m", "peak-to-peak static transmission error", 2),
     Quantity(
         "",
+        _line_changes,
+        "line_amplitude_change",
+        ("influence", "sensor_line"),
+        "m/s2",
+        "change of the line's amplitude of acceleration by a step of the parameter, to first order",
+    ),
+    Quantity(
+        "",
         lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
         "load_torque",
         ("load_torque",),
@@ -410,13 +554,13 @@ LOAD = (
         "torque of the first driver",
     ),
     _over_torque("misalignment", "rad", "angle between the flanks", lambda pair: pair.misalignment),
-    _over_torque("face_load_factor", "1", "face load factor K_Hbeta", lambda pair: pair.k_h_beta),
-    _over_torque("mesh_mean_stiffness", "N/m", "mean mesh stiffness", lambda pair: pair.mean_stiffness),
+    _over_torque("face_load_factor", "1", "face load factor K_Hbeta", _of_loaded(lambda pair: pair.k_h_beta)),
+    _over_torque("mesh_mean_stiffness", "N/m", "mean mesh stiffness", _of_loaded(lambda pair: pair.mean_stiffness)),
     _over_torque(
         "transmission_error_peak_to_peak",
         "m",
         "peak-to-peak static transmission error",
-        lambda pair: np.ptp(pair.transmission_error),
+        _of_loaded(lambda pair: np.ptp(pair.transmission_error)),
     ),
 )
 """Of the operating point."""
@@ -427,6 +571,96 @@ def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
     return {"title": title} | document_of(LOAD, solved)
 
 
+# Options of the operating point: their key in the document, their dimension in the file, names of their drawings.
+_OPTIONS = (
+    ("over_torque", "load_torque", "load-over-torque.png"),
+    ("sensitivity", "influence", "load-sensitivity-*.png"),
+)
+
+
+def kept_options(case: str, document: Mapping[str, Any], place: Path, earlier: Mapping[str, Any]) -> Kept:
+    """Return what an earlier operating point in a folder has by options that a new one was not asked for.
+
+    Only of the same case and, number for number, the same equilibrium.
+
+    Parameters
+    ----------
+    case : str
+        Text of the case.
+    document : mapping
+        Of the new one.
+    place : path
+        Folder of the earlier one.
+    earlier : mapping
+        Its document.
+    """
+    now = json.loads(json_text(finite(document)))
+    missing = [option for option in _OPTIONS if option[0] in earlier and option[0] not in document]
+    same = all(now[key] == earlier.get(key) for key in ("seats", "bearings", "gear_pairs", "shafts"))
+    try:
+        if not missing or not same or (place / "case.toml").read_text(encoding="utf-8") != case:
+            return Kept()
+        arrays, _ = read_netcdf(place / "results.nc")
+    except (OSError, ValueError, KeyError):
+        return Kept()
+    entries: dict[str, Any] = {key: earlier[key] for key, _, _ in missing} | {"kept": [key for key, _, _ in missing]}
+    told = [one for one in earlier.get("warnings", ()) if one["name"] == "sensitivity" and "sensitivity" in entries]
+    along = {dimension for _, dimension, _ in missing}
+    variables = {name: one.labelled for name, one in arrays.items() if along & set(one.dimensions)}
+    files = [file for _, _, name in missing for file in sorted(place.glob(name))]
+    return Kept(entries | {"warnings": [*document["warnings"], *told]}, variables, files)
+
+
+def load_part(solved: "SolvedLoad") -> dict[str, Any]:
+    """Return the operating point as the key ``load`` of another analysis's JSON."""
+    return document_of(LOAD, solved)
+
+
+def brief(load: Document) -> Iterator[str]:
+    """Yield the operating point in sentences, for the terminal of another analysis."""
+    forces = ", ".join(
+        f"{one['name']} {math.hypot(*one['force_n']):.4g} N" for one in load["bearings"][:_MOST_BEARINGS]
+    )
+    more = len(load["bearings"]) - _MOST_BEARINGS
+    yield f"Operating point {_seats(load)}: loads of {forces}" + (f" and of {more} more bearings" if more > 0 else "")
+    yield from _taken(load)
+
+
+def _taken(load: Document) -> Iterator[str]:
+    """Yield the misalignment that the motion takes of every pair, beside the one found."""
+    for pair in load["gear_pairs"]:
+        if "misalignment_taken_from" not in pair:  # in summaries of earlier versions
+            continue
+        taken = misalignment_words(
+            pair["misalignment_taken_rad"], pair["misalignment_taken_from"], pair["misalignment_rad"]
+        )
+        yield f"  {pair['driver']} → {pair['driven']}: {taken}"
+
+
+def misalignment_words(taken: float | None, origin: str, found: float | None) -> str:
+    """Return the misalignment that is taken, its origin, and what the operating point has in its place.
+
+    Parameters
+    ----------
+    taken, found : float or None
+        [rad]; None where the operating point is not solved.
+    origin : str
+        See :class:`gearwhine.from_case.gear_pairs.TakenMisalignment`.
+    """
+    beside = "" if found is None else f" (found: {_MICRO * found:z.2f} µrad)"
+    if origin == "default":
+        return f"misalignment taken as 0, as the case gives none{beside}"
+    if origin == "case":
+        return f"misalignment of {_MICRO * (taken or 0.0):z.4g} µrad taken, as the case gives it{beside}"
+    if found is None:
+        return "misalignment left to the operating point"
+    return f"misalignment of {_MICRO * found:z.2f} µrad taken, as the operating point has it"
+
+
+def _seats(load: Document) -> str:
+    return "on its housing" if load["seats"] == "housing" else "in rigid seats (no housing)"
+
+
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the loads of bearings and gear pairs, and the proof of equilibrium."""
     return (Section("", tuple(_content(document))),)
@@ -434,27 +668,41 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def report(document: Document) -> Section:
     """Chapter of the report: as on the terminal, with the pictures."""
-    return Section("Operating point", tuple(_content(document)), pictures=("load",))
+    return Section("Operating point", tuple(_content(document)), pictures=_PICTURES)
+
+
+_PICTURES = (
+    Picture("load-misalignment", "Misalignment of the flanks by its causes, which may cancel; black: their sum."),
+    Picture("load-face", "Gap of the flanks before the load, and the load over the face: the more even, the better."),
+    Picture("load-pattern", "Contact pattern over the face and the path of contact: loaded edges shorten life."),
+    Picture("load-shaft", "Deflected shaft in both planes, enlarged; arrows: forces on it."),
+    Picture("load-housing", "Housing under the mean load, enlarged; colour: displacement."),
+    Picture(
+        "load-sensitivity", "Material added on blue places lowers the misalignment of the pair, on red ones raises it."
+    ),
+    Picture("load-over-torque", "Misalignment, K_Hβ, mesh stiffness and transmission error over the torque."),
+)
 
 
 _TORQUE_COLUMNS = (
-    Column("torque [N m]", "torque_n_m", ".4g"),
+    Column("torque\n[N m]", "torque_n_m", ".4g"),
     Column("pair", "pair"),
-    Column("misaligned [µrad]", "misalignment_rad", "z.2f", _MICRO),
+    Column("misaligned\n[µrad]", "misalignment_rad", "z.2f", _MICRO),
     Column("K_Hβ", "k_h_beta", ".3f"),
-    Column("stiffness [N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
-    Column("TE p-p [µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
+    Column("stiffness\n[N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
+    Column("TE p-p\n[µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
 )
 
 _MOST_INFLUENCES = 10  # parameters of a table
+_MOST_BEARINGS = 8  # of a sentence
 _INFLUENCE_COLUMNS = (
     Column("parameter", "parameter"),
-    Column("of", "kind"),
+    Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
     Column("step", "step"),
     Column("pair", "pair"),
-    Column("misaligned [µrad]", "misalignment_rad", "+.3f", _MICRO),
+    Column("misaligned\n[µrad]", "misalignment_rad", "+.3f", _MICRO),
     Column("K_Hβ", "k_h_beta", "+.4f"),
-    Column("TE p-p [nm]", "transmission_error_peak_to_peak_m", "+.2f", 1e9),
+    Column("TE p-p\n[nm]", "transmission_error_peak_to_peak_m", "+.2f", 1e9),
 )
 
 
@@ -474,12 +722,49 @@ def _influences(document: Document) -> Iterator[str | Table]:
             yield f"{len(found) - _MOST_INFLUENCES} weaker parameters of {what} are in the files only"
 
 
+_LINE_COLUMNS = (
+    Column("parameter", "parameter"),
+    Column("of", "kind"),
+    Column("step", "step"),
+    Column("level [dB]", "level_db", "+.2f"),
+    Column("amplitude [m/s²]", "amplitude_m_per_s2", "+.3g"),
+)
+
+
+def _lines(document: Document) -> Iterator[str | Table]:
+    """Yield the sensors' lines, and the strongest parameters of the line that is ranked."""
+    lines = document.get("sensor_lines", ())
+    if not lines:
+        return
+    yield from table_of(columns_of(SENSOR_LINE), lines, "Sensors' lines at mesh harmonics, linear about the mean load")
+    number = next(n for n, one in enumerate(lines) if one["ranked"])
+    chosen = f"{lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
+    rows = [
+        {key: one[key] for key in ("parameter", "kind", "step")} | one["lines"][number]
+        for one in document["sensitivity"]
+    ]
+    rows.sort(key=lambda row: -abs(row["level_db"]))
+    yield from table_of(
+        _LINE_COLUMNS, rows[:_MOST_INFLUENCES], f"Change of the line of {chosen} by a step of one parameter"
+    )
+    held = document.get("lines_without")
+    fixed = "" if held is None else f"; the case fixes {held}, which do not follow the walls"
+    yield f"To first order; damping ratios, friction of the teeth and mean mesh forces are kept{fixed}"
+
+
 def _content(document: Document) -> Iterator[str | Table]:
-    seats = "on its housing" if document["seats"] == "housing" else "in rigid seats (no housing)"
-    yield f"Static equilibrium at {document['torque_n_m']:.5g} N m, {seats}; friction of the teeth is left out"
-    yield from table_of(_BEARING_COLUMNS, document["bearings"], "Force of the shafts on their bearings")
+    torque, loads = document["torque_n_m"], "preload and weight" if "gravity_m_per_s2" in document else "preload"
+    if torque == 0.0 and not document["gear_pairs"]:
+        yield f"Static equilibrium without torque, under {loads} alone, {_seats(document)}; no flanks carry"
+    else:
+        yield f"Static equilibrium at {torque:.5g} N m, {_seats(document)}; friction of the teeth is left out"
+    caption = "Force and tilting moment of the shafts on their bearings"
+    yield from table_of(_BEARING_COLUMNS, document["bearings"], caption)
+    rolling = [row for row in document["bearings"] if row["peak_pressure_pa"] is not None]
+    yield from table_of(_ROLLING_COLUMNS, rolling, "Rolling bearings: elements, life, tangent stiffness along x, y, z")
     yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period")
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
+    yield from _taken(document)
     rows = [
         {"torque_n_m": point["torque_n_m"], "pair": f"{pair['driver']} → {pair['driven']}"} | pair
         for point in document.get("over_torque", ())
@@ -487,7 +772,11 @@ def _content(document: Document) -> Iterator[str | Table]:
     ]
     yield from table_of(_TORQUE_COLUMNS, rows, "Over torque")
     yield from _influences(document)
+    yield from _lines(document)
     yield from table_of(columns_of(SHAFT), document["shafts"], "Deflection of the shafts")
+    if kept := document.get("kept"):
+        words = " and ".join(key.replace("_", " ") for key in kept)
+        yield f"Of the results that stood in the folder, of the same equilibrium: {words}"
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:
         yield f"Nothing holds, and no load drives: {_grouped(document['free_motions'])}"

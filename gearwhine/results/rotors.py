@@ -2,16 +2,19 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of, warning
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results.housing import COUNT_CERTIFICATE
 
 if TYPE_CHECKING:
+    from gearwhine.solve.bearing_lives import BearingLife
     from gearwhine.solve.rotors import Crossings, SolvedRotor
     from rotors.rolling_bearings import RollingState
 
@@ -124,17 +127,9 @@ def _loaded(row: tuple["SolvedRotor", str]) -> "RollingState":
     return row[0].rolling[row[1]]
 
 
-def _life(row: tuple["SolvedRotor", str]) -> float | None:
-    """Hours at the speed of operation that 90 % of like bearings reach."""
-    one, name = row
-    return one.lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in one.lives else None
-
-
-def _reference_life(row: tuple["SolvedRotor", str]) -> float | None:
-    """Hours at the speed of operation by the loads of the elements."""
-    one, name = row
-    lives = one.reference_lives
-    return lives[name] / (60.0 * abs(one.operation) * RPM) if one.operation and name in lives else None
+def _rated(row: tuple["SolvedRotor", str]) -> "BearingLife":
+    """Ratings and lives at the speed of operation."""
+    return row[0].lives[row[1]]
 
 
 def _frequencies(row: tuple["SolvedRotor", str]) -> dict[str, float] | None:
@@ -171,9 +166,11 @@ ROLLING = (
         heading="stiffness [N/m]",
         shown=lambda row: ", ".join(f"{row['stiffness'][motion][motion]:.3g}" for motion in range(3)),
     ),
+    Quantity("dynamic_rating_n", lambda row: _rated(row).rating),
+    Quantity("dynamic_rating_from", lambda row: _rated(row).rating_from),
     Quantity(
         "life_h",
-        _life,
+        lambda row: _rated(row).life,
         "rolling_bearing_life",
         (),
         "h",
@@ -183,7 +180,7 @@ ROLLING = (
     ),
     Quantity(
         "reference_life_h",
-        _reference_life,
+        lambda row: _rated(row).reference_life,
         "rolling_bearing_reference_life",
         (),
         "h",
@@ -497,8 +494,26 @@ _SAME = 1e-9  # two frequencies nearer than this part of them are one that both 
 def report(document: Document) -> Section:
     """Chapter of the report: all rotors beside each other, then each as the terminal shows it."""
     overview = table_of(columns_of(ROTOR), document["rotors"])
-    pictures = ("rotor", "shaft", "campbell-rotor", "critical", "unbalance")
-    return Section("Rotors", overview, pictures=pictures, inner=sections(document))
+    stems = file_stems([rotor["name"] for rotor in document["rotors"]], "rotor-")
+    inner = tuple(
+        replace(section, pictures=tuple(Picture(f"{stem}-{kind}", caption) for kind, caption in _PICTURES.items()))
+        for section, stem in zip(sections(document), stems, strict=True)
+    )
+    return Section("Rotors", overview, pictures=(Picture("rotor-", "Rotor."),), inner=inner)
+
+
+_PICTURES = {
+    "shaft": "Shaft to scale with its gears, discs and bearings.",
+    "modes": "Bending modes at rest, each to a scale of its own; triangles: bearings.",
+    "torsional-response": "Response to torques that vary, over their frequency: peaks are torsional resonances.",
+    "torsion": "Torsional modes: angle of twist along the shaft.",
+    "whirl": "Whirl at the speed of operation: orbits along the shaft, forward or backward.",
+    "campbell": "Campbell diagram: whirl frequencies over speed; a critical speed stands where an order meets one.",
+    "critical-map": "Undamped critical speeds over the stiffness of the bearings: flat branches do not depend on it.",
+    "unbalance": "Response to unbalance and bow over speed: peaks stand at critical speeds.",
+    "static": "Deflection of the rotor under its weight, and the forces that hold it.",
+}
+"""Captions of a rotor's figures, by the last part of their names."""
 
 
 def sections(document: Document) -> tuple[Section, ...]:

@@ -11,10 +11,18 @@ import numpy as np
 
 from coupling.signals.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
-from gearwhine.results import comparison
-from gearwhine.results.housing import modes_sentence
-from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
+from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
+from gearwhine.results import comparison, operating_point
+from gearwhine.results.housing import line_picture, modes_sentence
+from gearwhine.results.motion import (
+    MESH,
+    SENSOR_COLUMNS,
+    leading_lines,
+    line_table,
+    mesh_sentence,
+    path_place,
+    shape_column,
+)
 from housing.storage.netcdf import Variables
 
 if TYPE_CHECKING:
@@ -562,16 +570,37 @@ def _recorded(signals: "Signals") -> list[tuple[HistoryQuantity, Any]]:
 
 
 _STEPS = {"newmark": "steps", "exact": "exact elements"}
-_PICTURES = (
+SPECTRUM = Picture(
     "spectrum",
+    "Acceleration of each sensor over frequency, the highest lines with their names; dashed: mesh frequencies and "
+    "their multiples, triangles: housing modes. A mesh line close to a mode is loud.",
+)
+_PICTURES = (
+    SPECTRUM,
+    Picture(
+        "mesh-force",
+        "Mesh force over some mesh periods and its spectrum; flanks part where it falls to zero. Lines beside the mesh "
+        "frequency are sidebands of the shafts.",
+    ),
+    Picture("orbits", "Orbits of the gears: from rest to their mean place, and about it."),
+    Picture("modal-coordinates", "Modal coordinates over time, and their spectra: the modes that answer most."),
+    Picture("friction", "Friction between the teeth: force and power over time."),
+    Picture(
+        "run-up-waterfall",
+        "Spectra along the run: lines through the origin are orders, upright ones are modes; they meet in resonances.",
+    ),
+    Picture("run-up-orders", "Amplitude of each order along the run: peaks are resonances."),
+)
+_CONTRIBUTIONS = Picture(
     "contributions",
-    "mesh-force",
-    "orbits",
-    "modal-coordinates",
-    "friction",
-    "run-up",
-    "waterfall",
-    "sweep",
+    "Share of housing modes, left, and of bearings, right, in the highest lines of each sensor; red parts are in "
+    "opposite phase and cancel others.",
+)
+_CURVES = (
+    Curves("sensor_spectrum", ("frequency",), "Acceleration of the sensors."),
+    Curves("mesh_force_spectrum", ("frequency",), "Mesh force."),
+    Curves("run_spectrum", ("run_frequency", "run_speed"), "Spectra along the run."),
+    Curves("run_order_amplitude", ("order_speed",), "Orders along the run."),
 )
 
 
@@ -587,11 +616,26 @@ def report(document: Document) -> Section:
     tables = (
         *table_of(MESH_COLUMNS, document.get("gear_pairs", ()), "Gear meshes"),
         *line_table(document.get("sensors", ()), "peaks"),
-        *_signature_table(document),
         *table_of(columns_of(BEARING), document.get("bearings", ()), "Bearings"),
         *table_of(columns_of(ORDER), document.get("run_signature", {}).get("orders", ()), "Orders along the run"),
     )
-    return Section("Motion", (*sentences, *tables), pictures=_PICTURES)
+    return Section("Motion", (*sentences, *tables), pictures=_PICTURES, inner=_paths(document), curves=_CURVES)
+
+
+def _paths(document: Document) -> tuple[Section, ...]:
+    """Return the transfer paths of the highest lines: what each is, and which modes and bearings it comes through."""
+    rows = [row for row in leading_lines(document.get("sensors", ()), "peaks") if "contributions" in row]
+    note = "Shares in phase with the line, which add up to it: parts above 100 % are cancelled by those below zero."
+    columns = (
+        Column("sensor", "sensor"),
+        Column("line [Hz]", "frequency_hz", ".1f"),
+        *(column for column in _SIGNATURE_COLUMNS if column.heading not in ("sensor", "Hz")),
+        shape_column("the housing there"),
+    )
+    table = table_of(columns, rows, anchor=lambda row: path_place(row["sensor"], row["frequency_hz"]))
+    named = {round(row["frequency_hz"], 1): row["name"] for row in rows}
+    pictures = (_CONTRIBUTIONS, *(line_picture(hertz, name) for hertz, name in sorted(named.items())))
+    return (Section("Paths of the lines", (*table, note), pictures=pictures),) if table else ()
 
 
 def _basis_error(document: Document) -> list[str]:
@@ -611,6 +655,8 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    if "load" in document:
+        yield from operating_point.brief(document["load"])
     for pair in document.get("gear_pairs", ()):
         yield mesh_sentence(pair)
         if pair.get("friction"):
@@ -651,9 +697,9 @@ _SIGNATURE_COLUMNS = (
 def _signature_table(document: Document) -> tuple[Table, ...]:
     """Return the leading lines, and the housing modes and bearings that they come from."""
     rows = [
-        peak | {"sensor": sensor["name"] if number == 0 else ""}
+        peak | {"sensor": sensor["name"]}
         for sensor in document.get("sensors", ())
-        for number, peak in enumerate(sensor["peaks"][:3])
+        for peak in sensor["peaks"][:3]
         if "contributions" in peak
     ]
     return table_of(_SIGNATURE_COLUMNS, rows)

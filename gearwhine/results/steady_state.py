@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
-from gearwhine.output.sections import Document, Section, Table, columns_of, counted, percent, table_of
+from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
+from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
     from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
@@ -307,7 +308,16 @@ def report(document: Document) -> Section:
         tables += table_of(columns_of(PAIR), motion["gear_pairs"])
         tables += line_table(motion["sensors"], "lines")
     tables += table_of(columns_of(EVENT), document.get("curve", {}).get("bifurcations", ()), "Over speed")
-    return Section("Steady state", (*_content(document), *tables), pictures=("steady",))
+    return Section("Steady state", (*_content(document), *tables), pictures=_PICTURES)
+
+
+_PICTURES = (
+    Picture("steady-motion", "One period of the motion: mesh force, zero where flanks part, and its harmonics."),
+    Picture(
+        "steady-curve",
+        "Periodic motions over speed, dashed where disturbances grow: the machine jumps where a branch turns back.",
+    ),
+)
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -316,6 +326,8 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    if "load" in document:
+        yield from brief(document["load"])
     motions = document["motions"]
     what = "steady motion" if document.get("method") == "superposed" else "periodic motion"
     yield (

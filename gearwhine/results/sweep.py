@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import partial
 
-from gearwhine.output.sections import Column, Document, Section, Table, counted, percent, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, counted, percent, table_of
 
 _MOST_SENSORS, _MOST_MESHES = 5, 2  # with a column each
 
@@ -15,7 +15,17 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def report(document: Document) -> Section:
     """Chapter of the report."""
-    return Section("Sweep", tuple(_content(document)), pictures=("sweep",))
+    return Section("Sweep", tuple(_content(document)), pictures=_PICTURES)
+
+
+_PICTURES = (
+    Picture("sweep-rms", "Level of each sensor over the sweep: peaks are resonances of the machine."),
+    Picture("sweep-mesh-force", "Largest and mean mesh force over the sweep, and the time that the flanks are apart."),
+    Picture(
+        "waterfall",
+        "Spectra over the sweep: slanted lines are orders, upright ones modes; they meet in resonances.",
+    ),
+)
 
 
 def _content(document: Document) -> Iterator[str | Table]:

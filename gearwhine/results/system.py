@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
 
 if TYPE_CHECKING:
@@ -383,7 +383,29 @@ _WHIRL = 0.5  # from which a sense of whirl is named
 def report(document: Document) -> Section:
     """Chapter of the report."""
     content = tuple(_content(document))
-    return Section("Coupled system", content, pictures=("campbell", "transmissibility", "system"))
+    return Section("Coupled system", content, pictures=_PICTURES, curves=_CURVES)
+
+
+_PICTURES = (
+    Picture(
+        "campbell",
+        "Campbell diagram of the coupled machine: an order that meets a mode at a speed is a resonance there.",
+    ),
+    Picture(
+        "transmissibility",
+        "Response to 1 µm of transmission error at any frequency: mesh force, bearing forces and sensors; dashed: mesh "
+        "frequencies at operation. A peak at a dashed line is a loud mesh.",
+    ),
+    Picture("system", "Coupled modes of the machine."),
+)
+_CURVES = (
+    Curves(
+        "transmissibility_sensor_acceleration",
+        ("response_frequency",),
+        "Acceleration of the sensors by transmission error.",
+    ),
+    Curves("transmissibility_mesh_force", ("response_frequency",), "Dynamic mesh force by transmission error."),
+)
 
 
 def sections(document: Document) -> tuple[Section, ...]:

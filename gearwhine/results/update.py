@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.case.errors import key_of
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes
 from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of, warning
-from gearwhine.output.sections import Column, Document, Section, Table, columns_of, counted, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
@@ -272,7 +272,9 @@ def report(document: Document) -> Section:
     tables = table_of(columns_of(PARAMETER), document["parameters"])
     held_back = document.get("held_back", ())
     tables += table_of(columns_of(HELD_BACK), held_back, "Each mode predicted by a fit to the others")
-    return Section("Updated numbers", (*sentences, *tables), pictures=("update",))
+    return Section(
+        "Updated numbers", (*sentences, *tables), pictures=(Picture("update", "Fitted numbers before and after."),)
+    )
 
 
 def sections(document: Document) -> tuple[Section, ...]:

@@ -5,9 +5,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from coupling.gears import GearPairGeometry
+from coupling.machine.axial_location import AxialLocation
 from gearwhine.case import Case, GearPair, Rotor, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.case.checks import axial_locations
 from gearwhine.from_case import mesh_health
-from gearwhine.from_case.gear_pairs import build_pair, geometry_warnings, pair_geometries
+from gearwhine.from_case.gear_pairs import (
+    TakenMisalignment,
+    build_pair,
+    geometry_warnings,
+    pair_geometries,
+    taken_misalignments,
+)
 from gearwhine.from_case.machine import require_machine
 from gearwhine.from_case.mesh import material_of
 from gearwhine.from_case.mesh_health import MeshPreview
@@ -15,6 +23,8 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.part_fits import fit_warnings
+from gearwhine.solve.plausibility import centrifugal_warnings
 from rotors import Rotor as BuiltRotor
 
 
@@ -44,6 +54,7 @@ class CheckedPair:
     ----------
     given : GearPair
     geometry : coupling.gears.GearPairGeometry
+    misalignment : TakenMisalignment
     mesh_frequency : float or None
         [Hz]; None without an operation.
     torque : float or None
@@ -52,6 +63,7 @@ class CheckedPair:
 
     given: GearPair
     geometry: GearPairGeometry
+    misalignment: TakenMisalignment
     mesh_frequency: float | None
     torque: float | None
 
@@ -72,6 +84,8 @@ class CheckedCase:
         Of the housing.
     rotors : tuple of CheckedRotor
     pairs : tuple of CheckedPair
+    locations : tuple of coupling.machine.axial_location.AxialLocation
+        Of each rotor along its axis.
     warnings : list of dict
         As the documents have them.
     """
@@ -80,6 +94,7 @@ class CheckedCase:
     mesh: MeshPreview | None
     rotors: tuple[CheckedRotor, ...]
     pairs: tuple[CheckedPair, ...]
+    locations: tuple[AxialLocation, ...]
     warnings: list[dict[str, Any]]
 
 
@@ -103,21 +118,36 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
             material_of(case, name)
         mesh, warnings = mesh_health.preview_mesh(case, progress)
-    speeds = rotor_speeds(case) if case.operation is not None else {}
-    rotors = tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
-    pairs = tuple(_checked_pairs(case))
+    rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
     for pair in pairs:
-        warnings += geometry_warnings(build_pair(pair.given), pair.geometry)
+        warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
+    warnings += fit_warnings(case, {one.given.name: one.built for one in rotors}, None if mesh is None else mesh.mesh)
+    locations = axial_locations(case)
+    speeds = {one.given.name: one.speed for one in rotors if one.speed is not None}
+    warnings += centrifugal_warnings(
+        (one.name, one.rolling, speeds[location.shaft])
+        for location in locations
+        for one in location.bearings
+        if one.rolling is not None and location.shaft in speeds
+    )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
-    return CheckedCase(case, mesh, rotors, pairs, warnings)
+    return CheckedCase(case, mesh, rotors, pairs, locations, warnings)
 
 
-def _checked_pairs(case: Case) -> Iterator[CheckedPair]:
+def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:
+    """Build the rotors of a case, each with its speed."""
+    speeds = rotor_speeds(case) if case.operation is not None else {}
+    return tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
+
+
+def checked_pairs(case: Case) -> Iterator[CheckedPair]:
+    """Build the gear pairs of a case one by one, each with its mesh frequency and torque."""
     number = len(case.gear_pair)
     frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
     torques = pair_torques(case) if case.operation is not None else (None,) * number
-    for row in zip(case.gear_pair, pair_geometries(case), frequencies, torques, strict=True):
+    misalignments = taken_misalignments(case, None)
+    for row in zip(case.gear_pair, pair_geometries(case), misalignments, frequencies, torques, strict=True):
         pair = CheckedPair(*row)
-        build_pair(pair.given).require_sound_faults(pair.geometry)
+        build_pair(case, pair.given).require_sound_faults(pair.geometry)
         yield pair

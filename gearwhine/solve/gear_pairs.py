@@ -36,10 +36,12 @@ from coupling.gears.loaded.optimal_relief import (
     transmission_error_harmonics,
 )
 from coupling.linear.frequency_response import mesh_error_response
+from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.case.errors import NOTHING
 from gearwhine.case.gears import ReliefAim as GivenAim
+from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.from_case.machine import build_machine
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import solve_housing
@@ -95,6 +97,8 @@ class PairAnalysis:
     given : GearPair
         As in the case.
     solved : LoadedGearPair
+    misalignment : TakenMisalignment
+        Of the flanks.
     widths_given : tuple of bool
         Whether the case gives the face width of the driver and of the driven gear; one that only stands in for it says
         nothing of a pressure.
@@ -116,6 +120,7 @@ class PairAnalysis:
 
     given: GivenPair
     solved: LoadedGearPair
+    misalignment: TakenMisalignment
     widths_given: tuple[bool, bool]
     unloaded: FloatArray
     pressure: FloatArray | None
@@ -242,9 +247,15 @@ class PairAnalysis:
         return float(carried.sum(axis=-1).max(initial=0.0)) * faces.width
 
 
-def analyse_pairs(case: Case, solved: Sequence[LoadedGearPair]) -> tuple[PairAnalysis, ...]:
-    """Analyse each solved gear pair under the case's torque and without load."""
-    return tuple(_analysis(case, given, pair) for given, pair in zip(case.gear_pair, solved, strict=True))
+def analyse_pairs(
+    case: Case, solved: Sequence[LoadedGearPair], point: OperatingPoint | None = None
+) -> tuple[PairAnalysis, ...]:
+    """Analyse each solved gear pair under the case's torque and without load.
+
+    ``point`` is the machine's operating point, where it is solved.
+    """
+    rows = zip(case.gear_pair, solved, taken_misalignments(case, point), strict=True)
+    return tuple(_analysis(case, given, pair, taken) for given, pair, taken in rows)
 
 
 def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
@@ -252,14 +263,14 @@ def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
     return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
 
 
-def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair) -> PairAnalysis:
+def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair, taken: TakenMisalignment) -> PairAnalysis:
     unloaded = first_touch(pair.contact, pair.static.phases)
     driver, driven = case.gear_named(pair.pair.driver), case.gear_named(pair.pair.driven)
     given = driver.face_width is not None, driven.face_width is not None
     if pair.static.force == 0.0 or not pair.has_single_pairs or not all(given):
-        return PairAnalysis(entry, pair, given, unloaded, None, None)
+        return PairAnalysis(entry, pair, taken, given, unloaded, None, None)
     pressure = mesh_pressure(pair.geometry, pair.contact, pair.static)
-    return PairAnalysis(entry, pair, given, unloaded, pressure, _pitch_pressure(pair))
+    return PairAnalysis(entry, pair, taken, given, unloaded, pressure, _pitch_pressure(pair))
 
 
 def _pitch_pressure(pair: LoadedGearPair) -> float | None:

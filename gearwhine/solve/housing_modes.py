@@ -3,7 +3,7 @@
 The mode cache is a file in the results folder that is read again while the housing is unchanged. Modes are identified
 by the content of what they were solved from: the whole ``[housing]`` of the case but for the keys that do not enter the
 modes, the materials it names, the places of the bearings for which the modes have attachments, the content of its
-files, and the versions and source of the code.
+files, and the versions of the code and the source of what solves them.
 A new key of the housing therefore counts until it is listed as one that changes no mode.
 """
 
@@ -19,8 +19,6 @@ import numpy.typing as npt
 from scipy import sparse
 
 import gearwhine
-import housing
-import meshes
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import attach_all, build_attachments, check_places
@@ -59,6 +57,20 @@ MODE_CACHE_FILE = "modes.nc"
 
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
+MODES_CODE = (
+    "meshes",
+    "housing.errors",
+    "housing.fem",
+    "housing.model",
+    "housing.modes",
+    "housing.storage",
+    "gearwhine.case",
+    "gearwhine.from_case.fixtures",
+    "gearwhine.from_case.mesh",
+    "gearwhine.from_case.mesh_health",
+    "gearwhine.solve.housing_modes",
+)
+"""Code that the modes are solved by: a change of any other, such as that of figures, leaves them cached."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
 _TWO_PI = 2.0 * np.pi
 _COORDINATES = ("coordinate", "other_coordinate")
@@ -92,7 +104,7 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
         "attachment_orders": RESPONSE_ORDERS,
         "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
         "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-        "source": source_digest(meshes, housing, gearwhine),
+        "source": source_digest(*MODES_CODE),
     }
 
 

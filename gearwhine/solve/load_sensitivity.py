@@ -1,42 +1,49 @@
-"""Sensitivity of a case's operating point: change of every gear pair by walls, bearing stiffness and positions.
+"""Sensitivity of a case's operating point: change of gear pairs and sensors' lines by walls and bearings.
 
-The gradients are those of :mod:`coupling.statics.sensitivity`. Parameters of the housing are those of the case's
+The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.sensor_lines`. Parameters of the housing are those of the case's
 ``[update]``, else the walls of a box; of any other housing, the flat faces of its surface.
 """
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
+from coupling import Machine
+from coupling.linear.sensor_lines import SensorLine
 from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints
-from gearwhine.case import Case, UpdateParameter
+from coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
+from gearwhine.case import Case, CaseError, Problem, UpdateParameter
 from gearwhine.case.box import FACES
 from gearwhine.case.units import kind_of
 from gearwhine.from_case.mesh import materials_of
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
+from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
 from housing.fem.surface import flat_faces
 from housing.model.housing import bearing_port
 from housing.model.material import element_constants
-from housing.model.seats import seat_matrix
+from housing.model.seats import seat_matrix, sensor_port
 from housing.updating import ModelSensitivity
-from housing.updating.static_sensitivity import PortRates, StaticSensitivity
+from housing.updating.static_sensitivity import PortRates, StaticSensitivity, harmonic_surface_density
+from meshes import Mesh
 from meshes.box.morph import MorphError, with_middles
 
 FloatArray = npt.NDArray[np.float64]
+Ports = dict[str, sparse.csr_array]
 
 _LENGTH, _PART = 1e-3, 0.1  # steps of the table: of lengths [m], and relative ones
+_TWO_PI = 2.0 * np.pi
 _LEAST_FACE = 0.01  # part of the whole surface from which a flat face is told
 
 
 @dataclass(frozen=True, eq=False)
 class Influence:
-    """Influence of a parameter on every gear pair, to first order.
+    """Influence of a parameter on every gear pair and every line, to first order.
 
     Attributes
     ----------
@@ -48,6 +55,8 @@ class Influence:
     is_length : bool
     changes : ndarray, shape (n_pairs, 3)
         Of the `OUTCOMES` by the step; NaN for the last two of an idle pair.
+    lines : ndarray, shape (n_lines,)
+        Of the lines' amplitudes by the step [m/s²].
     """
 
     parameter: str
@@ -55,11 +64,32 @@ class Influence:
     step: float
     is_length: bool
     changes: FloatArray
+    lines: FloatArray
 
     @property
     def step_text(self) -> str:
         """The step in words."""
         return f"+{1e3 * self.step:.3g} mm" if self.is_length else f"+{100.0 * self.step:.3g} %"
+
+
+@dataclass(frozen=True, eq=False)
+class LineChange:
+    """Change of a line by a step of a parameter, to first order.
+
+    Attributes
+    ----------
+    line : SensorLine
+    change : float
+        Of its amplitude [m/s²].
+    """
+
+    line: SensorLine
+    change: float
+
+    @property
+    def level(self) -> float:
+        """Change of its level [dB]."""
+        return 20.0 / math.log(10.0) * self.change / self.line.amplitude
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,67 +104,132 @@ class LoadSensitivity:
         Misalignment by material added on the housing's surface, by its thickness and area [rad/m³].
     note : str or None
         Why flat faces stand in place of walls.
+    lines : SolvedLines or None
+        Lines of the sensors; None where no mesh drives any.
+    line : int
+        Number of the line that is ranked and drawn.
+    line_density : ndarray, shape (n_nodes,), or None
+        Of that line, its amplitude by material added on the surface [(m/s²)/m³].
     """
 
     influences: tuple[Influence, ...]
     density: FloatArray | None
     note: str | None = None
+    lines: SolvedLines | None = None
+    line: int = 0
+    line_density: FloatArray | None = None
+
+    @property
+    def sensor_lines(self) -> tuple[SensorLine, ...]:
+        """Lines of the sensors, the highest first."""
+        return () if self.lines is None else self.lines.lines
+
+    def line_changes(self, influence: Influence) -> list[LineChange]:
+        """Changes of all lines by the step of a parameter."""
+        return [LineChange(*one) for one in zip(self.sensor_lines, influence.lines.tolist(), strict=True)]
 
 
 def solve_load_sensitivity(
-    case: Case, point: OperatingPoint, housing: SolvedHousing | None, progress: Progress = silent
+    case: Case,
+    machine: Machine,
+    point: OperatingPoint,
+    housing: SolvedHousing | None,
+    progress: Progress = silent,
+    *,
+    line: str | None = None,
 ) -> LoadSensitivity:
-    """Compute the gradients of an operating point, ranked.
+    """Compute the gradients of an operating point and of the sensors' lines about it, ranked.
 
     Parameters
     ----------
     case : Case
+    machine : Machine
+        Of the case.
     point : OperatingPoint
-        Of its machine.
+        Of the machine.
     housing : SolvedHousing or None
         That the machine stands in.
     progress : callable
-    """
-    progress("adjoint states of the gear pairs")
-    pairs = pair_adjoints(point)
-    adjoints = [one for pair in pairs for one in pair.values()]
-    places = [(n, OUTCOMES.index(name)) for n, pair in enumerate(pairs) for name in pair]
+    line : str, optional
+        The line that is ranked and drawn, such as ``roof`` or ``roof@1377``; by default the highest.
 
-    def influence(parameter: str, kind: str, derivatives: Sequence[float] | FloatArray, step: float) -> Influence:
+    Raises
+    ------
+    CaseError
+        Where there is no such line.
+    """
+    solved = solve_lines(case, machine, point, housing, progress)
+    chosen = _chosen(line, () if solved is None else solved.lines)
+    progress("adjoint states of gear pairs and lines")
+    pairs = pair_adjoints(point)
+    places = [(n, OUTCOMES.index(name)) for n, pair in enumerate(pairs) for name in pair]
+    adjoints = [one for pair in pairs for one in pair.values()]
+    model, lines = (None, ()) if solved is None else (solved.model, solved.lines)
+    adjoints += [adjoint(point, model.by_static(one)) for one in lines if model is not None]
+
+    def influence(
+        parameter: str, kind: str, derivatives: FloatArray, direct: FloatArray, step: float, *, is_length: bool
+    ) -> Influence:
+        """Derivatives by the equilibrium of gear pairs and lines, and those of the lines at the same equilibrium."""
         changes = np.full((len(pairs), len(OUTCOMES)), np.nan)
-        for place, derivative in zip(places, derivatives, strict=True):
+        for place, derivative in zip(places, derivatives, strict=False):
             changes[place] = step * derivative
-        return Influence(parameter, kind, step, step == _LENGTH, changes)
+        return Influence(parameter, kind, step, is_length, changes, step * (derivatives[len(places) :] + direct))
 
     found = []
-    for bearing in point.bearings:
-        name = bearing.name
-        found.append(influence(name, "bearing stiffness", [one.by_bearing_stiffness(name) for one in adjoints], _PART))
-        found.append(influence(name, "bearing position", [one.by_bearing_position(name) for one in adjoints], _LENGTH))
-    density, note = None, None
+    for name in (bearing.name for bearing in point.bearings):
+        stiffness = np.array([one.by_bearing_stiffness(name) for one in adjoints])
+        direct = np.array([model.by_bearing_stiffness(one, name) for one in lines if model is not None])
+        found.append(influence(name, "bearing stiffness", stiffness, direct, _PART, is_length=False))
+        position = np.array([one.by_bearing_position(name) for one in adjoints])
+        direct = np.array([model.by_bearing_position(one, name) for one in lines if model is not None])
+        found.append(influence(name, "bearing position", position, direct, _LENGTH, is_length=True))
+    density, note, line_density = None, None, None
     if adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
         fields = housing_fields(case, housing, point, adjoints)
         surface = fields.surface_density()
         density = surface[[n for n, (_, outcome) in enumerate(places) if outcome == 0]]
+        if solved is not None:
+            line_density = surface[len(places) + chosen] + harmonic_surface_density(
+                fields.mesh,
+                fields.constants,
+                solved.field(lines[chosen].motion),
+                solved.field(lines[chosen].adjoint),
+                lines[chosen].frequency,
+            )
         parameters = housing_parameters(case)
         try:
-            derivatives = by_case_parameters(case, fields, parameters)
+            changes = case_changes(case, fields.mesh, parameters) if parameters else face_changes(case, fields.mesh)
         except MorphError as error:
-            parameters = ()
+            parameters, changes = (), face_changes(case, fields.mesh)
             note = f"the mesh of the box does not follow its walls, so that flat faces stand in their place: {error}"
-        if parameters:
-            for given, column in zip(parameters, derivatives.T, strict=True):
-                number = fitted_case(case, parameters=[given]).numbers[0]
-                is_length = not given.factor and kind_of(given.range[0]) == kind_of("1 m")
-                step = _LENGTH if is_length else _PART * number.start
-                one = influence(given.name, "housing", column, step)
-                found.append(one if is_length else Influence(one.parameter, one.kind, _PART, False, one.changes))
-        else:
-            found += [influence(name, "face", own, _LENGTH) for name, own in _faces(case, fields)]
+        kind = "housing" if parameters else "face"
+        derivatives = fields.by_parameters(changes.rates, changes.bearings) / changes.slopes
+        own = np.zeros((len(lines), len(changes.names)))
+        if solved is not None:
+            rates = solved.rates(fields.constants, changes.rates, changes.bearings, changes.sensors)
+            own = np.array([solved.model.by_housing(one, rates) for one in lines]) / changes.slopes
+        for name, column, direct, size in zip(changes.names, derivatives.T, own.T, changes.sizes, strict=True):
+            one = influence(
+                name, kind, column, direct, _LENGTH if size is None else _PART * size, is_length=size is None
+            )
+            found.append(one if size is None else replace(one, step=_PART))
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     found.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
-    return LoadSensitivity(tuple(found), density, note)
+    return LoadSensitivity(tuple(found), density, note, solved, chosen, line_density)
+
+
+def _chosen(text: str | None, lines: Sequence[SensorLine]) -> int:
+    """Return the number of the line of this text, a sensor's name alone or with ``@`` and a frequency [Hz]."""
+    if text is None:
+        return 0
+    names = {f"{one.sensor}@{one.frequency / _TWO_PI:.0f}": n for n, one in reversed(list(enumerate(lines)))}
+    names |= {one.sensor: n for n, one in reversed(list(enumerate(lines)))}
+    if text not in names:
+        known = ", ".join(repr(name) for name in names) or "none: no mesh drives a sensor"
+        raise CaseError([Problem("--line", text, f"one of the highest lines: {known}")])
+    return names[text]
 
 
 def housing_fields(
@@ -173,8 +268,47 @@ def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
     return tuple(made)
 
 
+@dataclass(frozen=True, eq=False)
+class HousingChanges:
+    """Changes of a housing by some parameters, in SI.
+
+    Attributes
+    ----------
+    names : tuple of str
+    rates : tuple of ModelSensitivity
+        Per unit of the coordinate that a parameter has.
+    bearings, sensors : tuple of mapping
+        Change of the ports of bearings and of sensors; empty where they stay.
+    slopes : ndarray, shape (n_parameters,)
+        Change of each parameter by a unit of its coordinate.
+    sizes : tuple of float or None
+        Value of each parameter; None of a length.
+    """
+
+    names: tuple[str, ...]
+    rates: tuple[ModelSensitivity, ...]
+    bearings: tuple[PortRates, ...]
+    sensors: tuple[PortRates, ...]
+    slopes: FloatArray
+    sizes: tuple[float | None, ...]
+
+
 def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequence[UpdateParameter]) -> FloatArray:
     """Differentiate outcomes by numbers of a case's housing, in SI, shape (n_adjoints, n_parameters).
+
+    Raises
+    ------
+    CaseError, meshes.box.morph.MorphError
+        As :func:`case_changes`.
+    """
+    if not parameters:
+        return np.zeros((len(fields.adjoint), 0))
+    changes = case_changes(case, fields.mesh, parameters)
+    return np.asarray(fields.by_parameters(changes.rates, changes.bearings) / changes.slopes)
+
+
+def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) -> HousingChanges:
+    """Differentiate the model of a case's housing, its bearings' and its sensors' ports by numbers of the case.
 
     Raises
     ------
@@ -183,24 +317,34 @@ def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequen
     meshes.box.morph.MorphError
         Where the mesh of a box cannot follow.
     """
-    if not parameters:
-        return np.zeros((len(fields.adjoint), 0))
     fitted = fitted_case(case, parameters=parameters)
-    meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
+    meshed = MeshedParameters(fitted, fitted.start, case, mesh)
     rates = meshed.rates()
     ports = [_port_rates(meshed, number, rate) for number, rate in enumerate(rates)]
     slopes = [one.deviation(z, 1.0) for one, z in zip(fitted.parameters, fitted.start.tolist(), strict=True)]
-    return np.asarray(fields.by_parameters(rates, ports) / np.array(slopes))
+    return HousingChanges(
+        tuple(one.name for one in fitted.parameters),
+        tuple(rates),
+        tuple(bearings for bearings, _ in ports),
+        tuple(sensors for _, sensors in ports),
+        np.array(slopes),
+        tuple(None if _is_length(number.given) else number.start for number in fitted.numbers),
+    )
 
 
-def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> PortRates:
-    """Differentiate the ports of all bearings by a coordinate; empty where their seats stay."""
+def _is_length(given: UpdateParameter) -> bool:
+    return not given.factor and kind_of(given.range[0]) == kind_of("1 m")
+
+
+def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> tuple[PortRates, PortRates]:
+    """Differentiate the ports of all bearings and sensors by a coordinate; empty where they stay."""
     above, below = meshed.beside(number)
     assert above.housing is not None
     assert below.housing is not None
-    if rate.velocity is None and above.housing.seat == below.housing.seat:
-        return {}
-    ports: list[dict[str, sparse.csr_array]] = []
+    still = rate.velocity is None
+    if still and above.housing.seat == below.housing.seat and above.housing.sensor == below.housing.sensor:
+        return {}, {}
+    ports: list[tuple[Ports, Ports]] = []
     for case, way in ((above, 1.0), (below, -1.0)):
         assert case.housing is not None
         mesh = (
@@ -210,30 +354,40 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
         )
         seats = {seat.name: seat.build() for seat in case.housing.seat}
         places = bearing_places(case)
-        ports.append({name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()})
-    return {name: (port - ports[1][name]) / (2.0 * RATE_STEP) for name, port in ports[0].items()}
+        ports.append(
+            (
+                {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
+                {one.name: sensor_port(mesh, one.build()).matrix for one in case.housing.sensor},
+            )
+        )
+    bearings, sensors = (
+        {name: (port - after[name]) / (2.0 * RATE_STEP) for name, port in before.items()}
+        for before, after in zip(*ports, strict=True)
+    )
+    return bearings, sensors
 
 
-def _faces(case: Case, fields: StaticSensitivity) -> Iterator[tuple[str, FloatArray]]:
-    """Yield the large flat faces of a surface in words, with the derivatives by material added on them [outcome/m].
+def face_changes(case: Case, mesh: Mesh) -> HousingChanges:
+    """Differentiate the model of a case's housing by material on the large flat faces of its surface, in words.
 
-    The face moves along its normal with the layer of elements on it; seats and what is fastened stay.
+    A face moves along its normal with the layer of elements on it; seats and what is fastened stay.
     """
     assert case.housing is not None
-    mesh = fields.mesh
     seats = [mesh.surface(seat.name) for seat in case.housing.seat]
     held = np.unique(np.concatenate([block.nodes.ravel() for seat in seats for block in seat] or [np.empty(0, int)]))
     faces = flat_faces(mesh)
     whole = sum(face.area for face in faces)
-    large = [face for face in faces if face.area >= _LEAST_FACE * whole]
-    rates = []
-    for face in large:
+    names, rates = [], []
+    for face in faces:
+        if face.area < _LEAST_FACE * whole:
+            continue
         velocity = np.zeros_like(mesh.points)
         velocity[np.unique(np.concatenate([block.corners.ravel() for block in face.facets]))] = face.normal
         velocity[held] = 0.0
         rates.append(ModelSensitivity(with_middles(mesh, velocity)))
-    for face, derivatives in zip(large, fields.by_parameters(rates, [{}] * len(large)).T, strict=True):
         axis = int(np.abs(face.normal).argmax())
         way = f"{'-+'[int(face.normal[axis] > 0.0)]}{'xyz'[axis]}"
         x, y, z = (1e3 * face.center).round().astype(int).tolist()
-        yield f"{way} at {x}, {y}, {z} mm", derivatives
+        names.append(f"{way} at {x}, {y}, {z} mm")
+    still: tuple[PortRates, ...] = ({},) * len(rates)
+    return HousingChanges(tuple(names), tuple(rates), still, still, np.ones(len(rates)), (None,) * len(rates))

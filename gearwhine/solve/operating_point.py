@@ -6,7 +6,7 @@ equilibrium finds.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -15,16 +15,20 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import Machine
+from coupling.errors import CouplingError, EquilibriumNotFoundError
+from coupling.gears import GearError
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
-from gearwhine.from_case.machine import describe_machine, reduce_housing, require_machine
+from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
+from gearwhine.from_case.machine import ReducedHousing, describe_machine, reduce_housing, require_machine
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.load_sensitivity import LoadSensitivity, solve_load_sensitivity
-from gearwhine.solve.plausibility import bearing_load_warnings
-from rotors.rolling_bearings import BallRow, RollerRow, RollingState, Row, dynamic_rating
-from rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
+from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings
+from rotors import EquilibriumError, RotorError
+from rotors.rolling_bearings import BallRow, RollerRow, Row
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,11 +36,11 @@ TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 """Parts of the torque of operation at which the equilibrium is found over torque."""
 
 _PLACES = 201  # along a shaft, where its deflection is told
-_HOUR = 3600.0
 _DIFFERENCE = 0.1  # part of the larger of two numbers by which they may differ without a word
 _ALIGNED = 1e-6  # difference of misalignments that is none [rad]
 _UNEVEN = 2.0  # K_Hβ beyond which a face is said to carry unevenly
 _SHORT_LIFE = 1000.0  # [h]
+_WRONG_SIDE = 1e-3  # part of a bearing's force that balls in angular contact may carry against their angle
 _ARC_MINUTE = math.radians(1.0 / 60.0)
 # Largest angles between shaft and seat (SKF, Rolling Bearings, 2018: deep groove ball bearings 2' to 10', cylindrical
 # roller bearings 3' or 4' by their series), and the pressures of the static rating (ISO 76) [Pa].
@@ -51,50 +55,24 @@ class LoadedBearing:
     Attributes
     ----------
     load : BearingLoad
-    given_rating : float or None
-        Dynamic rating C that the case gives [N].
-    speed : float
-        Of its shaft [rad/s].
+    rated : BearingLife or None
+        Of a rolling bearing.
+    preload : float or None
+        Axial force with which its rows are pressed without torque and weight [N], the larger of two; None where no
+        bearing of the shaft has an axial offset or a spring.
+    given_load : ndarray, shape (3,), or None
+        Force of the shaft along x, y, z for which the case has the stiffness made [N].
     """
 
     load: BearingLoad
-    given_rating: float | None
-    speed: float
-
-    @property
-    def rating(self) -> float | None:
-        """Dynamic rating C of a rolling bearing [N]: as given, else of the geometry by ISO 281."""
-        if self.given_rating is not None or self.load.rolling is None:
-            return self.given_rating
-        rows = self.load.rolling.bearing.rows
-        return dynamic_rating(rows[0], len(rows))
+    rated: BearingLife | None = None
+    preload: float | None = None
+    given_load: FloatArray | None = None
 
     @property
     def peak_pressure(self) -> float | None:
         """Greatest pressure of the rolling elements [Pa]; None for other bearings."""
         return None if self.load.rolling is None else self.load.rolling.peak_pressure
-
-    @property
-    def equivalent_load(self) -> float | None:
-        """Equivalent dynamic load P by ISO 281 [N]; None where it is not defined."""
-        return None if self.load.rolling is None else equivalent_load(self.load.rolling)
-
-    @property
-    def life(self) -> float | None:
-        """Basic rating life L10 by ISO 281 at the speed of operation [h]; None where it is not defined."""
-        return self._hours(rated_revolutions)
-
-    @property
-    def reference_life(self) -> float | None:
-        """Basic reference rating life L10r by ISO/TS 16281 of the elements' loads [h]; None for other bearings."""
-        return self._hours(reference_revolutions)
-
-    def _hours(self, life: Callable[[RollingState, float], float | None]) -> float | None:
-        state, rating = self.load.rolling, self.rating
-        if state is None or rating is None or self.speed == 0.0:
-            return None
-        revolutions = life(state, rating)
-        return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
 
     @property
     def most_loaded(self) -> dict[str, float] | None:
@@ -115,6 +93,14 @@ class LoadedBearing:
 
 
 @dataclass(frozen=True, eq=False)
+class LoadedPair:
+    """A gear pair at the operating point, and the misalignment that mesh stiffness and motion take."""
+
+    load: PairLoad
+    misalignment: TakenMisalignment
+
+
+@dataclass(frozen=True, eq=False)
 class SolvedLoad:
     """The operating point of a case.
 
@@ -123,8 +109,9 @@ class SolvedLoad:
     machine : Machine
     point : OperatingPoint
     bearings : tuple of LoadedBearing
-    housing : SolvedHousing or None
-        Whose compliance acts; seats are rigid without.
+    pairs : tuple of LoadedPair
+    on_housing : bool
+        Whether the compliance of the housing acts; seats are rigid without.
     gravity : tuple of float or None
         [m/s²].
     over_torque : dict of float to OperatingPoint
@@ -136,7 +123,8 @@ class SolvedLoad:
     machine: Machine
     point: OperatingPoint
     bearings: tuple[LoadedBearing, ...]
-    housing: SolvedHousing | None
+    pairs: tuple[LoadedPair, ...]
+    on_housing: bool
     gravity: tuple[float, ...] | None
     over_torque: dict[float, OperatingPoint]
     sensitivity: LoadSensitivity | None = None
@@ -187,24 +175,27 @@ def _deflected(one: ShaftDeflection, machine: Machine) -> DeflectedShaft:
 
 def solve_load(
     case: Case,
-    housing: SolvedHousing | None,
+    housing: SolvedHousing | ReducedHousing | None,
     progress: Progress = silent,
     *,
     over_torque: bool = False,
     sensitivity: bool = False,
+    line: str | None = None,
 ) -> SolvedLoad:
     """Find the static equilibrium of a case's machine under its torques and its weight.
 
     Parameters
     ----------
     case : Case
-    housing : SolvedHousing or None
-        Of the case; without it seats are rigid.
+    housing : SolvedHousing, ReducedHousing or None
+        Of the case; None for rigid seats, also where the case has one. For the gradients a solved one.
     progress : callable
     over_torque : bool
         Whether to find it at `TORQUES` as well.
     sensitivity : bool
         Whether to compute its gradients, see :func:`gearwhine.solve.load_sensitivity.solve_load_sensitivity`.
+    line : str, optional
+        The sensor's line that these are ranked by, such as ``roof@1377``; by default the highest.
 
     Raises
     ------
@@ -218,7 +209,8 @@ def solve_load(
     require_load(case)
     operation = case.operation
     assert operation is not None
-    machine = describe_machine(case, None if housing is None else reduce_housing(case, housing, progress).component)
+    part = reduce_housing(case, housing, progress) if isinstance(housing, SolvedHousing) else housing
+    machine = describe_machine(case, None if part is None else part.component, grounded=part is None)
     progress("static equilibrium of the machine")
     point = machine.operating_point(operation.gravity)
     found: dict[float, OperatingPoint] = {}
@@ -227,16 +219,77 @@ def solve_load(
         outputs = [one if one.torque is None else replace(one, torque=part * one.torque) for one in machine.outputs]
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
         found[part * operation.torque] = loaded.operating_point(operation.gravity)
-    ratings = {
-        given.name: given.stiffness.rolling.dynamic_rating
-        for given in case.bearing
-        if isinstance(given.stiffness, RollingStiffness)
-    }
+    ratings, loads, preloads = given_ratings(case), _given_loads(case), _preloads(machine, progress)
     bearings = tuple(
-        LoadedBearing(one, ratings.get(one.name), machine.speeds[one.mounted.rotor]) for one in point.bearings
+        LoadedBearing(
+            one,
+            None
+            if one.rolling is None
+            else BearingLife(one.rolling, ratings.get(one.name), machine.speeds[one.mounted.rotor]),
+            preloads.get(one.name),
+            loads.get(one.name),
+        )
+        for one in point.bearings
     )
-    gradients = solve_load_sensitivity(case, point, housing, progress) if sensitivity else None
-    return SolvedLoad(machine, point, bearings, housing, operation.gravity, found, gradients)
+    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(case, point)))
+    gradients = None
+    if sensitivity:
+        assert not isinstance(housing, ReducedHousing), "gradients by the housing need its mesh"
+        gradients = solve_load_sensitivity(case, machine, point, housing, progress, line=line)
+    return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, found, gradients)
+
+
+def _given_loads(case: Case) -> dict[str, FloatArray]:
+    """Force along x, y, z for which the case has the stiffness of a bearing made [N], by the bearings' names."""
+    return {
+        one.name: np.array([one.load.x, one.load.y, one.load.z])
+        for one in case.bearing
+        if isinstance(one.stiffness, RollingStiffness | StopStiffness) and one.load is not None
+    }
+
+
+def find_load(
+    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+) -> tuple[SolvedLoad | None, list[dict[str, Any]]]:
+    """Find the operating point of a case beside another analysis, and its warnings.
+
+    Where nothing loads the machine there is none. Where none is found and nothing of the case is left to it, a warning
+    says why, and the analysis goes on.
+
+    Parameters
+    ----------
+    case, housing, progress
+        As :func:`solve_load`.
+
+    Raises
+    ------
+    coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
+        Where bearings or flanks are left to an operating point that is not found.
+    """
+    if not case.is_loaded:
+        return None, []
+    try:
+        found = solve_load(case, housing, progress)
+    except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError) as error:
+        if case.needs_operating_point:
+            raise
+        return None, [warning("operating point", f"no operating point beside it: {error}")]
+    return found, load_warnings(case, found)
+
+
+def _preloads(machine: Machine, progress: Progress) -> dict[str, float]:
+    """Axial force of each rolling bearing's rows without torque and weight [N], on shafts with a preloaded bearing."""
+    elements = {one.bearing.name: one.elements for one in machine.bearings}
+    preloaded = {one.rotor for one in machine.bearings if one.elements is not None and one.elements.is_preloaded}
+    if not preloaded:
+        return {}
+    progress("preload of the bearings")
+    found = {}
+    for one in machine.preload_point().bearings:
+        rolling = elements[one.name]
+        if one.rolling is not None and rolling is not None and rolling.thrust_senses and one.mounted.rotor in preloaded:
+            found[one.name] = max(map(abs, one.rolling.row_thrusts)) + 0.0
+    return found
 
 
 def require_load(case: Case) -> None:
@@ -248,12 +301,8 @@ def require_load(case: Case) -> None:
         As :func:`solve_load`.
     """
     require(case, "rotor", "bearing", "operation", command="load")
-    assert case.operation is not None
-    operation = case.operation
-    if operation.torque == 0.0 and (case.gear_pair or operation.gravity is None):
-        expected = (
-            "a torque, which loads the flanks" if case.gear_pair else "a torque, or gravity, which loads the shafts"
-        )
+    if not case.is_loaded:
+        expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
         raise CaseError([Problem("operation.torque", 0.0, expected)])
     require_machine(case)
 
@@ -267,9 +316,10 @@ def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
         *([] if note is None else [warning("sensitivity", note)]),
         *told,
         *(found for one in solved.bearings for found in _bearing_warnings(one)),
+        *_speed_warnings(solved),
         *_stiffness_warnings(case, solved, loads),
         *(found for one in solved.point.pairs for found in _face_warnings(one)),
-        *_misalignment_warnings(case, solved),
+        *_misalignment_warnings(solved),
         *_free_motion_warnings(solved),
     ]
 
@@ -292,6 +342,18 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
             bearing=name,
             peak_pressure_pa=state.peak_pressure,
         )
+    for each, thrust in zip(state.bearing.rows, state.row_thrusts, strict=True):
+        angular = type(each) is BallRow and each.contact_angle > 0.0 and not each.self_aligning
+        if angular and -thrust > _WRONG_SIDE * float(np.linalg.norm(one.load.force[:3])):
+            way = "-z" if each.direction > 0 else "+z"
+            yield warning(
+                "thrust side",
+                f'bearing "{name}": its balls carry {-thrust:.4g} N towards {way}, against their contact angle, on a '
+                "shoulder that a bearing of this type does not have; turn it round (`carries`) or let another bearing "
+                "take that thrust",
+                bearing=name,
+                thrust_n=-thrust,
+            )
     limit, kind = _tilt_limit(row)
     if len(state.bearing.rows) == 1 and one.load.tilt > limit:
         yield warning(
@@ -301,13 +363,15 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
             bearing=name,
             tilt_rad=one.load.tilt,
         )
-    if one.life is not None and one.life < _SHORT_LIFE:
+    rated = one.rated
+    if rated is not None and rated.life is not None and rated.life < _SHORT_LIFE:
+        source = "the case gives" if rated.rating_from == "case" else "its geometry has"
         yield warning(
             "bearing life",
-            f'bearing "{name}": a rated life L10 of {one.life:.3g} h, below {_SHORT_LIFE:.0f} h, by the dynamic rating '
-            f"of {one.rating:.4g} N that " + ("its geometry has" if one.given_rating is None else "the case gives"),
+            f'bearing "{name}": a rated life L10 of {rated.life:.3g} h, below {_SHORT_LIFE:.0f} h, by the dynamic '
+            f"rating of {rated.rating:.4g} N that {source}",
             bearing=name,
-            life_h=one.life,
+            life_h=rated.life,
         )
 
 
@@ -320,6 +384,15 @@ def _tilt_limit(row: Row) -> tuple[float, str]:
     return math.inf, ""
 
 
+def _speed_warnings(solved: SolvedLoad) -> list[dict[str, Any]]:
+    """Warn of bearings so fast that the centrifugal force of their elements matters."""
+    rolling = [(one.load.mounted, one.load.rolling) for one in solved.bearings if one.load.rolling is not None]
+    return centrifugal_warnings(
+        [(mounted.bearing.name, state.bearing, solved.machine.speeds[mounted.rotor]) for mounted, state in rolling],
+        {mounted.bearing.name: max(float(row.outer_load.max()) for row in state.rows) for mounted, state in rolling},
+    )
+
+
 def _stiffness_warnings(case: Case, solved: SolvedLoad, told: set[str]) -> Iterator[dict[str, Any]]:
     """Warn of bearings whose stiffness in the linear analyses differs from the tangent at the equilibrium.
 
@@ -330,7 +403,7 @@ def _stiffness_warnings(case: Case, solved: SolvedLoad, told: set[str]) -> Itera
         mounted, name = one.load.mounted, one.load.name
         if name not in depend - told or mounted.needs_load:
             continue
-        taken = np.diag(mounted.bearing.at_speed(one.speed).spatial_stiffness)[:3]
+        taken = np.diag(mounted.bearing.at_speed(solved.machine.speeds[mounted.rotor]).spatial_stiffness)[:3]
         found = np.diag(one.load.stiffness)[:3]
         apart = np.abs(taken - found) > _DIFFERENCE * np.maximum(taken, found)
         # A direction in which the bearing is soft beside the others holds nothing there.
@@ -371,20 +444,21 @@ def _face_warnings(one: PairLoad) -> Iterator[dict[str, Any]]:
         )
 
 
-def _misalignment_warnings(case: Case, solved: SolvedLoad) -> Iterator[dict[str, Any]]:
+def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
-    for given, pair, one in zip(case.gear_pair, solved.machine.gear_pairs, solved.point.pairs, strict=True):
-        if "misalignment" not in given.model_fields_set:
+    for one in solved.pairs:
+        typed, found = one.misalignment.taken, one.load.misalignment
+        if typed is None or one.misalignment.origin != "case":
             continue
-        typed, found = pair.misalignment, one.misalignment
-        if typed is None or abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
+        if abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
             continue
+        driver, driven = one.load.names
         yield warning(
             "misalignment",
-            f"{one.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, the equilibrium finds "
-            f"{1e6 * found:.4g} µrad and takes that",
-            driver=given.driver,
-            driven=given.driven,
+            f"{one.load.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, which the motion takes; "
+            f"the equilibrium finds {1e6 * found:.4g} µrad",
+            driver=driver,
+            driven=driven,
             given_rad=typed,
             found_rad=found,
         )

@@ -3,16 +3,22 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import KDTree
 
 from gearwhine.case import CaseError, Problem
 from gearwhine.solve.housing_modes import SolvedHousing
 from housing import HousingError
+from housing.modes.natural_modes import ModeSet
 from housing.modes.receptance import OperatingShape
 from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
+from housing.storage.mode_file import ModeRecord
+
+if TYPE_CHECKING:
+    from gearwhine.solve.signature import SolvedSignature
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -20,6 +26,7 @@ RESULTS_FILE = "results.nc"
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _TOLD = 2  # modes in a picture
+_NEAR = 0.1  # part by which shapes at the nodes nearest to survey points may differ from those at the points
 _SAME = 1e-9  # of frequencies and shapes, for the run's housing to be this one
 
 
@@ -85,18 +92,99 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
     ]
 
 
-def operating_shape_of_line(line: RunLine, solved: SolvedHousing, housing: DrawnHousing) -> DrawnShape:
+def highest_lines(signature: "SolvedSignature", limit: float, most: int) -> list[RunLine]:
+    """Return the lines of a run at which its sensors move most, ascending.
+
+    Parameters
+    ----------
+    signature : SolvedSignature
+        Of the run, whose lines are traced.
+    limit : float
+        Frequency up to which the modes are complete [Hz].
+    most : int
+        Number of lines: the highest of each sensor come first, then the second ones, each frequency once.
+    """
+    found = signature.housing_lines(limit)
+    if found is None or len(found[0]) < _TOLD:
+        return []
+    frequencies, spectrum, _ = found
+    chosen: dict[int, str] = {}
+    for rank in range(max(map(len, signature.lines.values()), default=0)):
+        for lines in signature.lines.values():
+            if rank < len(lines) and len(chosen) < most:
+                place = int(np.argmin(np.abs(frequencies - lines[rank].frequency)))
+                if spectrum[:, place].any():
+                    chosen.setdefault(place, lines[rank].named.name)
+    return [
+        RunLine(OperatingShape(_TWO_PI * float(frequencies[place]), spectrum[:, place]), chosen[place])
+        for place in sorted(chosen)
+    ]
+
+
+def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
+    """Return the lines of a stored run at which its sensors move most, ascending; none without a run of this housing.
+
+    Parameters
+    ----------
+    folder : path
+        A results folder.
+    record : housing.storage.mode_file.ModeRecord
+        The housing's modes.
+    most : int
+        Number of lines, as :func:`highest_lines` chooses them.
+    """
+    import xarray as xr
+
+    wanted = ("housing_line", "housing_acceleration_spectrum", "line_frequency", "line_name", "survey_shape")
+    try:
+        with xr.open_dataset(folder / RESULTS_FILE, engine="h5netcdf") as dataset:
+            if not {*wanted, "survey_position"} <= {*map(str, dataset.variables)}:
+                return []
+            content = dataset[[*wanted, "survey_position"]].load()
+    except (OSError, ValueError):
+        return []
+    if not _same_shapes(content, record):
+        return []
+    lines, spectrum = content["housing_line"].values, content["housing_acceleration_spectrum"].values
+    listed, names = content["line_frequency"].values, content["line_name"].values
+    chosen: dict[int, str] = {}
+    for frequency, name in zip(listed.T.ravel(), names.T.ravel(), strict=True):
+        if len(chosen) < most and np.isfinite(frequency):
+            place = int(np.argmin(np.abs(lines - frequency)))
+            if spectrum[:, place].any():
+                chosen.setdefault(place, str(name))
+    return [
+        RunLine(
+            OperatingShape(_TWO_PI * float(lines[place]), spectrum[:, place, 0] + 1j * spectrum[:, place, 1]),
+            chosen[place],
+        )
+        for place in sorted(chosen)
+    ]
+
+
+def _same_shapes(content: Any, record: ModeRecord) -> bool:
+    """Whether the modes of a run are these, with the same signs: by the nodes nearest to its survey points."""
+    stored = content["survey_shape"].values
+    _, nodes = KDTree(record.mesh.points).query(content["survey_position"].values)
+    shapes = record.modes.shapes[:, np.asarray(nodes)]
+    if stored.shape != shapes.shape:
+        return False
+    alike = np.sum(stored * shapes, axis=(1, 2)) / np.maximum(np.sum(shapes**2, axis=(1, 2)), np.finfo(float).tiny)
+    return bool(np.all(np.abs(alike - 1.0) < _NEAR))
+
+
+def operating_shape_of_line(line: RunLine, modes: ModeSet, housing: DrawnHousing) -> DrawnShape:
     """Return a line's operating shape in micrometres, with the modes that have most of its kinetic energy."""
     try:
-        motion = line.shape.displacement(solved.modes, housing.nodes)
+        motion = line.shape.displacement(modes, housing.nodes)
         largest = float(peak_displacement(motion).max())
-        shares = _leading(line, solved)
-        modes = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
+        shares = _leading(line, modes)
+        told = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
         return DrawnShape(
             f"line-{line.hertz:.1f}Hz",
             f"Operating shape at {line.hertz:.1f} Hz" + (f"   {line.name}" if line.name else ""),
             f"largest {_MICRO * largest:.3g} µm, {largest * line.shape.frequency**2:.3g} m/s² (peak)\n"
-            f"kinetic energy: modes {modes}",
+            f"kinetic energy: modes {told}",
             motion,
             "Displacement [µm], peak",
             _MICRO * largest,
@@ -133,11 +221,11 @@ def lines_document(lines: list[RunLine], solved: SolvedHousing, housing: DrawnHo
     return document
 
 
-def _leading(line: RunLine, solved: SolvedHousing) -> list[tuple[int, float, float]]:
+def _leading(line: RunLine, modes: ModeSet) -> list[tuple[int, float, float]]:
     """Return number, frequency [Hz] and share of the first few modes."""
     shares = line.shape.kinetic_shares
     return [
-        (int(mode) + 1, float(solved.modes.frequencies_hz[mode]), float(shares[mode]))
+        (int(mode) + 1, float(modes.frequencies_hz[mode]), float(shares[mode]))
         for mode in np.argsort(-shares, kind="stable")[:_TOLD]
     ]
 

@@ -1,11 +1,11 @@
-"""Plausibility of a solved machine: bearing loads, unstable modes and modal truncation error.
+"""Plausibility of a solved machine: bearing loads and speeds, unstable modes and modal truncation error.
 
-Bearing loads of a run are held against the loads that the bearings' stiffness was computed for. Coupled modes with
-negative damping or negative stiffness are warned of. The modal truncation error is given for the sensors' lines, line
-by line and by bands.
+Bearing loads of a run are held against the loads that the bearings' stiffness was computed for. Rolling bearings so
+fast that the centrifugal force of their elements matters are warned of, and coupled modes with negative damping or
+negative stiffness. The modal truncation error is given for the sensors' lines, line by line and by bands.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness
 from gearwhine.output.quantity import warning
+from rotors.rolling_bearings import RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -26,7 +27,10 @@ _ROUNDING = 1e-6  # part of the load below which a component is none
 
 
 def bearing_load_warnings(
-    case: Case, mean_force: Mapping[str, FloatArray], found_by: str = "the run"
+    case: Case,
+    mean_force: Mapping[str, FloatArray],
+    found_by: str = "the run",
+    known: Sequence[Mapping[str, Any]] = (),
 ) -> list[dict[str, Any]]:
     """Warn of bearings whose stiffness was made for another load than the mean force of the shaft on them.
 
@@ -40,11 +44,14 @@ def bearing_load_warnings(
         x, y, z of the mean force on each bearing [N], shape (3,) each.
     found_by
         What found it, for the message.
+    known
+        Warnings there are already; bearings that they name are passed over.
     """
     found = []
+    named = {entry["bearing"] for entry in known if entry["name"] == "bearing load"}
     for given in case.bearing:
         depends = isinstance(given.stiffness, RollingStiffness | StopStiffness) and not case.finds_load(given)
-        if not depends or given.name not in mean_force:
+        if not depends or given.name not in mean_force or given.name in named:
             continue
         load = given.load
         assumed = np.zeros(3) if load is None else np.array([load.x, load.y, load.z])
@@ -67,6 +74,50 @@ def bearing_load_warnings(
                 bearing=given.name,
                 assumed_force_n=assumed.tolist(),
                 mean_force_n=actual.tolist(),
+            )
+        )
+    return found
+
+
+FAST = 5e5
+"""Speed factor n d_m of a rolling bearing [mm/min] beyond which the centrifugal force of its elements is warned of.
+
+At it a ball of a 6308 (65 mm, 15 mm) is thrown outwards with 44 N, which is 3 % of the load of the most loaded one
+where the bearing carries a twentieth of its dynamic rating.
+"""
+
+
+def centrifugal_warnings(
+    bearings: Iterable[tuple[str, RollingBearing, float]], largest: Mapping[str, float] | None = None
+) -> list[dict[str, Any]]:
+    """Warn of rolling bearings whose elements' centrifugal force, which their equilibrium leaves out, matters.
+
+    Parameters
+    ----------
+    bearings
+        Name, elements and speed of the shaft [rad/s] of each.
+    largest
+        Load of the most loaded element on the outer ring [N] by the bearings' names, where it is known.
+    """
+    found = []
+    for name, bearing, speed in bearings:
+        row = max(bearing.rows, key=lambda one: one.pitch_diameter)
+        rpm = abs(speed) * 60.0 / _TWO_PI
+        factor = rpm * 1e3 * row.pitch_diameter
+        if factor <= FAST:
+            continue
+        force, known = row.centrifugal_force(speed), (largest or {}).get(name)
+        beside = "" if known is None else f", beside {known:.3g} N on the most loaded one"
+        found.append(
+            warning(
+                "bearing speed",
+                f'bearing "{name}": n·d_m = {factor:.3g} mm/min ({rpm:.5g} rpm, pitch circle '
+                f"{1e3 * row.pitch_diameter:.4g} mm), above {FAST:.0f}: its elements are thrown on the outer ring with "
+                f"{force:.3g} N each{beside}; the equilibrium leaves that out, so pressure and life of the outer ring "
+                "are too favourable, and contact angles and stiffness are those at low speed",
+                bearing=name,
+                speed_factor_mm_per_min=factor,
+                centrifugal_force_n=force,
             )
         )
     return found

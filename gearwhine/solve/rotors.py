@@ -4,7 +4,7 @@ The response to unbalance and bow follows the speeds and probes of `[rotor_analy
 alternating torques those of `[rotor_analysis.torsional_response]`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +14,6 @@ import numpy.typing as npt
 from gearwhine.case import (
     Case,
     Probe,
-    RollingStiffness,
     RotorAnalysis,
     TorsionalAnalysis,
     TorsionProbe,
@@ -29,6 +28,7 @@ from gearwhine.from_case.machine import rotor_bearings
 from gearwhine.from_case.rotors import build_rotor
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from rotors import (
     AxisSpring,
     Bearing,
@@ -60,7 +60,6 @@ from rotors.analyses.unbalance import SynchronousResponse
 from rotors.modes.lateral import LateralModes
 from rotors.modes.torsional_and_axial import TorsionalModes
 from rotors.rolling_bearings import RollingState
-from rotors.rolling_bearings.life import rated_revolutions, reference_revolutions
 from rotors.whirl.whirl_modes import MOSTLY_AXIAL
 
 FloatArray = npt.NDArray[np.float64]
@@ -372,10 +371,8 @@ class SolvedRotor:
         Where the case asks for it.
     rolling : mapping of str to rotors.rolling_bearings.RollingState
         What its rolling bearings carry, by their names.
-    lives : mapping of str to float
-        Basic rating life of those whose dynamic rating the case gives, as far as it is defined [revolutions].
-    reference_lives : mapping of str to float
-        Basic reference rating life of the same, by the loads of their elements [revolutions].
+    lives : mapping of str to BearingLife
+        Ratings and lives of the same.
     """
 
     rotor: Rotor
@@ -397,8 +394,7 @@ class SolvedRotor:
     torsion: SolvedTorsion | None
     stiffness_map: CriticalSpeedMap | None
     rolling: Mapping[str, RollingState]
-    lives: Mapping[str, float]
-    reference_lives: Mapping[str, float]
+    lives: Mapping[str, BearingLife]
 
     @property
     def lateral_at_rest(self) -> npt.NDArray[np.bool_]:
@@ -446,7 +442,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
     """
     require(case, "rotor", command="rotors")
     analysis = case.rotor_analysis or RotorAnalysis()
-    held = rotor_bearings(case)
+    held, ratings = rotor_bearings(case), given_ratings(case)
     solved = []
     for given in case.rotor:
         progress(f"rotor {given.name}")
@@ -487,24 +483,10 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 torsion=solve_torsion(analysis, given, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling,
-                lives=_lives(case, rolling, rated_revolutions),
-                reference_lives=_lives(case, rolling, reference_revolutions),
+                lives={name: BearingLife(state, ratings.get(name), operation) for name, state in rolling.items()},
             )
         )
     return tuple(solved)
-
-
-def _lives(
-    case: Case, states: Mapping[str, RollingState], life: Callable[[RollingState, float], float | None]
-) -> dict[str, float]:
-    """Return lives of the bearings whose dynamic rating is given, in revolutions."""
-    ratings = {
-        bearing.name: bearing.stiffness.rolling.dynamic_rating
-        for bearing in case.bearing
-        if isinstance(bearing.stiffness, RollingStiffness)
-    }
-    lives = {name: life(state, rating) for name, state in states.items() if (rating := ratings.get(name)) is not None}
-    return {name: lasting for name, lasting in lives.items() if lasting is not None}
 
 
 def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -> FloatArray:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-import coupling
 import gearwhine
 from coupling import CoupledMachine, SpeedProfile
 from coupling.signals.histories import (
@@ -25,7 +24,7 @@ from coupling.time.settings import MotionRecord
 from coupling.time.transient import TransientFigures, fingerprint, integrate_blocks, integration_key, transient_figures
 from gearwhine.case import Case, require
 from gearwhine.from_case.machine import ReducedHousing, base_motion, driving
-from gearwhine.output.files import installed, source_digest
+from gearwhine.output.files import PRESENTATION, installed, source_digest
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.transient_record import (
@@ -257,7 +256,7 @@ def _with_code(key: str, chosen: Sampling) -> str:
             "integration": key,
             "stored": [chosen.decimation.factor, len(chosen.decimation.taps)],
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-            "source": source_digest(coupling, gearwhine),
+            "source": source_digest("coupling", "gearwhine", without=PRESENTATION),
             "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
         }
     )

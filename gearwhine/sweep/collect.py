@@ -55,6 +55,7 @@ def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptP
     _add_sensors(grid, orders, variables, coordinates)
     _add_meshes(grid, orders, variables, coordinates)
     _add_bearings(grid, variables, coordinates)
+    _add_operating_points(grid, variables, coordinates)
     modes = max((result.housing_frequencies_hz.size for result in grid.results()), default=0)
     if modes:
         coordinates["housing_mode"] = ("housing_mode", np.arange(1, modes + 1), _unit("1", "number of the mode"))
@@ -212,6 +213,41 @@ def _add_bearings(grid: _Grid, variables: dict[str, Any], coordinates: dict[str,
         for mean, what in (("mean", "mean {} of the shaft on its bearing"), ("rms", "rms of that {} without its mean")):
             of = loads(f"bearing_force_{mean}", parts)
             variables[f"bearing_{kind}_{mean}"] = grid.rows(("bearing", axis), size, of, _unit(unit, what.format(kind)))
+
+
+def _add_operating_points(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
+    """Add misalignment and K_Hβ of every gear pair, and the bearing forces, of each point's equilibrium."""
+    loads = [result.document["load"] for result in grid.results() if "load" in result.document]
+    pairs = _union([_pair_name(pair) for pair in load["gear_pairs"]] for load in loads)
+    bearings = _union([one["name"] for one in load["bearings"]] for load in loads)
+
+    def of_pairs(key: str) -> Callable[[PointResult], FloatArray]:
+        def of(result: PointResult) -> FloatArray:
+            known = {_pair_name(pair): pair[key] for pair in result.document.get("load", {}).get("gear_pairs", ())}
+            return np.array([known.get(name, np.nan) for name in pairs], dtype=np.float64)
+
+        return of
+
+    def forces(result: PointResult) -> FloatArray:
+        known = {one["name"]: one["force_n"] for one in result.document.get("load", {}).get("bearings", ())}
+        return np.array([known.get(name, [np.nan] * 3) for name in bearings])
+
+    if pairs:
+        coordinates["loaded_pair"] = ("loaded_pair", pairs, {})
+        for name, key, unit, what in (
+            ("misalignment", "misalignment_rad", "rad", "angle between the flanks at the operating point"),
+            ("misalignment_taken", "misalignment_taken_rad", "rad", "misalignment that the motion takes"),
+            ("face_load_factor", "k_h_beta", "1", "face load factor K_Hbeta at the operating point"),
+        ):
+            variables[name] = grid.rows(("loaded_pair",), (len(pairs),), of_pairs(key), _unit(unit, what))
+    if bearings:
+        coordinates |= {"loaded_bearing": ("loaded_bearing", bearings, {}), "axis": ("axis", ["x", "y", "z"], {})}
+        told = _unit("N", "force of the shaft on its bearing at the operating point")
+        variables["bearing_operating_force"] = grid.rows(("loaded_bearing", "axis"), (len(bearings), 3), forces, told)
+
+
+def _pair_name(pair: Mapping[str, Any]) -> str:
+    return f"{pair['driver']} -> {pair['driven']}"
 
 
 def _orders(results: Sequence[PointResult]) -> FloatArray:

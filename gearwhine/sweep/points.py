@@ -7,14 +7,10 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
-import coupling
 import gearwhine
-import housing
-import meshes
-import rotors
 from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_document, load_case, require
 from gearwhine.output import file_stems
-from gearwhine.output.files import file_contents, installed, source_digest, with_contents
+from gearwhine.output.files import PRESENTATION, file_contents, installed, source_digest, with_contents
 from gearwhine.solve.housing_modes import mode_cache_inputs
 from gearwhine.solve.transient_record import transient_duration
 from housing.storage.netcdf import content_key
@@ -95,8 +91,8 @@ def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey])
 
 
 def code_digest() -> str:
-    """SHA-256 of all our code: points and workers of another are not used."""
-    return source_digest(meshes, housing, rotors, coupling, gearwhine)
+    """SHA-256 of all our code that makes numbers: points and workers of another are not used."""
+    return source_digest("meshes", "housing", "rotors", "coupling", "gearwhine", without=PRESENTATION)
 
 
 def axis_name(key: str) -> str:

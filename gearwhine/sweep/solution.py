@@ -22,8 +22,10 @@ from gearwhine.failures import explain
 from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.output import finite, json_text
 from gearwhine.output.quantity import add_warnings
+from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, machine_warnings
 from gearwhine.solve.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.sweep.points import Point, code_digest
@@ -101,12 +103,17 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        pairs = solve_pairs(case, housing)
-        machine = build_machine(case, housing, pairs)
+        load, told = find_load(case, housing)
+        point = None if load is None else load.point
+        pairs = solve_pairs(case, housing, point=point)
+        machine = build_machine(case, housing, pairs, point=point)
         frequencies = mesh_frequencies(case) if case.gear_pair else ()
         solved = solve_transient(case, machine, frequencies, housing=housing)
-        result = _reduced(case, solved, housing, time.perf_counter() - begin)
-        add_uncertainty(result.document, basis_error(case, machine, housing, pairs), solved.trusted_limit)
+        result = _reduced(case, solved, housing, time.perf_counter() - begin, told)
+        if load is not None:
+            result.document["load"] = load_part(load)
+        error = basis_error(case, machine, housing, pairs, point=point)
+        add_uncertainty(result.document, error, solved.trusted_limit)
         for pair, frequency in zip(result.document["gear_pairs"], frequencies, strict=True):
             pair["mesh_frequency_hz"] = frequency
         return result
@@ -141,7 +148,9 @@ def _failure(error: Exception) -> PointFailure:
     return PointFailure(message or str(error))
 
 
-def _reduced(case: Case, solved: SolvedTransient, housing: ReducedHousing | None, seconds: float) -> PointResult:
+def _reduced(
+    case: Case, solved: SolvedTransient, housing: ReducedHousing | None, seconds: float, told: list[dict[str, Any]]
+) -> PointResult:
     assert case.operation is not None
     turning_hz = abs(case.operation.speed) / _TWO_PI
     spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
@@ -154,7 +163,8 @@ def _reduced(case: Case, solved: SolvedTransient, housing: ReducedHousing | None
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
     add_warnings(document, () if housing is None else housing.warnings)
     add_warnings(document, machine_warnings(solved.machine))
-    add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved)))
+    add_warnings(document, told)
+    add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved), known=told))
     forces = solved.histories.bearing_load
     return PointResult(
         document=document,

@@ -1,14 +1,16 @@
 """Linear algebra of sparse symmetric matrices: storage by the lower triangle, and products of block vectors.
 
 A sparse symmetric matrix is kept by its lower triangle, the form that factorisations take. Block vectors are bases and
-blocks of vectors on all degrees of freedom; their products run on several threads.
+blocks of vectors on all degrees of freedom; their products run on several threads, which are started once.
 """
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Protocol
+from functools import cache, cached_property, partial
+from itertools import pairwise
+from typing import Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,8 +18,33 @@ from scipy import sparse
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+T = TypeVar("T")
 
 _WORTH_A_THREAD = 2**22  # multiplications of one triangle: fewer are done sooner than a thread starts
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    """Threads of the products: a solution takes hundreds of products, and a busy machine starts a thread slowly."""
+    return ThreadPoolExecutor(thread_name_prefix="products")
+
+
+if hasattr(os, "register_at_fork"):
+    # A forked process has none of the threads.
+    os.register_at_fork(after_in_child=_pool.cache_clear)
+
+
+def at_once(tasks: Sequence[Callable[[], T]]) -> list[T]:
+    """Run tasks at once, the first in the calling thread, and return their results in order.
+
+    A task itself runs none at once: it would wait for threads that wait for it.
+    """
+    others = [_pool().submit(task) for task in tasks[1:]]
+    try:
+        results = [task() for task in tasks[:1]]
+    finally:
+        wait(others)  # even after an error: they write where the caller reads
+    return results + [other.result() for other in others]
 
 
 class Operator(Protocol):
@@ -83,10 +110,9 @@ class SymmetricMatrix:
         """Multiply the symmetric matrix by one vector, shape (n,), or by many, shape (n, m)."""
         own = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
         if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(own):
-            with ThreadPoolExecutor(1) as pool:
-                upper = pool.submit(lambda: self.lower.T @ vectors)
-                product = np.asarray(self.lower @ vectors)
-                product += upper.result()
+            lower = self.lower
+            product, upper = at_once([lambda: np.asarray(lower @ vectors), lambda: np.asarray(lower.T @ vectors)])
+            product += upper
         else:
             product = np.asarray(self.lower @ vectors)
             product += self.lower.T @ vectors
@@ -131,8 +157,10 @@ class BlockAlgebra:
         """B m, shape (rows, columns of m)."""
         return np.concatenate(self._each(lambda rows: block[rows] @ mixture))
 
-    def _each(self, work: Callable[[slice], Any]) -> list[Any]:
-        if self._threads == 1:
-            return [work(rows) for rows in self._shares]
-        with ThreadPoolExecutor(self._threads) as pool:
-            return list(pool.map(work, self._shares))
+    def _each(self, work: Callable[[slice], T]) -> list[T]:
+        def together(shares: list[slice]) -> list[T]:
+            return [work(rows) for rows in shares]
+
+        ends = [_SHARES * thread // self._threads for thread in range(self._threads + 1)]
+        groups = at_once([partial(together, self._shares[begin:end]) for begin, end in pairwise(ends)])
+        return [result for group in groups for result in group]

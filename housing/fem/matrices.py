@@ -5,10 +5,9 @@ matrix K - σM. Every shifted matrix of a search for modes has one sparsity patt
 found once. A new shift is then one pass over the entries, and no sparse matrix is cut or converted.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from itertools import pairwise
+from functools import cached_property, partial
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.fem.linear_algebra import SymmetricMatrix
+from housing.fem.linear_algebra import SymmetricMatrix, at_once
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -426,13 +425,11 @@ class FreeMass:
             return np.asarray(self._shares[0] @ columns)
         product = np.empty((self._order // 3, columns.shape[1]))
 
-        def fill(share: int) -> None:
-            rows = self._shares[share].shape[0]
-            start = sum(part.shape[0] for part in self._shares[:share])
-            product[start : start + rows] = self._shares[share] @ columns
+        def fill(start: int, share: sparse.csr_array) -> None:
+            product[start : start + share.shape[0]] = share @ columns
 
-        with ThreadPoolExecutor(len(self._shares)) as pool:
-            list(pool.map(fill, range(len(self._shares))))
+        starts = accumulate((share.shape[0] for share in self._shares), initial=0)
+        at_once([partial(fill, start, share) for start, share in zip(starts, self._shares, strict=False)])
         return product
 
 

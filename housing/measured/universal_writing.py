@@ -1,10 +1,13 @@
-"""Writer of universal files: points, shapes and responses of a survey, written whole or not at all.
+"""Writer of universal files: points, shapes and functions, written whole or not at all.
 
 Points go out in double precision (2411) or, where a program asks for it, in single (15); directions that are not
-along the axes as coordinate systems (18); shapes as dataset 55 in the points' own directions; responses as dataset 58
-in binary, whose header and length of binary part are written here, because pyuff 2.5 counts complex values as half.
+along the axes as coordinate systems (18); shapes as dataset 55 in the points' own directions; responses, histories and
+spectra as dataset 58 in binary, whose header and length of binary part are written here, because pyuff 2.5 counts
+complex values as half.
 """
 
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -213,11 +216,75 @@ def _component(frame: FloatArray, direction: FloatArray) -> tuple[int, int]:
     return component, 1 if shares[component] > 0.0 else -1
 
 
-def _functions(responses: MeasuredResponses, nodes: list[int], frames: FloatArray) -> list[bytes]:
-    """Dataset 58 in binary, double precision, each frequency written: no digit is lost."""
-    kind = next(number for number, motion in MOTIONS.items() if motion == responses.motion)
+@dataclass(frozen=True)
+class UniversalFunction:
+    """Function of time or frequency, for a dataset 58.
+
+    Attributes
+    ----------
+    kind : {"time response", "frequency response function", "spectrum"}
+    abscissa : ndarray, shape (n,)
+        Time [s] or frequency [Hz].
+    values : ndarray, shape (n,)
+        Real or complex.
+    unit : str
+        Of the values: m, m/s, m/s2, N, N m or another, which the file then calls general.
+    label : str
+        Name of the quantity.
+    titles : tuple of str
+        At most five lines of text.
+    response : tuple of (str, int, int)
+        Name, number of the point, 0 for none, and direction there: 1, 2, 3 for x, y, z, with a sign; 0 for another.
+    reference : tuple of (str, int, int)
+        Of the excitation, in the same way.
+    reference_unit, reference_label : str
+        Of the excitation's quantity; empty for none.
+    """
+
+    kind: Literal["time response", "frequency response function", "spectrum"]
+    abscissa: FloatArray
+    values: npt.NDArray[Any]
+    unit: str
+    label: str
+    titles: tuple[str, ...] = ()
+    response: tuple[str, int, int] = ("NONE", 0, 0)
+    reference: tuple[str, int, int] = ("NONE", 0, 0)
+    reference_unit: str = ""
+    reference_label: str = ""
+
+
+def write_functions(
+    path: str | Path, functions: Iterable[UniversalFunction], points: Sequence[tuple[float, float, float]] = ()
+) -> None:
+    """Write functions in SI, with the points 1, 2, … that they may name.
+
+    A time axis is written as even, by its first value and its spacing; a frequency axis value by value. Values are in
+    double precision.
+
+    Parameters
+    ----------
+    path : path
+    functions : iterable of UniversalFunction
+    points : sequence of (float, float, float)
+        [m].
+    """
+    import pyuff
+
+    datasets: list[dict[str, Any]] = [{"type": 151, **_HEADER}, dict(_SI)]
+    if len(points):
+        positions = np.array(points, dtype=np.float64)
+        numbers = list(range(1, len(positions) + 1))
+        datasets.append(_points(2411, numbers, positions, np.zeros(len(positions), dtype=np.int64)))
+    with atomic_file(Path(path)) as staged:
+        pyuff.UFF(str(staged)).write_sets(datasets, "overwrite")
+        with staged.open("ab") as file:
+            for function in functions:
+                file.write(_function(function))
+
+
+def _functions(responses: MeasuredResponses, nodes: list[int], frames: FloatArray) -> Iterable[bytes]:
+    """Dataset 58 for each measured response function."""
     geometry = responses.geometry
-    blocks = []
     for row, (point, direction) in enumerate(zip(geometry.points, geometry.directions, strict=True)):
         component, sign = _component(frames[point], direction)
         for column, reference in enumerate(responses.reference_points):
@@ -225,23 +292,62 @@ def _functions(responses: MeasuredResponses, nodes: list[int], frames: FloatArra
             if np.any(np.isnan(values)):
                 continue
             other, other_sign = _component(frames[reference], responses.reference_directions[column])
-            numbers = np.stack([responses.frequencies / (2.0 * np.pi), values.real, values.imag], axis=1)
-            content = numbers.astype("<f8").tobytes()
-            lines = [
-                f"{-1:6d}",
-                f"{58:6d}b{1:6d}{2:6d}{11:12d}{len(content):12d}{0:6d}{0:6d}{0:12d}{0:12d}",
-                *["NONE"] * 5,
-                f"{RESPONSE_FUNCTION:5d}{0:10d}{0:5d}{0:10d} {'NONE':<10}{nodes[point]:10d}{sign * (component + 1):4d}"
-                f" {'NONE':<10}{nodes[reference]:10d}{other_sign * (other + 1):4d}",
-                f"{6:10d}{len(values):10d}{0:10d}{0.0:13.5e}{0.0:13.5e}{0.0:13.5e}",
-                _axis(18, "Frequency", "Hz"),
-                _axis(kind, responses.motion, _UNIT_LABELS[responses.motion]),
-                _axis(FORCE, "force", "N"),
-                _axis(0, "NONE", "NONE"),
-            ]
-            blocks.append("".join(f"{line:<80}\n" for line in lines).encode("ascii") + content + b"    -1\n")
-    return blocks
+            yield _function(
+                UniversalFunction(
+                    "frequency response function",
+                    responses.frequencies / (2.0 * np.pi),
+                    values,
+                    _UNIT_LABELS[responses.motion],
+                    responses.motion,
+                    response=("NONE", nodes[point], sign * (component + 1)),
+                    reference=("NONE", nodes[reference], other_sign * (other + 1)),
+                    reference_unit="N",
+                    reference_label="force",
+                )
+            )
+
+
+def _function(function: UniversalFunction) -> bytes:
+    """Dataset 58 in binary, double precision: no digit of the values is lost."""
+    values = np.asarray(function.values)
+    is_complex = np.iscomplexobj(values)
+    columns = [values.real, values.imag] if is_complex else [values]
+    start, spacing, is_even = 0.0, 0.0, function.kind == "time response"
+    if is_even:
+        start = float(function.abscissa[0])
+        spacing = float((function.abscissa[-1] - start) / max(len(values) - 1, 1))
+    else:
+        columns.insert(0, function.abscissa)
+    content = np.stack(columns, axis=1).astype("<f8").tobytes()
+    titles = [*(_ascii(line, 80) for line in function.titles[:5]), *["NONE"] * 5][:5]
+    axis, unit = (17, "s") if is_even else (18, "Hz")
+    lines = [
+        f"{-1:6d}",
+        f"{58:6d}b{1:6d}{2:6d}{11:12d}{len(content):12d}{0:6d}{0:6d}{0:12d}{0:12d}",
+        *titles,
+        f"{_FUNCTIONS[function.kind]:5d}{0:10d}{0:5d}{0:10d}{_place(*function.response)}{_place(*function.reference)}",
+        f"{6 if is_complex else 4:10d}{len(values):10d}{int(is_even):10d}{start:13.5e}{spacing:13.5e}{0.0:13.5e}",
+        _axis(axis, "Time" if is_even else "Frequency", unit),
+        _axis(_QUANTITIES.get(function.unit, _GENERAL), function.label, function.unit),
+        _axis(_EXCITATIONS.get(function.reference_unit, 0), function.reference_label, function.reference_unit),
+        _axis(0, "", ""),
+    ]
+    return "".join(f"{line:<80}\n" for line in lines).encode("ascii") + content + b"    -1\n"
+
+
+_FUNCTIONS = {"time response": 1, "frequency response function": RESPONSE_FUNCTION, "spectrum": 12}
+_GENERAL, _REACTION = 1, 9  # specific data types: any quantity, a reaction force
+_QUANTITIES = {_UNIT_LABELS[motion]: number for number, motion in MOTIONS.items()} | {"m/s2": 12, "N": _REACTION}
+_EXCITATIONS = {"N": FORCE, "m": 8}
+
+
+def _place(name: str, point: int, direction: int) -> str:
+    return f" {_ascii(name, 10):<10}{point:10d}{direction:4d}"
 
 
 def _axis(kind: int, label: str, unit: str) -> str:
-    return f"{kind:10d}{0:5d}{0:5d}{0:5d} {label:<20} {unit:<20}"
+    return f"{kind:10d}{0:5d}{0:5d}{0:5d} {_ascii(label, 20) or 'NONE':<20} {_ascii(unit, 20) or 'NONE':<20}"
+
+
+def _ascii(text: str, longest: int) -> str:
+    return text.encode("ascii", "replace").decode("ascii")[:longest].strip()

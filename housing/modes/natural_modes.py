@@ -17,7 +17,7 @@ from housing.fem.factorization import Backend, Factorization, Factorizer
 from housing.fem.matrices import FreeSystem, Matrices
 from housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
 from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
-from housing.modes.residual_modes import ResidualModes, residual_attachment_modes
+from housing.modes.residual_modes import ResidualModes, joined_residual_modes, port_motions, residual_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -65,7 +65,7 @@ class ModeSet:
 
     def project(self, port: sparse.csr_array) -> FloatArray:
         """Project a port on the modes: their motions at it, shape (n_modes, n_motions)."""
-        return np.asarray((port @ self.shapes.reshape(len(self.shapes), -1).T).T)
+        return port_motions(port, self.shapes)
 
     def project_all(self, port: sparse.csr_array) -> FloatArray:
         """Motions at a port of the modes, then of the residual modes, shape (n_modes + n_residual, n_motions)."""
@@ -246,6 +246,59 @@ def add_residual_modes(
         n_nodes=system.n_nodes,
     )
     return replace(modes, shapes=system.expand(vectors), residual_modes=residual_modes)
+
+
+def with_further_ports(
+    matrices: Matrices,
+    modes: ModeSet,
+    ports: Sequence[sparse.csr_array] | sparse.csr_array,
+    *,
+    orders: int,
+    backend: Backend | None = None,
+    threads: int = 2,
+) -> ModeSet:
+    """Extend a mode set by residual modes of further ports, such as sensors; those that it has stay in its span.
+
+    By one factor of K - σM, σ at the limit of the modes.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        The matrices of the modes, supports included.
+    modes : ModeSet
+        Complete up to its limit.
+    ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
+    orders : int
+        As `port_orders` of :func:`solve_modes`.
+    backend, threads
+        See :class:`housing.fem.factorization.Factorizer`.
+
+    Raises
+    ------
+    HousingError, ReductionError
+        See :func:`housing.modes.residual_modes.residual_attachment_modes`.
+    """
+    system = FreeSystem(matrices, threads=threads)
+    shift = modes.certificate.limit**2
+    vectors = modes.shapes.reshape(len(modes.shapes), -1).T[system.free]
+    further, _ = residual_attachment_modes(
+        system.stiffness,
+        system.mass,
+        Factorizer(backend=backend, threads=threads).factor(system.shifted(shift)).solve,
+        modes.frequencies**2,
+        vectors,
+        stacked(ports)[:, system.free],
+        shift=shift,
+        floor=system.floor(modes.certificate.limit),
+        free=system.free,
+        n_nodes=system.n_nodes,
+        orders=orders,
+    )
+    if modes.residual_modes is not None:
+        further = joined_residual_modes(
+            system.stiffness, system.mass, modes.residual_modes, further, vectors, system.free
+        )
+    return replace(modes, residual_modes=further)
 
 
 def stacked(ports: Sequence[sparse.csr_array] | sparse.csr_array) -> sparse.csr_array:

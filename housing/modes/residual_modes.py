@@ -142,7 +142,18 @@ class ResidualModes:
 
     def project(self, port: sparse.csr_array) -> FloatArray:
         """Project a port on the residual modes: their motions at it, shape (k, n_motions)."""
-        return np.asarray((port @ self.shapes.reshape(len(self.shapes), port.shape[1]).T).T)
+        return port_motions(port, self.shapes)
+
+
+def port_motions(port: sparse.csr_array, shapes: FloatArray) -> FloatArray:
+    """Motions at a port, shape (r, 3 n_nodes), by shapes (k, n_nodes, 3): shape (k, r).
+
+    Only the entries of the shapes that the port has are read: a product with whole shapes begins with a copy of them.
+    """
+    places, columns = np.unique(port.indices, return_inverse=True)
+    taken = shapes.reshape(len(shapes), port.shape[1])[:, places]
+    narrow = sparse.csr_array((port.data, columns, port.indptr), shape=(port.shape[0], len(places)))
+    return np.asarray((narrow @ taken.T).T)
 
 
 def residual_attachment_modes(
@@ -247,6 +258,39 @@ def residual_attachment_modes(
     full = np.zeros((len(squared), 3 * n_nodes))
     full[:, free] = shapes.T
     return ResidualModes(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof), vectors
+
+
+def joined_residual_modes(
+    stiffness: Operator,
+    mass: Operator,
+    first: ResidualModes,
+    second: ResidualModes,
+    vectors: FloatArray,
+    free: IntArray,
+) -> ResidualModes:
+    """Join two sets of residual modes of the same kept modes into one that spans both.
+
+    Parameters
+    ----------
+    stiffness, mass : matrix or operator, shape (n, n)
+        On the free degrees of freedom.
+    first, second : ResidualModes
+    vectors : ndarray, shape (n, p)
+        Kept modes, orthonormal in M.
+    free : ndarray of int, shape (n,)
+        Where the free degrees of freedom stand among all.
+
+    Returns
+    -------
+    ResidualModes
+        With the proof of the first set, whose static compliance at its ports it keeps.
+    """
+    columns = [one.shapes.reshape(len(one.shapes), -1).T[free] for one in (first, second)]
+    span = _extended(stiffness, columns[0] / first.frequencies, columns[1])
+    squared, shapes = _orthonormal(stiffness, mass, span, vectors, np.asarray(mass @ vectors))
+    full = np.zeros((len(squared), first.shapes[0].size))
+    full[:, free] = shapes.T
+    return ResidualModes(np.sqrt(squared), full.reshape(len(squared), *first.shapes.shape[1:]), first.proof)
 
 
 def _static_response(

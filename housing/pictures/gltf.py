@@ -1,13 +1,15 @@
 """Animated 3D models of mode shapes: binary glTF 2.0 (GLB), which any viewer of 3D models opens.
 
-Each file holds one mode: the outer surface at rest, the displacement as a morph target, its amplitude as colours, and
-an animation that swings the target's weight as a sine. The layout follows the glTF 2.0 specification (Khronos Group,
-2021; ISO/IEC 12113): little-endian, a JSON chunk padded by blanks, a binary chunk padded by zeros.
+Each file holds one motion: the outer surface at rest, the displacement as a morph target, its amplitude as colours, and
+an animation that swings the target's weight as a sine; a motion that is not in one phase has two targets. The layout
+follows the glTF 2.0 specification (Khronos Group, 2021; ISO/IEC 12113): little-endian, a JSON chunk padded by blanks, a
+binary chunk padded by zeros.
 """
 
 import json
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,15 @@ import numpy as np
 import numpy.typing as npt
 
 from housing.modes.natural_modes import ModeSet
-from housing.pictures.drawn_shapes import DRAWN_SCALE, Skin, check_numbers, drawn_name, outer_skin
+from housing.pictures.drawn_shapes import (
+    DRAWN_SCALE,
+    DrawnHousing,
+    DrawnShape,
+    Skin,
+    check_numbers,
+    drawn_housing,
+    drawn_modes,
+)
 from housing.storage.atomic_file import atomic_file
 from meshes import Mesh
 
@@ -53,70 +63,104 @@ def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder
     """
     check_numbers(modes, numbers)
     folder.mkdir(parents=True, exist_ok=True)
-    skin = outer_skin(mesh)
+    surface = drawn_housing(mesh)
     files = []
-    for number in numbers:
-        path = folder / f"{drawn_name(modes, number)}.glb"
+    for number, shape in zip(numbers, drawn_modes(surface, modes, numbers), strict=True):
+        frequency = float(modes.frequencies_hz[number - 1])
+        extras = {
+            "mode": number,
+            "frequency_hz": frequency,
+            "largest_displacement_drawn_m": DRAWN_SCALE * surface.diagonal,
+            "colours": "displacement / largest, viridis",
+        }
+        named = replace(shape, title=f"mode {number}, {frequency:.1f} Hz")
+        path = folder / f"{shape.name}.glb"
         with atomic_file(path) as staged:
-            staged.write_bytes(_model(mesh, skin, modes, number))
+            staged.write_bytes(_model(surface, named, extras, light=False))
         files.append(path)
     return files
 
 
-def _model(mesh: Mesh, skin: Skin, modes: ModeSet, number: int) -> bytes:
-    """Return the whole GLB file of one mode."""
-    shape = modes.shapes[number - 1][skin.nodes]
-    rest = mesh.points[skin.nodes]
-    amplitude = np.linalg.norm(shape, axis=1)
-    largest = float(amplitude.max())
-    diagonal = float(np.linalg.norm(np.ptp(rest, axis=0)))
-    displacement = shape * (DRAWN_SCALE * diagonal / largest)
-    # A target moves normals in proportion to its weight, which swings both ways: half the difference of the extremes.
-    turning = 0.5 * (skin.normals(rest + displacement) - skin.normals(rest - displacement))
-    phase = np.linspace(0.0, 1.0, _FRAMES + 1)
+def light_model(surface: DrawnHousing, shape: DrawnShape, most_triangles: int) -> bytes:
+    """Return a motion as a small GLB file: fewer triangles, faces without normals of their own.
 
-    buffer = _Buffer()
+    Parameters
+    ----------
+    surface : DrawnHousing
+    shape : DrawnShape
+        Motion of the surface; a complex one runs around.
+    most_triangles : int
+        Triangles are taken away where the deformed surface is flattest, down to this number.
+    """
+    return _model(*_decimated(surface, shape, most_triangles), extras={}, light=True)
+
+
+def _decimated(surface: DrawnHousing, shape: DrawnShape, most: int) -> tuple[DrawnHousing, DrawnShape]:
+    """Return surface and motion with at most so many triangles; its points are some of those before."""
+    count = len(surface.triangles)
+    if count <= most:
+        return surface, shape
+    import pyvista as pv
+
+    deformed = surface.rest + DRAWN_SCALE * surface.diagonal * shape.at(0.0)
+    faces = np.column_stack([np.full(count, 3), surface.triangles]).ravel()
+    skin = pv.PolyData(deformed, faces)
+    skin.point_data["place"] = np.arange(len(deformed))
+    thinned = skin.decimate_pro(1.0 - most / count, preserve_topology=True)
+    places = np.asarray(thinned.point_data["place"], dtype=np.int64)
+    triangles = np.asarray(thinned.faces, dtype=np.int64).reshape(-1, 4)[:, 1:]
+    values = None if shape.values is None else shape.values[places]
+    return (
+        DrawnHousing(surface.rest[places], triangles, surface.nodes[places]),
+        replace(shape, motion=shape.motion[places], values=values),
+    )
+
+
+def _model(surface: DrawnHousing, shape: DrawnShape, extras: Mapping[str, Any], *, light: bool) -> bytes:
+    """Return the whole GLB file of one motion.
+
+    A real motion has one target, Re U, that swings as a sine. A complex one has two, Re U and -Im U, from its widest
+    phase: u = Re U cos - Im U sin.
+    """
+    rest, skin = surface.rest, Skin(surface.nodes, surface.triangles)
+    scale = DRAWN_SCALE * surface.diagonal
+    runs = np.iscomplexobj(shape.motion)
+    parts = [scale * shape.at(0.0)] + ([scale * shape.at(0.5 * np.pi)] if runs else [])
+    phase = np.linspace(0.0, 1.0, _FRAMES + 1)
+    swing = np.column_stack([np.cos(2.0 * np.pi * phase)] * runs + [np.sin(2.0 * np.pi * phase)])
+
+    buffer = _Buffer(light=light)
     attributes = {
         "POSITION": buffer.add(rest, _VERTICES, bounded=True),
-        "NORMAL": buffer.add(skin.normals(rest), _VERTICES),
-        "COLOR_0": buffer.add(_colours(amplitude / largest), _VERTICES),
+        "COLOR_0": buffer.add(_colours(shape.amplitude), _VERTICES),
     }
-    target = {
-        "POSITION": buffer.add(displacement, _VERTICES, bounded=True),
-        "NORMAL": buffer.add(turning, _VERTICES),
-    }
+    targets: list[dict[str, int]] = [{"POSITION": buffer.add(part, _VERTICES, bounded=True)} for part in parts]
+    if not light:
+        attributes["NORMAL"] = buffer.add(skin.normals(rest), _VERTICES)
+        for target, part in zip(targets, parts, strict=True):
+            # A target moves normals in proportion to its weight, which swings both ways: half the difference of the
+            # extremes.
+            turning = 0.5 * (skin.normals(rest + part) - skin.normals(rest - part))
+            target["NORMAL"] = buffer.add(turning, _VERTICES)
     indices = buffer.add(skin.triangles.ravel(), _INDICES)
     times = buffer.add(_PERIOD * phase, None, bounded=True)
-    weights = buffer.add(np.sin(2.0 * np.pi * phase), None)
+    weights = buffer.add(swing.ravel(), None)
 
-    frequency = float(modes.frequencies_hz[number - 1])
-    name = f"mode {number}, {frequency:.1f} Hz"
-    primitive = {
-        "attributes": attributes,
-        "targets": [target],
-        "indices": indices,
-        "material": 0,
-        "mode": _TRIANGLES,
-    }
-    extras = {
-        "targetNames": [name],
-        "mode": number,
-        "frequency_hz": frequency,
-        "largest_displacement_drawn_m": DRAWN_SCALE * diagonal,
-        "colours": "displacement / largest, viridis",
-    }
+    primitive = {"attributes": attributes, "targets": targets, "indices": indices, "material": 0, "mode": _TRIANGLES}
+    start = [1.0, 0.0] if runs else [1.0]
+    named = {"targetNames": [shape.title] if not runs else [shape.title, f"{shape.title}, a quarter later"]}
     document = {
         "asset": {"version": "2.0", "generator": "gearwhine"},
         "scene": 0,
-        "scenes": [{"name": name, "nodes": [0]}],
+        "scenes": [{"name": shape.title, "nodes": [0]}],
         "nodes": [{"name": "housing", "mesh": 0}],
-        "meshes": [{"name": name, "primitives": [primitive], "weights": [1.0], "extras": extras}],
+        "meshes": [{"name": shape.title, "primitives": [primitive], "weights": start, "extras": {**named, **extras}}],
         "materials": [
             {"name": "amplitude", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7}},
         ],
         "animations": [
             {
-                "name": name,
+                "name": shape.title,
                 "samplers": [{"input": times, "output": weights, "interpolation": "LINEAR"}],
                 "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
             }
@@ -129,9 +173,10 @@ def _model(mesh: Mesh, skin: Skin, modes: ModeSet, number: int) -> bytes:
 
 
 class _Buffer:
-    """The binary chunk as it grows, with the views and accessors into it."""
+    """The binary chunk as it grows, with the views and accessors into it; a light one compresses better."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, light: bool) -> None:
+        self._light = light
         self.content = bytearray()
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
@@ -140,6 +185,9 @@ class _Buffer:
         """Append an array, as 32-bit numbers so that every view stays aligned, and return its accessor's number."""
         whole = values.dtype.kind in "iu"
         packed = np.ascontiguousarray(values, dtype="<u4" if whole else "<f4")
+        if self._light and not whole and target is not None:
+            # Eleven binary digits of each number are enough to look at.
+            packed = (packed.view("<u4") & np.uint32(0xFFFFF000)).view("<f4")
         view = {"buffer": 0, "byteOffset": len(self.content), "byteLength": packed.nbytes}
         self.views.append(view if target is None else view | {"target": target})
         accessor: dict[str, Any] = {

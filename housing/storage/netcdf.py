@@ -43,6 +43,12 @@ class LabelledArray:
         """Whether the entries are text."""
         return self.values.dtype.kind in "UO"
 
+    @property
+    def labelled(self) -> "tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]":
+        """Dimensions, values, and unit and name where it has them, as :func:`write_netcdf` takes them."""
+        told = {"units": self.units, "long_name": self.long_name}
+        return self.dimensions, self.values, {key: text for key, text in told.items() if text}
+
 
 def canonical_json(document: Mapping[str, Any]) -> str:
     """Canonical JSON of a document, the same for equal documents: keys in order, no blanks, no NaN."""

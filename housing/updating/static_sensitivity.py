@@ -11,6 +11,12 @@ static responses to forces at the ports, which residual modes make exact, except
 material added on the surface, by the thickness h along the outward normal where no tractions act,
 
     dy = ∫ G h dA,      G = -σ(u) : ε(λ) + ρ g · λ.
+
+In harmonic motion at ω, with complex fields u and μ, inertia takes the place of weight:
+
+    dy = Re ∫ G h dA,      G = -σ(u) : ε(μ) + ω² ρ u · μ,
+
+the material's damping left out.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,6 +31,7 @@ from meshes import Mesh
 from meshes.shape_functions import determinants, inverses, jacobians, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 PortRates = Mapping[str, sparse.csr_array]
 """dS of each port that a parameter moves: its motions from the nodes', shape (r, 3 n_nodes)."""
@@ -84,14 +91,49 @@ class StaticSensitivity:
 
         Gradients of the fields are averaged over the elements at a node, weighted by their volumes there.
         """
-        fields = np.concatenate([self.displacement[None], self.adjoint])
-        gradients, constants = _nodal_means(self.mesh, fields, self.constants)
-        strains = 0.5 * (gradients + gradients.swapaxes(-1, -2))
-        lam, mu, density = constants
-        stress = 2.0 * mu[:, None, None] * strains[0]
-        stress += (lam * np.trace(strains[0], axis1=1, axis2=2))[:, None, None] * np.eye(3)
-        own = np.einsum("nij,anij->an", stress, strains[1:], optimize=True)
-        return np.asarray(density * (self.adjoint @ self.gravity) - own)
+        strains, constants = _strains(
+            self.mesh, np.concatenate([self.displacement[None], self.adjoint]), self.constants
+        )
+        own = np.einsum("nij,anij->an", _stress(strains[0], constants), strains[1:], optimize=True)
+        return np.asarray(constants[2] * (self.adjoint @ self.gravity) - own)
+
+
+def harmonic_surface_density(
+    mesh: Mesh, constants: FloatArray, motion: ComplexArray, adjoint: ComplexArray, frequency: float
+) -> FloatArray:
+    """Re G of a harmonic motion at the nodes [outcome/m³], shape (n_nodes,); of use on the surface.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    constants : ndarray, shape (3, n_elements)
+        Lamé's λ, μ [Pa] and ρ [kg/m³].
+    motion, adjoint : ndarray of complex, shape (n_nodes, 3)
+        u [m] and μ [outcome/N].
+    frequency : float
+        ω [rad/s].
+    """
+    parts = np.stack([motion.real, motion.imag, adjoint.real, adjoint.imag])
+    strains, means = _strains(mesh, parts, constants)
+    total = np.zeros(len(mesh.points))
+    for own, sign in ((0, 1.0), (1, -1.0)):
+        inertia = frequency**2 * means[2] * np.einsum("ni,ni->n", parts[own], parts[own + 2])
+        strained = np.einsum("nij,nij->n", _stress(strains[own], means), strains[own + 2])
+        total += sign * (inertia - strained)
+    return total
+
+
+def _strains(mesh: Mesh, fields: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Strains of fields at the nodes, shape (n_fields, n_nodes, 3, 3), and the constants there."""
+    gradients, means = _nodal_means(mesh, fields, constants)
+    return 0.5 * (gradients + gradients.swapaxes(-1, -2)), means
+
+
+def _stress(strain: FloatArray, constants: FloatArray) -> FloatArray:
+    """Stress of strains at the nodes [Pa], shape (n_nodes, 3, 3)."""
+    lam, mu, _ = constants
+    volume = lam * np.trace(strain, axis1=1, axis2=2)
+    return np.asarray(2.0 * mu[:, None, None] * strain + volume[:, None, None] * np.eye(3))
 
 
 def _nodal_means(mesh: Mesh, fields: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -61,6 +61,8 @@ class RollingState:
         (5, 5): tangent, symmetric and positive semidefinite; ∂reaction/∂displacement.
     rows
         Element loads of each row.
+    row_thrusts
+        Axial force of each row's elements on the outer ring along the row's direction, N.
     speed
         Of the inner ring, rad/s.
     residual
@@ -75,6 +77,7 @@ class RollingState:
     reaction: FloatArray
     stiffness: FloatArray
     rows: tuple[ElementLoads, ...] = field(repr=False)
+    row_thrusts: tuple[float, ...]
     speed: float
     residual: float
     iterations: int
@@ -310,6 +313,10 @@ def _state(
         reaction=local.gradient + bearing.axial_preload * np.eye(5)[2],
         stiffness=local.hessian,
         rows=elements.loads(displacement),
+        row_thrusts=tuple(
+            row.direction * float(contacts.energy(displacement).gradient[2])
+            for row, contacts in zip(bearing.rows, elements.contacts, strict=True)
+        ),
         speed=elements.speed,
         residual=residual,
         iterations=iterations,

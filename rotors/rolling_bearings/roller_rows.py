@@ -112,6 +112,11 @@ class LineContactRow:
         return self.contact_angle > 0.0
 
     @property
+    def thrust_senses(self) -> frozenset[int]:
+        """Senses along z of the axial loads that the row carries: its direction, where it carries any."""
+        return frozenset((self.direction,)) if self.has_axial_stiffness else frozenset()
+
+    @property
     def free_approach(self) -> float:
         """G = e sin α − ½ s cos α: approach of the rings before any displacement, m."""
         return self.axial_offset * math.sin(self.contact_angle) - 0.5 * self.clearance * math.cos(self.contact_angle)
@@ -238,6 +243,11 @@ class RollerRow(LineContactRow):
     def has_axial_stiffness(self) -> bool:
         """Whether the row has flanges."""
         return self.flanges != "none"
+
+    @property
+    def thrust_senses(self) -> frozenset[int]:
+        """Senses along z of the axial loads that the flanges carry."""
+        return frozenset((1, -1)) if self.flanges == "both" else super().thrust_senses
 
     @property
     def slack_offset(self) -> float:

@@ -73,6 +73,16 @@ class RollingBearing:
         return any(row.has_axial_stiffness for row in self.rows)
 
     @property
+    def thrust_senses(self) -> frozenset[int]:
+        """Senses of the shaft's axial force that the rows carry: 1 towards +z, −1 towards −z."""
+        return frozenset[int]().union(*(row.thrust_senses for row in self.rows))
+
+    @property
+    def is_preloaded(self) -> bool:
+        """Whether an offset at assembly, of one row or of two against each other, or a spring loads it along z."""
+        return self.axial_preload != 0.0 or any(row.axial_offset != 0.0 for row in self.rows)
+
+    @property
     def reach(self) -> float:
         """Half the largest pitch diameter, by which rotations are scaled to displacements of the contacts, m."""
         return 0.5 * max(row.pitch_diameter for row in self.rows)

@@ -138,6 +138,14 @@ class BallRow:
         return True
 
     @property
+    def thrust_senses(self) -> frozenset[int]:
+        """Senses along z of the axial loads that the row carries: both without a contact angle, else its direction.
+
+        Balls in angular contact have a shoulder on one side only.
+        """
+        return frozenset((1, -1)) if self.contact_angle == 0.0 else frozenset((self.direction,))
+
+    @property
     def self_aligning(self) -> bool:
         """Whether the outer groove is the sphere about the bearing's centre."""
         sphere = spherical_groove(self.ball_diameter, self.pitch_diameter, self.contact_angle)
@@ -233,6 +241,11 @@ class FourPointRow(BallRow):
         """Check as of any balls, and that there are two arcs."""
         super().__post_init__()
         require(self.contact_angle > 0.0, "contact angle of four-point balls", self.contact_angle, "more than 0")
+
+    @property
+    def thrust_senses(self) -> frozenset[int]:
+        """Senses along z of the axial loads that the row carries: both, on either diagonal."""
+        return frozenset((1, -1))
 
     @property
     def arcs(self) -> tuple[BallRow, BallRow]:

@@ -13,7 +13,7 @@ from gearwhine.cli import run_command
 from housing import read_modes
 from housing.pictures import scene as renderer
 
-COARSE = ("--set", 'housing.box.mesh_size="45 mm"')
+COARSE = ("--set", 'housing.box.mesh_size="60 mm"')
 CLOCK = ("seconds", "seconds_when_solved")
 ORIGIN = ("reused", "modes_read_from", "warnings", "folder", "files", "made_at", "command", "input_files")
 
@@ -142,7 +142,7 @@ def test_a_damaged_file_is_solved_again_with_a_warning(gearwhine, out: Path, dam
 
 def test_every_command_that_needs_modes_reads_them(gearwhine, tmp_path: Path) -> None:
     def command(name: str, *arguments: str) -> dict:
-        outcome = gearwhine(name, "small-gearbox", "--json", "-q", "-o", "out", *arguments)
+        outcome = gearwhine(name, "small-gearbox", "--json", "-q", "-o", "out", *COARSE, *arguments)
         assert outcome.code == 0, outcome.err
         return outcome.document
 

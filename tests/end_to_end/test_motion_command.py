@@ -130,7 +130,7 @@ def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
     assert report.code == 0
     page = (tmp_path / "out" / "report.html").read_text()
     assert "Orders along the run" in page
-    assert "run up waterfall" in page
+    assert "Spectra along the run: lines through the origin" in page
 
 
 def test_sidebands_in_the_diagram_over_speed(answer: Any) -> None:

@@ -231,10 +231,14 @@ def test_a_rated_life_stands_in_document_file_terminal_and_report(
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     left, right = summary["rotors"][0]["rolling_bearings"]
     assert left["life_h"] == pytest.approx(1e9 / (3000.0 * 60.0))
-    assert right["life_h"] is None
+    assert (left["dynamic_rating_n"], left["dynamic_rating_from"]) == (10e3, "case")
+    # Without a printed C the one of the geometry by ISO 281; SKF's 6206 has 20.3 kN.
+    assert right["dynamic_rating_from"] == "geometry"
+    assert right["dynamic_rating_n"] == pytest.approx(20.3e3, rel=0.1)
+    assert right["life_h"] == pytest.approx(left["life_h"] * (right["dynamic_rating_n"] / 10e3) ** 3)
     # Without clearance and with nine balls the elements' loads have nearly the life of ISO 281.
     assert left["reference_life_h"] == pytest.approx(left["life_h"], rel=0.05)
-    assert right["reference_life_h"] is None
+    assert right["reference_life_h"] == pytest.approx(right["life_h"], rel=0.05)
     assert left["estimated"]
     passing = left["characteristic_frequencies_hz"]
     assert passing["inner raceway"] + passing["outer raceway"] == pytest.approx(left["elements"] * 50.0)
@@ -243,7 +247,7 @@ def test_a_rated_life_stands_in_document_file_terminal_and_report(
         assert life.attrs["units"] == "h"
         assert "ISO 281" in life.attrs["long_name"]
         assert float(life.sel(rolling_bearing="shaft: left")) == pytest.approx(1e9 / (3000.0 * 60.0))
-        assert np.isnan(float(life.sel(rolling_bearing="shaft: right")))
+        assert float(life.sel(rolling_bearing="shaft: right")) == pytest.approx(right["life_h"])
         reference = float(data["rolling_bearing_reference_life"].sel(rolling_bearing="shaft: left"))
         assert reference == pytest.approx(left["reference_life_h"])
     assert run_command(["report", "friswell-rotor", "-q", "-o", str(tmp_path), *options]) == 0

@@ -3,13 +3,16 @@
 The machine has nothing alike, so that a swapped axis, sign, bearing or gear pair shows.
 """
 
+import csv
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+import pyuff
 import xarray as xr
 from lopsided_case import (
     AXES,
@@ -25,7 +28,9 @@ from lopsided_case import (
     lopsided,
     push,
 )
+from scipy.io import wavfile
 
+from gearwhine.case import load_case
 from gearwhine.cli import run_command
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -67,11 +72,12 @@ SHAPES = {
 
 
 class Written(NamedTuple):
-    """A run's results file, its summary, and the housing's modes."""
+    """A run's results file, its summary, the housing's modes, and the folder of its exports."""
 
     data: xr.Dataset
     summary: dict[str, Any]
     modes: xr.Dataset
+    exports: Path
 
 
 @pytest.fixture(scope="module")
@@ -84,9 +90,10 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Written]:
     )
     case.write_text(lopsided(spatial=True, more=transient), encoding="utf-8")
     assert run_command(["run", str(case), "-q", "--no-pictures", "-o", str(folder / "out"), "--set", FEW_WHIRLS]) == 0
+    assert run_command(["export", str(case), "-q", "--all-signals", "-o", str(folder / "out")]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
     with xr.open_dataset(folder / "out" / "results.nc") as data, xr.open_dataset(folder / "out" / "modes.nc") as modes:
-        yield Written(data, summary, modes)
+        yield Written(data, summary, modes, folder / "out" / "exports")
 
 
 def lines_of(signal: npt.NDArray[Any]) -> ComplexArray:
@@ -350,3 +357,63 @@ def test_energies_balance_as_they_are_told(written: Written) -> None:
     given = energy["loads"] + energy["teeth"]
     assert energy["change"] == pytest.approx(given - energy["lost"], abs=3e-4 * energy["lost"])
     assert energy["lost"] > 0.0
+
+
+def test_exported_tables_have_all_digits(written: Written) -> None:
+    with (written.exports / "run-Housing-modes.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    (column,) = (name for name in rows[0] if "[Hz]" in name)
+    assert [float(row[column]) for row in rows] == written.data["housing_frequency"].values.tolist()
+
+
+def test_exported_functions_are_read_back_by_pyuff(written: Written) -> None:
+    data = written.data
+    file = pyuff.UFF(str(written.exports / "run.uff"))
+    found = [file.read_sets(int(index)) for index in np.flatnonzero(file.get_set_types() == 58)]
+    for number, sensor in enumerate(data["sensor"].values, start=1):
+        own = [one for one in found if one["rsp_node"] == number]
+        (history,) = (one for one in own if one["func_type"] == 1)
+        assert history["ordinate_spec_data_type"] == 12
+        assert str(sensor) in history["id1"]
+        np.testing.assert_array_equal(history["data"], data["sensor_acceleration"].sel(sensor=sensor).values)
+        np.testing.assert_allclose(history["x"], data["time"].values, rtol=1e-5)
+        (spectrum,) = (one for one in own if one["func_type"] == 12)
+        expected = data["sensor_spectrum"] * np.exp(1j * data["sensor_spectrum_phase"])
+        np.testing.assert_allclose(spectrum["data"], expected.sel(sensor=sensor).values, rtol=1e-12, atol=1e-15)
+        np.testing.assert_array_equal(spectrum["x"], data["frequency"].values)
+    force = data["bearing_force"].isel(bearing=1).sel(axis="y")
+    label = f"{data['bearing'].values[1]}, y"
+    assert any(one["id1"] == label and np.array_equal(one["data"], force.values) for one in found)
+
+
+def test_points_of_the_exported_functions_are_the_sensors(written: Written) -> None:
+    file = pyuff.UFF(str(written.exports / "run.uff"))
+    points = file.read_sets(int(np.flatnonzero(file.get_set_types() == 2411)[0]))
+    case = load_case(str(written.exports.parent / "case.toml")).case
+    assert case.housing is not None
+    places = [one.position for one in case.housing.sensor]
+    np.testing.assert_allclose(np.stack([points["x"], points["y"], points["z"]], axis=1), places)
+
+
+def test_an_exported_sound_by_its_full_scale_is_the_acceleration(written: Written) -> None:
+    (path,) = written.exports.glob("run-cover-full-scale-*.wav")
+    scale = float(path.stem.partition("full-scale-")[2].partition("-m-per")[0])
+    rate, samples = wavfile.read(path)
+    content = path.read_bytes()
+    assert (rate, samples.dtype) == (48_000, np.float32)
+    assert np.abs(samples).max() <= 1.0
+    assert f"full scale (sample 1.0) is {scale:g} m/s2".encode() in content
+    assert int.from_bytes(content[4:8], "little") == len(content) - 8
+    times = written.data["time"].values
+    signal = written.data["sensor_acceleration"].sel(sensor="cover").values.astype(np.float64)
+    signal -= signal.mean()
+    interval = times[1] - times[0]
+    assert len(samples) / rate == pytest.approx(len(times) * interval, abs=1.0 / rate)
+    # The highest line, by the Fourier sum of each record at its own sampling.
+    line = np.argmax(np.abs(np.fft.rfft(signal))) / (len(times) * interval)
+    amplitudes = []
+    for values, spacing in ((signal, interval), (scale * samples, 1.0 / rate)):
+        window = np.hanning(len(values))
+        rotating = np.exp(-2j * np.pi * line * spacing * np.arange(len(values)))
+        amplitudes.append(abs(np.sum(window * values * rotating)) / window.sum())
+    assert amplitudes[1] == pytest.approx(amplitudes[0], rel=2e-3)

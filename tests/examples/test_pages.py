@@ -1,20 +1,34 @@
-"""The documentation's Python runs, and shows the same code as the worked examples."""
+"""The documentation's Python and case fragments hold, its links lead somewhere, and it shows the worked examples' code.
+
+Commands of the pages run in `tests/end_to_end/test_pages_with_commands.py`.
+"""
 
 import ast
 import importlib
 import re
+import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
+
+from gearwhine.case import Case
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "scripts" / "examples"
+PAGES = [
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benchmarks/README.md")),
+    *sorted(path for path in (ROOT / "docs").rglob("*.md") if path.relative_to(ROOT / "docs").parts[0] != "gallery"),
+]
 
 
-def blocks(page: str) -> list[str]:
-    return re.findall(r"^```python\n(.*?)^```$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+def blocks(page: str, language: str = "python") -> list[str]:
+    return re.findall(
+        rf"^```{language}\n(.*?)^```$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+    )
 
 
 def body(example: str) -> str:
@@ -24,9 +38,17 @@ def body(example: str) -> str:
     return "".join(text.splitlines(keepends=True)[after - 1 :])
 
 
-def test_readme_and_tutorial_show_the_first_example() -> None:
+def anchors(page: Path) -> set[str]:
+    """Anchors of a page's headings, as GitHub and MyST make them."""
+    found: set[str] = set()
+    for heading in re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE):
+        text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
+        found.add(re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-"))
+    return found
+
+
+def test_readme_shows_the_first_example() -> None:
     assert blocks("README.md") == [body("first_steps.py")]
-    assert blocks("docs/tutorial.md")[0] == body("first_steps.py")
 
 
 def test_every_example_is_short_and_listed() -> None:
@@ -36,16 +58,68 @@ def test_every_example_is_short_and_listed() -> None:
         assert f"(../scripts/examples/{path.name})" in page
 
 
-def test_links_of_the_pages_lead_to_files() -> None:
-    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
-        for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
-            assert (page.parent / target).exists(), f"{page.name}: {target}"
+def test_links_of_the_pages_lead_to_files_and_headings() -> None:
+    for page in PAGES:
+        text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        links = re.findall(r"(?<!`)\]\(([^)#:\s]*)(?:#([^)\s]*))?\)", text)
+        for target, anchor in links:
+            leads = (page.parent / target) if target else page
+            assert leads.is_file(), f"{page.name}: {target}"
+            assert not anchor or leads.suffix != ".md" or anchor in anchors(leads), f"{page.name}: {target}#{anchor}"
 
 
-def test_every_page_is_in_the_index() -> None:
-    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
-    for path in (ROOT / "docs").glob("*.md"):
-        assert path.name == "README.md" or f"({path.name})" in index, path.name
+def test_every_page_is_in_the_index_and_its_tree() -> None:
+    """The table that GitHub shows, and the tree that the site's sidebar is made of."""
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    tree = "\n".join(re.findall(r"^```\{toctree\}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL))
+    for page in PAGES:
+        name = page.relative_to(ROOT / "docs").as_posix() if page.is_relative_to(ROOT / "docs") else None
+        if name == "index.md":
+            continue
+        link, place = (name, name) if name else (f"../{page.relative_to(ROOT)}", f"/{page.relative_to(ROOT)}")
+        assert f"({link})" in index, link
+        assert re.search(rf"(^|<){re.escape(place.removesuffix('.md'))}>?$", tree, re.MULTILINE), place
+
+
+def test_every_public_name_has_a_page_of_the_reference() -> None:
+    """Of the pages that the site makes: those of each room's own docstring and of what its `__init__` imports."""
+    sys.path.insert(0, str(ROOT / "docs" / "site"))
+    try:
+        import python_pages
+    finally:
+        sys.path.remove(str(ROOT / "docs" / "site"))
+    names_of = {package: python_pages.public_names(package) for package in python_pages.packages(ROOT)}
+    home_of = python_pages.homes(names_of)
+    for room in ("gearwhine", "meshes", "housing", "rotors", "coupling"):
+        init = (ROOT / room / "__init__.py").read_text(encoding="utf-8")
+        imported = set(re.findall(r"^(?:    )?from \S+ import \w+ as (\w+)$", init, re.MULTILINE))
+        assert imported
+        assert imported <= set(names_of[room]), room
+    assert home_of["gearwhine", "Housing"] == "housing"
+    assert home_of["gearwhine", "Study"] == "gearwhine"
+    for (package, name), home in home_of.items():
+        value = getattr(importlib.import_module(home), name)
+        assert value is getattr(importlib.import_module(package), name)
+        assert not callable(value) or value.__doc__, f"{package}.{name}"
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if "```toml" in page.read_text(encoding="utf-8")], ids=str)
+def test_fragments_of_cases_are_of_a_case(page: Path) -> None:
+    """Nothing is wrong with a fragment but what it leaves out: other keys, and files."""
+    for block in blocks(page.relative_to(ROOT).as_posix(), "toml"):
+        try:
+            Case.model_validate(tomllib.loads(block), context={"folder": ROOT / "gearwhine" / "cases"})
+        except ValidationError as error:
+            wrong = [one for one in error.errors() if one["type"] != "missing" and "existing file" not in one["msg"]]
+            left_out = [one for one in wrong if "such as speed" in one["msg"] or one["msg"].startswith("exactly one")]
+            assert [one for one in wrong if one not in left_out] == [], block
+
+
+def test_the_reducer_of_the_tutorial_is_the_bundled_one() -> None:
+    case = (ROOT / "gearwhine" / "cases" / "two-stage-reducer.toml").read_text(encoding="utf-8")
+    found = blocks("docs/tutorials/reducer.md", "toml")
+    assert len(found) >= 9
+    assert [block for block in found if block.strip() not in case] == []
 
 
 def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

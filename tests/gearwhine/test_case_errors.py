@@ -15,7 +15,7 @@ ONE_WRONG = {
     "unknown unit": ("rotor.0.start", "3 furlungs", "rotor[0].start", "'furlungs' is not known"),
     "no unit in text": ("rotor.0.start", "3", "rotor[0].start", "with its unit"),
     "not a quantity": ("rotor.0.start", "long", "rotor[0].start", "a length such as '6.35 mm'"),
-    "nm for N*m": ("operation.torque", "70 Nm", "operation.torque", "write 'N*m'"),
+    "nm for N*m": ("operation.torque", "70 nm", "operation.torque", "(length)"),
     "infinite": ("operation.torque", float("inf"), "operation.torque", "finite"),
     "huge integer": ("operation.torque", 10**400, "operation.torque", "that a computer number can hold"),
     "list for a number": ("operation.speed", ["1 rpm"], "operation.speed", "an angular speed such as '5500 rpm'"),

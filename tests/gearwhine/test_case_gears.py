@@ -138,6 +138,33 @@ def test_backlash_is_that_of_thinned_teeth() -> None:
     assert given.backlash == 1e-4
 
 
+@pytest.mark.parametrize("helix", [0.0, 20.0])
+def test_backlash_has_its_three_sizes_under_their_names(helix: float) -> None:
+    """Thinned along the reference circle by s / cos β in the transverse plane, on gears at their nominal distance.
+
+    j_wt is on the pitch circles, j_bn = j_wt cos α_t cos β_b the distance of the flanks (ISO 21771).
+    """
+    thin = TOOTH | {"tooth_thinning": "0.04 mm"}
+    case = case_of(thin | {"helix_angle": f"{helix} deg"}, thin | {"helix_angle": f"{-helix} deg"})
+    beta = math.radians(helix)
+    transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(beta))
+    base = math.asin(math.sin(beta) * math.cos(math.radians(20.0)))
+    around = 80e-6 / math.cos(beta)
+    along = around * math.cos(transverse)
+    named = {"along_line_of_action": along, "circumferential": around, "normal": along * math.cos(base)}
+    (checked,) = check_document(case)["gear_pairs"]
+    (analysed,) = gears_document(analyse_pairs(case, solve_gears(case)))["pairs"]
+    for document in (checked, analysed):
+        assert document["backlash_m"] == pytest.approx(named, rel=1e-6)
+    sizes = f"j_wt {1e3 * around:.4g} mm on the working pitch circle, j_bn {1e3 * named['normal']:.4g} mm normal"
+    (section,) = sections(gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case)))))
+    assert any(text.startswith(f"Backlash {sizes}") for text in section.sentences)
+    lines = [line for part in check.sections(check_document(case)) for line in part.sentences]
+    assert any(f"backlash {sizes}" in line for line in lines)
+    bare = case_of(TOOTH, TOOTH)
+    assert gears_document(analyse_pairs(bare, solve_gears(bare)))["pairs"][0]["backlash_m"] is None
+
+
 def test_a_backlash_that_is_not_the_geometrys_is_doubted() -> None:
     thin = TOOTH | {"tooth_thinning": "0.04 mm"}
     for backlash, doubted in (("0.2 mm", True), ("0.075 mm", False), ("0 mm", True)):

@@ -1,63 +1,78 @@
-"""The reference of the case file against the case itself: no key is missing there, and none is there that is not."""
+"""The reference of the case file and of the commands against schema and commands: both pages are made from them."""
 
 import re
-from collections.abc import Iterator
+import sys
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
+
+import pytest
+from pydantic import TypeAdapter, ValidationError
 
 from gearwhine.case import Case
-from gearwhine.case.fields import Table
+from gearwhine.case.gears import Gear
+from gearwhine.case.operation import Transient
+from gearwhine.cli.command_line import app
 
-REFERENCE = Path(__file__).parents[2] / "docs" / "case-file.md"
-
-
-def _tables(annotation: Any) -> Iterator[type[Table]]:
-    """Every table within an annotation."""
-    if isinstance(annotation, type) and issubclass(annotation, Table):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _tables(part)
+ROOT = Path(__file__).parents[2]
 
 
-def _keys(table: type[Table], path: str = "") -> Iterator[str]:
-    """Key paths of a table and of all in it."""
-    for name, field in table.model_fields.items():
-        if name in table.later:
-            continue
-        key = f"{path}.{field.alias or name}".lstrip(".")
-        yield key
-        for inner in _tables(field.annotation):
-            yield from _keys(inner, key)
+@pytest.fixture(scope="module")
+def pages() -> Any:
+    """The program that writes both pages."""
+    sys.path.insert(0, str(ROOT / "scripts"))
+    try:
+        import reference_pages
+    finally:
+        sys.path.remove(str(ROOT / "scripts"))
+    return reference_pages
 
 
-def _sections() -> dict[str, set[str]]:
-    """For each section that a table has, the words in its code; the top's under the empty name."""
-    parts = re.split(r"^#+ (.*)$", REFERENCE.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    sections = {"": set(re.findall(r"\w+", " ".join(re.findall(r"`([^`\n]*)`", parts[2]))))}
-    for heading, text in zip(parts[3::2], parts[4::2], strict=True):
-        if found := re.search(r"`\[+([\w.]+?)(?:\.NAME)?\]+`", heading):
-            sections[found[1]] = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`\n]*)`", text))))
-    return sections
+@pytest.fixture(scope="module")
+def written() -> str:
+    return (ROOT / "docs" / "case-file.md").read_text(encoding="utf-8")
 
 
-def test_every_key_of_a_case_is_in_the_section_of_its_table() -> None:
-    sections, missing = _sections(), []
-    for key in _keys(Case):
-        if key in sections:
-            continue
-        table, _, name = key.rpartition(".")
-        section = next(part for part in (*_ancestors(table), "") if part in sections)
-        if name not in sections[section]:
-            missing.append(f"{key} in [{section}]")
-    assert missing == []
+def row(page: str, heading: str, key: str) -> list[str]:
+    """Cells of a key's row in the section of a heading."""
+    section = re.split(r"^#+ ", page.split(f"# {heading}\n", 1)[1], maxsplit=1, flags=re.MULTILINE)[0]
+    line = next(line for line in section.splitlines() if line.startswith(f"| `{key}` |"))
+    return [cell.strip() for cell in line.split(" | ")][1:]
 
 
-def test_every_section_is_of_a_table_that_a_case_has() -> None:
-    assert set(_sections()) - {""} <= set(_keys(Case))
+def test_pages_are_those_of_schema_and_commands(pages: Any, written: str) -> None:
+    """A new key or option shows here: `make reference` writes both pages."""
+    assert pages.case_file(written) == written
+    assert pages.commands() == (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 
 
-def _ancestors(path: str) -> Iterator[str]:
-    """The path, and what is above it, nearest first."""
-    while path:
-        yield path
-        path = path.rpartition(".")[0]
+def test_every_key_of_every_table_has_a_row_with_a_meaning(pages: Any, written: str) -> None:
+    for heading, table in [("At the top", Case), *((one.heading, one.table) for one in pages.sections())]:
+        for key, field in pages.keys_of(table).items():
+            *_, default, meaning = row(written, heading, key)
+            assert len(meaning.removesuffix("|").strip()) >= 5, (heading, key)
+            assert (default == "**required**") == field.is_required(), (heading, key)
+
+
+def test_every_command_has_a_section() -> None:
+    page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"^## `gearwhine (\w+)`$", page, re.MULTILINE))
+    assert named == {name for name in app if not name.startswith("-")}
+    for option in ("--over-torque", "--sensitivity", "--held-back", "--write-ross", "--mesh-phase", "--workers"):
+        assert f"`{option}" in page
+
+
+def test_ranges_on_the_page_are_those_that_a_case_is_held_to(written: str) -> None:
+    """Read from the page, just outside and just inside, through the reader of a case."""
+    assert row(written, "`[transient]`", "tolerance")[:4] == ["number", "", "> 0, ≤ 0.1", "0.0005"]
+    assert row(written, "`[[gear]]`", "helix_angle")[:4] == ["angle", "rad", "≥ -60 deg, ≤ 60 deg", "0"]
+    assert row(written, "`[transient]`", "points_per_revolution")[:4] == ["whole number", "", "200 to 1 000 000", "200"]
+    transient, gear = TypeAdapter(Transient), TypeAdapter(Gear)
+    one = {"name": "g", "teeth": 20, "module": "2 mm", "face_width": "20 mm"}
+    assert transient.validate_python({"revolutions": 2}).tolerance == 5e-4
+    transient.validate_python({"revolutions": 2, "tolerance": 0.1, "points_per_revolution": 200})
+    gear.validate_python(one | {"helix_angle": "60 deg"})
+    for outside in ({"tolerance": 0.0}, {"tolerance": 0.1001}, {"points_per_revolution": 199}):
+        with pytest.raises(ValidationError):
+            transient.validate_python({"revolutions": 2} | outside)
+    with pytest.raises(ValidationError):
+        gear.validate_python(one | {"helix_angle": "60.1 deg"})

@@ -8,8 +8,8 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.output.dataset import arrays_of, labelled
-from gearwhine.output.html import report_page
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
+from gearwhine.output.report import Contents, report_page
 from gearwhine.output.sections import Column, Section, Table, columns_of, percent
 
 
@@ -105,6 +105,6 @@ def test_numbers_stand_to_the_right_and_words_to_the_left(tmp_path: object) -> N
     place = Path(str(tmp_path))
     (place / "summary.json").write_text("{}", encoding="utf-8")
     table = Table((Column("wheel", "name"), Column("mass", "mass", ".1f")), ({"name": "a", "mass": 1.0},))
-    page = report_page(place, lambda _: (Section("Wheels", (table,)),))
+    page = report_page(place, Contents(lambda _: (Section("Wheels", (table,)),)))
     assert '<th class="text">wheel</th><th>mass</th>' in page
     assert '<td class="text">a</td><td>1.0</td>' in page

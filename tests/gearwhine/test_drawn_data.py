@@ -71,14 +71,21 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
     assert "3000 rpm, 45 N·m" in "".join(text.get_text() for text in figure.texts)
     shown = panels(figure)
     assert len(shown) == 2
+    (row,) = (axes for axes in figure.axes if axes.texts)  # of names, above all panels
+    leaders = [line for line in row.get_lines() if line.get_linewidth() == 0.5]
+    named = {
+        round(float(row.transData.inverted().transform(line.get_transform().transform(line.get_xydata()[0]))[0]), 6)
+        for line in leaders
+    }
+    assert len(named) == len(row.texts)
     for axes, (name, spectrum) in zip(shown, drawn.solved.sensor_spectra.items(), strict=True):
-        assert name in [text.get_text() for text in axes.texts]
+        assert axes.get_title(loc="left") == name
         frequencies, amplitude = heights(axes)
         inside = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= drawn.solved.trusted_limit)
         assert frequencies == pytest.approx(spectrum.frequencies[inside])
         top = spectrum.amplitude[inside].max()
         assert amplitude == pytest.approx(np.maximum(spectrum.amplitude[inside], 1e-5 * top))
-        (beside,) = (other for other in figure.axes if other is not axes and other.bbox.bounds == axes.bbox.bounds)
+        (beside,) = (one for one in figure.axes if one not in (axes, row) and one.bbox.bounds == axes.bbox.bounds)
         assert beside.get_ylabel() == "level [dB]"
         low, high = axes.get_ylim()
         assert beside.get_ylim() == pytest.approx([20.0 * np.log10(a / np.sqrt(2.0) / 1e-6) for a in (low, high)])
@@ -89,19 +96,11 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
             if line.get_linestyle() == "--" and len(np.asarray(line.get_xdata())) == 2
         }
         assert {round(n * 1150.0, 3) for n in (1, 2)} <= marked
-        # A leader ends at the height of each named line.
-        width, tall = axes.get_position().width, axes.get_position().height
-        assert width > tall
-        ends = [
-            axes.transData.inverted().transform(line.get_transform().transform(line.get_xydata()[0]))
-            for line in axes.get_lines()
-            if line.get_linewidth() == 0.5
-        ]
-        told = drawn.signature.lines[name][: len(ends)]
-        assert ends
-        for line in told:
-            gap = min(abs(np.log(max(y, 1e-12) / abs(line.value))) + abs(x / line.frequency - 1.0) for x, y in ends)
-            assert gap < 1e-6, (name, line.frequency)
+        # A dot stands on each leading line, whose frequency has a name above.
+        (dots,) = (line for line in axes.get_lines() if line.get_marker() == "o")
+        told = drawn.signature.lines[name][: len(dots.get_xydata())]
+        assert dots.get_xydata() == pytest.approx(np.array([[line.frequency, abs(line.value)] for line in told]))
+        assert {round(line.frequency, 6) for line in told} <= named
     assert shown[-1].get_xlabel() == "frequency [Hz]"
 
 

@@ -1,19 +1,31 @@
 """Loads of rolling bearings and misalignment of flanks that a case leaves to the machine's operating point."""
 
+import json
 import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearwhine as gw
-from gearwhine.case import CaseError, parse_case
+from coupling.errors import EquilibriumNotFoundError
+from gearwhine.case import CaseError, dump_case, parse_case, swept_keys
+from gearwhine.cli import run_command
 from gearwhine.from_case.machine import describe_machine, rotor_bearings, solve_machine, solve_pairs
+from gearwhine.results.operating_point import sections
+from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
+from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
+from gearwhine.sweep.points import code_digest
+from gearwhine.sweep.solution import solve_point
 
 BALLS = {"catalogue": {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "72 mm", "width": "19 mm"}}
 ROLLERS = {"catalogue": {"type": "cylindrical-roller", "bore": "30 mm", "outer_diameter": "62 mm", "width": "16 mm"}}
+
+
+FORCE = {"x": "300 N", "y": "-900 N", "z": "200 N"}
 
 
 def document(misalignment: Any = "found", law: str = "linear") -> dict[str, Any]:
@@ -123,9 +135,112 @@ def test_nonlinear_bearings_start_at_their_load() -> None:
 def test_a_given_load_is_taken() -> None:
     """A load that the case gives stays the one that the stiffness is made for."""
     changed = document()
-    changed["bearing"][0]["load"] = {"x": "300 N", "y": "-900 N", "z": "200 N"}
+    changed["bearing"][0]["load"] = FORCE
     stiffness = rotor_bearings(parse_case(changed))["input"][0][0].stiffness
     assert np.abs(stiffness - rotor_bearings(parse_case(document()))["input"][0][0].stiffness).max() > 1e6
+
+
+def test_a_run_has_the_operating_point_that_its_motion_starts_from(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As `load` finds it, in document, arrays, figures, report and terminal; what is typed is held against it."""
+    changed = document(misalignment="0.2 mrad")
+    changed["bearing"][0]["load"] = FORCE
+    changed["transient"] = {"revolutions": 2, "discard": 1}
+    file = tmp_path / "case.toml"
+    file.write_text(dump_case(parse_case(changed)), encoding="utf-8")
+    out = tmp_path / "out"
+    assert run_command(["run", str(file), "-q", "-o", str(out)]) == 0
+    told, alone = capsys.readouterr(), gw.load(file).operating_point()
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    load = summary["load"]
+    assert {key: load[key] for key in load} == {key: alone.document[key] for key in load}
+    (pair,) = load["gear_pairs"]
+    assert (pair["misalignment_taken_rad"], pair["misalignment_taken_from"]) == (2e-4, "case")
+    assert load["bearings"][0]["given_load_n"] == [300.0, -900.0, 200.0]
+    assert "given_load_n" not in load["bearings"][1]
+    names = [one["name"] for one in summary["warnings"]]
+    assert (names.count("misalignment"), names.count("bearing load")) == (1, 1)
+    assert f"the equilibrium finds {1e6 * pair['misalignment_rad']:.4g} µrad" in told.err
+    assert "misalignment of 200 µrad taken, as the case gives it (found: " in told.out
+    assert {"load-shaft-input.png", "load-misalignment.png", "load-face-pinion-wheel.png"} <= set(summary["files"])
+    with xr.open_dataset(out / "results.nc") as data:
+        assert data["misalignment"].values == pytest.approx([pair["misalignment_rad"]], rel=1e-12)
+        assert data["misalignment_taken"].values == pytest.approx([2e-4])
+        assert data["bearing_given_load"].sel(loaded_bearing="input left").values == pytest.approx([300, -900, 200])
+        assert np.isnan(data["bearing_given_load"].sel(loaded_bearing="input right").values).all()
+    assert run_command(["report", str(file), "-q", "-o", str(out)]) == 0
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert page.index("Operating point") < page.index("Coupled")
+    assert "Further pictures" not in page
+
+
+def test_a_run_takes_the_misalignment_found() -> None:
+    """The gap over the face is solved once, for the pair's contact and the document."""
+    result = gw.build(**document(), transient={"revolutions": 2, "discard": 1}).run()
+    (pair,), load = result.solved.pairs, result.solved.load
+    assert load is not None
+    assert pair.solved.pair.face_gap == load.point.pairs[0].station_gap
+    (told,) = result.document["load"]["gear_pairs"]
+    assert told["misalignment_taken_rad"] == told["misalignment_rad"] != 0.0
+    assert told["misalignment_taken_from"] == "operating point"
+    assert not [one for one in result.document["warnings"] if one["name"] in ("misalignment", "bearing load")]
+
+
+def test_a_sweep_over_torque_finds_every_points_equilibrium(tmp_path: Path) -> None:
+    """Bearing loads and misalignment are those of `load` at each torque, and the motion stands on them."""
+    file = tmp_path / "case.toml"
+    given = parse_case({**document(), "transient": {"revolutions": 2, "discard": 1}})
+    file.write_text(dump_case(given), encoding="utf-8")
+    keys = swept_keys(given, ["operation.torque=30 N*m,90 N*m"])
+    swept = []
+    for one in sweep_points(str(file), (), keys):
+        result = solve_point(one.case, None, code_digest())
+        assert isinstance(result, PointResult), result
+        load, point = result.document["load"], describe_machine(one.case).operating_point()
+        (pair,), (expected,) = load["gear_pairs"], point.pairs
+        assert pair["misalignment_taken_rad"] == pair["misalignment_rad"] == expected.misalignment
+        for bearing in load["bearings"]:
+            force = point.bearing(bearing["name"]).force[:2]
+            assert bearing["force_n"][:2] == pytest.approx(force)
+            mean = result.bearing_force_mean[bearing["name"]][:2]
+            assert mean == pytest.approx(force, abs=0.02 * float(np.hypot(*force)))
+        swept.append(SweptPoint(one, result, resumed=False))
+    data = collected_sweep(given, keys, swept)
+    low, high = data["misalignment"].sel(loaded_pair="pinion -> wheel").values
+    # Clearance takes up its part under the smallest load already, and Hertzian contact stiffens with the load.
+    assert 1.0 < high / low < 3.0
+    forces = data["bearing_operating_force"].sel(loaded_bearing="input right").values
+    assert np.hypot(*forces[1, :2]) == pytest.approx(3.0 * np.hypot(*forces[0, :2]), rel=0.05)
+
+
+def test_a_steady_motion_has_its_operating_point() -> None:
+    """In its document, arrays and figures."""
+    result = gw.build(**document()).steady()
+    assert result.document["load"]["gear_pairs"][0]["misalignment_taken_from"] == "operating point"
+    assert float(result.dataset["misalignment"][0]) == result.document["load"]["gear_pairs"][0]["misalignment_rad"]
+    assert "load-misalignment" in [name for name, _ in result.figures()]
+
+
+def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the case gives all stiffness, it goes on; where bearings are left to the equilibrium, it needs one."""
+
+    def none_found(*parts: Any) -> None:
+        raise EquilibriumNotFoundError("no static equilibrium of the machine")
+
+    monkeypatch.setattr("coupling.machine.description.solve_operating_point", none_found)
+    changed = document(misalignment="0 rad")
+    for bearing in changed["bearing"]:
+        bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}
+    found, told = find_load(parse_case(changed), None)
+    assert found is None
+    assert told[0]["message"] == "no operating point beside it: no static equilibrium of the machine"
+    with pytest.raises(EquilibriumNotFoundError):
+        find_load(parse_case(document()), None)
+    assert find_load(parse_case(document() | {"operation": {"speed": "1500 rpm", "torque": "0 N*m"}}), None) == (
+        None,
+        [],
+    )
 
 
 def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
@@ -135,6 +250,44 @@ def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
         del bare[key]
     with pytest.raises(CaseError, match=r"bearing\[0\]\.load.*the force of the shaft on it"):
         parse_case(bare)
+
+
+def test_a_misalignment_left_out_is_found_where_bearing_loads_are() -> None:
+    """Where the case gives every load it is 0, and the commands say what the equilibrium finds in its place."""
+    bare = document()
+    del bare["gear_pair"][0]["misalignment"]
+    (pair,), (found,) = solve_pairs(parse_case(bare), None), solve_pairs(parse_case(document()), None)
+    assert pair.pair.face_gap == found.pair.face_gap != ()
+    for bearing in bare["bearing"]:
+        bearing["load"] = FORCE if bearing["name"].endswith("left") else FORCE | {"z": "0 N"}
+    study = gw.build(**bare)
+    (pair,) = solve_pairs(study.case, None)
+    assert (pair.pair.misalignment, pair.pair.face_gap) == (0.0, ())
+    load = study.operating_point()
+    (told,) = load.document["gear_pairs"]
+    assert (told["misalignment_taken_rad"], told["misalignment_taken_from"]) == (0.0, "default")
+    found_text = f"{1e6 * told['misalignment_rad']:.2f} µrad"
+    sentence = f"  pinion → wheel: misalignment taken as 0, as the case gives none (found: {found_text})"
+    assert sentence in [text for section in sections(load.document) for text in section.sentences]
+    assert not [one for one in load.document["warnings"] if one["name"] == "misalignment"]
+
+
+def test_check_and_gears_say_which_misalignment_they_take(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`check` solves nothing; `gears` finds it in rigid seats where it is left to the operating point."""
+    file = tmp_path / "case.toml"
+    bare = document()
+    for angle, command, expected in (
+        ("found", "check", "misalignment left to the operating point; `gearwhine load` finds it"),
+        ("0.2 mrad", "check", "misalignment of 200 µrad taken, as the case gives it\n"),
+        ("found", "gears", "µrad taken, as the operating point has it"),
+        ("0.2 mrad", "gears", "Misalignment of 200 µrad taken, as the case gives it\n"),
+    ):
+        bare["gear_pair"][0]["misalignment"] = angle
+        file.write_text(dump_case(parse_case(bare)), encoding="utf-8")
+        assert run_command([command, str(file), "-q"]) == 0
+        assert expected in capsys.readouterr().out
+    assert run_command(["check", "spur-pair", "-q"]) == 0
+    assert "misalignment taken as 0, as the case gives none; `gearwhine load` finds it" in capsys.readouterr().out
 
 
 def test_a_misalignment_is_an_angle_or_found() -> None:

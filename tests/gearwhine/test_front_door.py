@@ -1,6 +1,7 @@
 """The front door in Python: cases and objects in, labelled results out, the same numbers as the command's."""
 
 import json
+import os
 import subprocess
 import sys
 from importlib import import_module
@@ -32,6 +33,23 @@ def test_every_name_of_the_front_door_is_there_and_none_is_loaded_early() -> Non
     code = "import gearwhine, sys; print({'numpy', 'scipy', 'pydantic', 'xarray'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3"), ({"OMP_NUM_THREADS": "2"}, None)],
+)
+def test_command_has_one_thread_of_blas_unless_told_otherwise(given: dict[str, str], expected: str | None) -> None:
+    blas = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+    environment = {name: value for name, value in os.environ.items() if name not in blas} | given
+    code = (
+        "import os, sys, gearwhine.cli\n"
+        "from gearwhine.__main__ import main\n"
+        "gearwhine.cli.run_command = lambda _: print('numpy' in sys.modules, os.environ.get('OPENBLAS_NUM_THREADS'))\n"
+        "main()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    assert done.stdout.split() == ["False", str(expected)]
 
 
 def test_modes_are_the_command_s(study: gw.Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -218,11 +218,13 @@ def test_the_contact_pattern_holds_the_load() -> None:
         (drawn,) = axes.collections
         assert drawn.get_array().shape[0] == 15
         assert float(drawn.get_array().max()) > 0.0
-    assert "times the even load" in note(figure)
+    assert static.line_loads is not None
+    peak = 1e-3 * static.line_loads.max()
+    assert f"peak line load of a tooth pair {peak:.4g} N/mm" in note(figure)
+    assert f"{1e3 * peak * faces.face_width * pair.contact_ratio / FORCE:.3g} times the even load" in note(figure)
     # A helical pair touches along lines that lie across the map.
     assert all(np.ptp(x) > 0.0 for x, _ in lines(figure.axes[0], "_contact line"))
 
-    assert static.line_loads is not None
     places = np.linspace(0.0, pair.contact_ratio, 400)
     present = helical.pairs(static.phases).present
     loads = over_flank(static.line_loads, static.positions, present, faces.shift, places)

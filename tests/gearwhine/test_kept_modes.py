@@ -1,5 +1,6 @@
 """By what kept modes are known again: what changes them changes the key, and nothing else does."""
 
+import ast
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -7,9 +8,11 @@ from typing import Any
 import meshio
 import pytest
 
+import gearwhine
 from gearwhine.case import Case, Housing, case_document, load_case, parse_case
 from gearwhine.from_case.mesh import build_mesh
-from gearwhine.solve.housing_modes import mode_cache_inputs, solve_housing
+from gearwhine.output.files import _source_files, source_digest
+from gearwhine.solve.housing_modes import MODES_CODE, mode_cache_inputs, solve_housing
 from housing.modes import eigensolver
 from housing.modes.eigensolver import arpack_modes
 from housing.storage.netcdf import content_key
@@ -168,3 +171,62 @@ def test_the_inputs_say_what_the_key_is_made_of() -> None:
     assert inputs["material"]["steel"]["density"] == "7850 kg/m^3"
     assert {"gearwhine", "gmsh", "scikit-fem", "scipy"} <= set(inputs["versions"])
     assert "damping_ratio" not in inputs["housing"]
+
+
+# Imported by what solves the modes, and without a say in them: files, words, and what is laid on modes that are read.
+WITHOUT_A_SAY = ("gearwhine.output.files", "gearwhine.output.quantity", "gearwhine.progress", "housing.measured")
+ROOT = Path(gearwhine.__file__).parents[1]
+
+
+def imported(name: str, seen: dict[str, Path]) -> None:
+    """Add a module and all of ours that it imports; a room's public face brings its neighbours, and is passed over."""
+    place = ROOT / Path(*name.split("."))
+    file = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+    if name in seen or not file.is_file() or name.split(".")[0] not in ("meshes", "housing", "gearwhine"):
+        return
+    if name in ("housing", "gearwhine") or name.startswith(WITHOUT_A_SAY):
+        return
+    seen[name] = file
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for inner in (node.module, *(f"{node.module}.{one.name}" for one in node.names)):
+                imported(inner, seen)
+        elif isinstance(node, ast.Import):
+            for one in node.names:
+                imported(one.name, seen)
+
+
+def test_the_code_that_solves_the_modes_counts_and_no_other() -> None:
+    seen: dict[str, Path] = {}
+    imported("gearwhine.solve.housing_modes", seen)
+    assert len(seen) > 50
+    counted = {file for name in MODES_CODE for _, file in _source_files(name)}
+    assert set(seen.values()) <= counted
+    places = {file.relative_to(ROOT).parts[:2] for file in counted}
+    assert places.isdisjoint({("gearwhine", room) for room in ("figures", "results", "output", "cli", "analyses")})
+    assert ("housing", "pictures") not in places
+
+
+def test_a_digest_of_code_follows_what_it_covers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    room = tmp_path / "some_room"
+    for file in ("__init__.py", "sums.py", "figures/__init__.py", "figures/curve.py"):
+        (room / file).parent.mkdir(exist_ok=True, parents=True)
+        (room / file).write_text("", encoding="utf-8")
+
+    def digests() -> tuple[str, ...]:
+        source_digest.cache_clear()
+        whole, one = source_digest("some_room"), source_digest("some_room.sums")
+        return whole, one, source_digest("some_room", without=("some_room.figures",))
+
+    before = digests()
+    assert len(set(before)) == 3
+    (room / "figures" / "curve.py").write_text("red = 1", encoding="utf-8")
+    whole, *others = digests()
+    assert whole != before[0]
+    assert tuple(others) == before[1:]
+    (room / "sums.py").write_text("two = 2", encoding="utf-8")
+    assert all(now != then for now, then in zip(digests(), before, strict=True))
+    with pytest.raises(ModuleNotFoundError, match="no package or module"):
+        source_digest("some_room.products")
+    source_digest.cache_clear()

@@ -65,7 +65,7 @@ def test_faces_show_gap_and_load(loaded: Result[SolvedLoad], figures: dict[str, 
     assert lines["with modifications"] - lines["by deflection"] == pytest.approx(
         crown - (crown + 1e6 * pair.gap).min() + 1e6 * pair.gap.min(), abs=1e-6
     )
-    assert (upper.get_ylabel(), lower.get_ylabel()) == ("gap before the load [µm]", "load per width [N/mm]")
+    assert (upper.get_ylabel(), lower.get_ylabel()) == ("gap before the load [µm]", "line load, all tooth pairs [N/mm]")
     (band,) = [one for one in lower.collections if isinstance(one, PolyCollection)]
     heights = band.get_paths()[0].vertices[:, 1]
     assert heights.max() == pytest.approx(1e-3 * pair.fine.line_load.max())

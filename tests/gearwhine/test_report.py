@@ -2,17 +2,22 @@
 
 import base64
 import json
+import re
 from html.parser import HTMLParser
+from io import BytesIO
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
-from gearwhine.case import CaseError
+from gearwhine.case import Case, CaseError, dump_case, load_case, mesh_frequencies
 from gearwhine.output.files import file_contents
-from gearwhine.output.html import report_page
-from gearwhine.output.sections import Column, columns_of, table_of
+from gearwhine.output.report import Contents, report_page
+from gearwhine.output.sections import Column, Picture, Section, columns_of, table_of
 from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update
 from gearwhine.results import steady_state as steady
+from gearwhine.results.first_page import first_page
 
 VOID = {"meta", "img"}
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")
@@ -52,10 +57,18 @@ class Balanced(HTMLParser):
         self.tags: set[str] = set()
         self.text = ""
         self.sources: list[str] = []
+        self.links: list[str] = []
+        self.identifiers: list[str] = []
+        self.captions: dict[str, str] = {}
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.tags.add(tag)
-        self.sources += [value or "" for name, value in attrs if name in ("src", "href")]
+        given = {name: value or "" for name, value in attrs}
+        self.sources += [given["src"]] if "src" in given else []
+        self.links += [given["href"]] if "href" in given else []
+        self.identifiers += [given["id"]] if "id" in given else []
+        if tag == "img":
+            self.captions[given["src"]] = given["alt"]
         if tag not in VOID:
             self.open.append(tag)
 
@@ -63,14 +76,24 @@ class Balanced(HTMLParser):
         assert self.open.pop() == tag
 
     def handle_data(self, data: str) -> None:
-        self.text += f"{data}\n"
+        if not {"nav", "style"} & set(self.open):
+            self.text += f"{data}\n"
 
 
 def read(folder: Path) -> Balanced:
     parser = Balanced()
-    parser.feed(report_page(folder, chapters_of))
+    parser.feed(report_page(folder, Contents(chapters_of, first_page)))
     parser.close()
     assert parser.open == []
+    assert len(set(parser.identifiers)) == len(parser.identifiers)
+    # Every link leads to a place in the page.
+    assert {link.removeprefix("#") for link in parser.links} <= set(parser.identifiers)
+    return parser
+
+
+def read_case(folder: Path, case: Case) -> Balanced:
+    parser = Balanced()
+    parser.feed(report_page(folder, Contents(chapters_of, first_page), case))
     return parser
 
 
@@ -91,12 +114,155 @@ def test_a_run_is_told_whole_and_escaped(tmp_path: Path) -> None:
         "2566.7",
     ):
         assert told in page.text
-    # Nothing is fetched from anywhere.
-    assert len(page.sources) == 3
+    # Nothing is fetched from anywhere; the spectrum stands on the first page, too.
+    assert len(page.sources) == 4
     assert all(source.startswith("data:image/png;base64,") for source in page.sources)
     assert base64.b64decode(page.sources[0].partition(",")[2]) == PIXEL
     assert "measures do not agree" in page.text
     assert "Further pictures" in page.text
+    assert page.text.count("Acceleration of each sensor over frequency") == 2
+    assert "File own.png." in page.text
+
+
+TRACED = {
+    "frequency_hz": 2566.7,
+    "amplitude_m_per_s2": 1.5,
+    "name": "1× <a> -> b",
+    "kind": "mesh",
+    "level_db": 120.0,
+    "near_mode": None,
+    "contributions": {
+        "housing_modes": [{"name": "housing mode 19 (2664 Hz)", "amplitude_m_per_s2": 3.0, "share": 1.5, "number": 19}],
+        "bearings": [{"name": "front", "amplitude_m_per_s2": 2.0, "share": 1.4}],
+        "free_vibration": {"name": "free vibration", "amplitude_m_per_s2": 0.0, "share": 0.0},
+    },
+}
+
+
+def linked(folder: Path, text: str) -> str:
+    """Return the identifier that the text of a link leads to; empty where the text is no link."""
+    page = report_page(folder, Contents(chapters_of, first_page))
+    found = re.search(f'<a href="#([^"]+)">{re.escape(text)}</a>', page)
+    return "" if found is None else found[1]
+
+
+def test_a_line_leads_to_its_path_and_to_the_housing_that_moves_at_it(tmp_path: Path) -> None:
+    document = RUN | {"command": "run", "sensors": [{"name": "top", "peaks": [TRACED]}]}
+    write(tmp_path, document, 'title = "x"')
+    assert linked(tmp_path, "2566.7") == "run-path-top-2566-7-hz"
+    assert linked(tmp_path, "housing mode 19 (2664 Hz)") == ""
+    (tmp_path / "mode-19-2664Hz.png").write_bytes(PIXEL)
+    assert linked(tmp_path, "housing mode 19 (2664 Hz)") == "run-picture-mode-19-2664hz"
+    (tmp_path / "line-2566.7Hz.png").write_bytes(PIXEL)
+    assert linked(tmp_path, "housing mode 19 (2664 Hz)") == "run-picture-line-2566-7hz"
+    page = read(tmp_path)
+    assert "front, cancelled in part" in page.text
+    assert "Operating shape at 2566.7 Hz, 1× <a> -> b; grey: at rest, colour: displacement." in page.text
+
+
+def test_pictures_of_another_command_are_found_from_a_line(tmp_path: Path) -> None:
+    document = RUN | {"command": "run", "sensors": [{"name": "top", "peaks": [TRACED]}]}
+    write(tmp_path, document, 'title = "x"')
+    shape = {"frequency_hz": 2566.7, "name": "1×", "modes": [], "largest_displacement_m": 5e-8}
+    write(tmp_path / "render", {"command": "render", "lines": [shape]}, 'title = "x"')
+    (tmp_path / "render" / "line-2566.7Hz.png").write_bytes(PIXEL)
+    assert linked(tmp_path, "housing mode 19 (2664 Hz)") == "render-picture-line-2566-7hz"
+
+
+def test_a_sheet_of_modes_is_left_out_where_each_has_a_picture(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "modes"} | RUN["housing"], 'title = "x"')  # type: ignore[operator]
+    (tmp_path / "modes.png").write_bytes(PIXEL)
+    assert "Modes side by side" in read(tmp_path).text
+    (tmp_path / "mode-01-658Hz.png").write_bytes(PIXEL)
+    page = read(tmp_path)
+    (caption,) = set(page.captions.values())
+    assert caption.startswith("Mode 1, 658 Hz, damping ratio 0.01;")
+
+
+def test_pictures_are_packed_and_look_the_same(tmp_path: Path) -> None:
+    y, x = np.mgrid[0:300, 0:400]
+    flat = np.where(((x // 8 + y // 8) % 2)[..., None], [31, 90, 150], [255, 255, 255]).astype(np.uint8)
+    shaded = np.stack([255 * x // 399, 255 * y // 299, (x + y) // 3], axis=-1).astype(np.uint8)
+    write(tmp_path, {"command": "run"}, 'title = "x"')
+    for name, pixels in (("flat", flat), ("shaded", shaded)):
+        Image.fromarray(np.dstack([pixels, np.full(x.shape, 255, np.uint8)])).save(tmp_path / f"{name}.png")
+    kinds = {}
+    for source, caption in read(tmp_path).captions.items():
+        kinds[caption], data = source.split(";base64,")
+        content = base64.b64decode(data)
+        name = caption.removeprefix("File ").removesuffix(".png.")
+        assert len(content) < (tmp_path / f"{name}.png").stat().st_size
+        seen = np.asarray(Image.open(BytesIO(content)).convert("RGB")).astype(int)
+        assert np.abs(seen - {"flat": flat, "shaded": shaded}[name]).mean() < 2.0
+    assert kinds == {"File flat.png.": "data:image/png", "File shaded.png.": "data:image/webp"}
+
+
+def test_a_file_that_is_no_picture_is_told(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "run"}, 'title = "x"')
+    (tmp_path / "spoilt.png").write_bytes(PIXEL[:40])
+    page = read(tmp_path)
+    assert page.sources == []
+    assert "File spoilt.png. The file cannot be read." in page.text
+
+
+def test_the_first_page_tells_the_machine(tmp_path: Path) -> None:
+    case = load_case("spur-pair", []).case
+    write(tmp_path, {"command": "run"}, dump_case(case))
+    text = read_case(tmp_path, case).text
+    driver, driven = (next(gear for gear in case.gear if gear.name == name) for name in pair_of(case))
+    assert f"{driver.teeth} : {driven.teeth}" in text
+    (frequency,) = mesh_frequencies(case)
+    assert f"{frequency:.2f}" in text
+
+
+def pair_of(case: Case) -> tuple[str, str]:
+    return case.gear_pair[0].driver, case.gear_pair[0].driven
+
+
+def marks(folder: Path) -> dict[str, str]:
+    """Return the marks of the first page's findings by their sentences."""
+    page = report_page(folder, Contents(chapters_of, first_page))
+    return {text: kind for kind, text in re.findall(r'<p class="finding (\w+)">.*?</span> <span>(.*?)<', page)}
+
+
+def test_the_first_page_marks_each_proof(tmp_path: Path) -> None:
+    certificate = RUN["housing"]["certificate"]  # type: ignore[index]
+    grows = {"frequency_hz": 90.0, "damping_ratio": -0.01, "kind": "torsion", "doubling_time_s": 0.1, "fed_by": []}
+    stability = {"stable": False, "growing": [grows]}
+    system = {"stability": stability, "modes": [], "coordinates": 1, "speed_rpm": 1.0}
+    missing = RUN["housing"] | {"certificate": certificate | {"complete": False, "found": 0}}  # type: ignore[operator]
+    warned = {"name": "runout", "message": "teeth run out by 3 µm"}
+    document = RUN | {"command": "run", "system": system, "warnings": [warned]}
+    write(tmp_path, document, 'title = "x"')
+    found = marks(tmp_path)
+    assert found["Stability: 1 mode grows. "] == "failed"
+    assert found["Motion: the energy balance closes to 1e-06 over 1000 steps. "] == "passed"
+    assert found["Teeth run out by 3 µm. "] == "failed"
+    assert next(kind for text, kind in found.items() if text.startswith("Housing: 1 modes found")) == "passed"
+    write(tmp_path, document | {"housing": missing, "energy_error": 0.02}, 'title = "x"')
+    found = marks(tmp_path)
+    assert next(kind for text, kind in found.items() if text.startswith("Housing: 0 modes found")) == "failed"
+    assert next(kind for text, kind in found.items() if text.startswith("Motion: the energy")) == "failed"
+
+
+def test_results_of_another_case_fail_on_the_first_page(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "run", "made_at": "2026-01-01T10:00:00+00:00"}, CASE.format(speed=1, load=2))
+    write(
+        tmp_path / "gears", {"command": "gears", "made_at": "2026-02-01T10:00:00+00:00"}, CASE.format(speed=2, load=2)
+    )
+    (told,) = [text for text, kind in marks(tmp_path).items() if kind == "failed" and text.startswith("gearwhine run")]
+    assert "operation.speed was 1, is 2" in told
+
+
+def test_inner_sections_choose_their_pictures_first(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "run"}, 'title = "x"')
+    for name in ("gear-a", "gear-b"):
+        (tmp_path / f"{name}.png").write_bytes(PIXEL)
+    inner = Section("Second", pictures=(Picture("gear-b", "Of the second."),))
+    outer = Section("All", pictures=(Picture("gear-", "Of the others."),), inner=(inner,))
+    page = report_page(tmp_path, Contents(lambda document: (outer,)))
+    assert page.index("Of the others.</figcaption>") < page.index("<h4>Second</h4>") < page.index("Of the second.</fig")
+    assert page.count("<figure ") == 2
 
 
 def test_sections_follow_what_the_document_holds() -> None:
@@ -200,7 +366,7 @@ def test_a_folder_without_results_is_refused(tmp_path: Path, content: str | None
     if content is not None:
         (tmp_path / "summary.json").write_text(content, encoding="utf-8")
     with pytest.raises(CaseError, match="a results folder with"):
-        report_page(tmp_path, chapters_of)
+        report_page(tmp_path, Contents(chapters_of))
 
 
 # Documents in which no two figures are alike, and each table's cells as they must read.
@@ -425,7 +591,7 @@ def test_warnings_stand_before_the_results(tmp_path: Path) -> None:
     document = {"command": "gears", "warnings": [{"name": "runout", "message": "teeth run out by 3 µm"}]} | RUN
     write(tmp_path, document, CASE.format(speed=1, load=2))
     text = read(tmp_path).text
-    assert text.index("Warnings") < text.index("teeth run out by 3 µm") < text.index("Housing modes")
+    assert text.index("Warnings\n") < text.index("teeth run out by 3 µm") < text.rindex("Housing modes")
 
 
 def test_modes_that_miss_their_proof_are_not_called_complete(tmp_path: Path) -> None:

@@ -1,7 +1,10 @@
 """Matrices on the free degrees of freedom against the same rows and columns cut from the whole ones."""
 
+import threading
+import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -96,3 +99,48 @@ def test_two_threads_multiply_as_one_does() -> None:
     assert vectors.size * len(one.values) > symmetric._WORTH_A_THREAD * n
     np.testing.assert_array_equal(two @ vectors, one @ vectors)
     np.testing.assert_allclose(two @ vectors, whole @ vectors, rtol=1e-10, atol=1e-12)
+
+
+def test_threads_are_kept() -> None:
+    """Two tasks that wait for each other run at once, a hundred times, on no more threads than a pool has (32)."""
+    threads = set()
+    for _ in range(100):
+        meeting = threading.Barrier(2, timeout=60.0)
+
+        def meet(number: int, meeting: threading.Barrier = meeting) -> int:
+            meeting.wait()
+            threads.add(threading.current_thread())
+            return number
+
+        assert symmetric.at_once([partial(meet, 7), partial(meet, 8)]) == [7, 8]
+    assert threading.current_thread() in threads
+    assert 2 <= len(threads) <= 33
+
+
+@pytest.mark.parametrize("failing", [0, 1])
+def test_an_error_is_raised_when_every_task_has_ended(failing: int) -> None:
+    ended = []
+
+    def work(number: int) -> None:
+        if number == failing:
+            raise ValueError("in a task")
+        time.sleep(0.05)
+        ended.append(number)
+
+    with pytest.raises(ValueError, match="in a task"):
+        symmetric.at_once([partial(work, 0), partial(work, 1)])
+    assert ended == [1 - failing]
+
+
+@pytest.mark.parametrize("threads", [2, 3, 4])
+def test_block_vectors_by_threads_as_by_one(threads: int) -> None:
+    rows = symmetric._ROWS_WORTH_A_THREAD + 3
+    rng = np.random.default_rng(4)
+    left, right, mixture = rng.standard_normal((rows, 3)), rng.standard_normal((rows, 2)), rng.standard_normal((3, 2))
+    one, several = symmetric.BlockAlgebra(rows, 1), symmetric.BlockAlgebra(rows, threads)
+    np.testing.assert_array_equal(several.products(left, right), one.products(left, right))
+    np.testing.assert_allclose(several.products(left, right), left.T @ right, rtol=1e-10, atol=1e-9)
+    np.testing.assert_array_equal(several.combined(left, mixture), one.combined(left, mixture))
+    rest = right.copy()
+    several.subtract(rest, left, mixture)
+    np.testing.assert_allclose(rest, right - left @ mixture, rtol=1e-12, atol=1e-12)

@@ -29,7 +29,7 @@ from meshes.gmsh_meshing import collect, gmsh_session, mesh_solids
 FloatArray = npt.NDArray[np.float64]
 Blocks = Callable[..., Mesh]
 
-RUNS = 50
+RUNS = 25  # of either shape
 SPREAD = 1e-9  # of the frequencies of one multiple mode, as a part of them
 SPLIT = 1e-6  # frequencies farther apart, as a part of them, are different modes
 DISTINCT = 1e-3  # part of the highest eigenvalue found: a gap this wide always ends a search by number

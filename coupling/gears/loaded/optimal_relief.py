@@ -23,7 +23,12 @@ from coupling.gears.contact.face_slices import FaceSlices
 from coupling.gears.errors import GearError, require_finite
 from coupling.gears.geometry.modifications import ReliefShape, TipRelief
 from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.loaded.transmission_error import LoadedMesh, loaded_transmission_error, mesh_period_phases
+from coupling.gears.loaded.transmission_error import (
+    LoadedMesh,
+    loaded_transmission_error,
+    mesh_period_phases,
+    transmission_error_phasors,
+)
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
 
@@ -94,17 +99,7 @@ def transmission_error_harmonics(mesh: LoadedMesh, count: int = 8) -> FloatArray
     GearError
         Where the phases do not lie in one mesh period, ascending.
     """
-    phases, values = mesh.phases, mesh.transmission_error
-    if phases[-1] - phases[0] >= 1.0 or np.any(np.diff(phases) <= 0.0):
-        raise GearError("harmonics: phases of one mesh period are needed, ascending and without its end")
-    x = np.append(phases, phases[0] + 1.0)
-    y = np.append(values, values[0])
-    w = 2.0 * np.pi * np.arange(1, count + 1)[:, None]
-    phasor = np.exp(-1j * w * x)
-    # Integral of a straight segment times e^{-iwx}, by parts.
-    slope = np.diff(y) / np.diff(x)
-    integral = ((y * phasor)[:, :-1] - (y * phasor)[:, 1:]) / (1j * w) + slope * (phasor[:, 1:] - phasor[:, :-1]) / w**2
-    return np.asarray(2.0 * np.abs(integral.sum(axis=1)))
+    return np.abs(transmission_error_phasors(mesh, count))
 
 
 _GRID = 14

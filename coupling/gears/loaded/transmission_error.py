@@ -27,6 +27,7 @@ from coupling.gears.geometry.faults import NO_CONTACT_GAP
 from coupling.gears.geometry.pair import IntArray
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _HAIR = 1e-9
 """Compression for the tangent stiffness of an unloaded face [m]."""
@@ -223,6 +224,37 @@ def period_mean(phases: FloatArray, values: FloatArray) -> float:
     closed_phases = np.append(phases, phases[0] + periods)
     closed_values = np.append(values, values[0])
     return float(np.sum(0.5 * np.diff(closed_phases) * (closed_values[1:] + closed_values[:-1]))) / float(periods)
+
+
+def transmission_error_phasors(mesh: LoadedMesh, count: int, periods: int = 1) -> ComplexArray:
+    """Complex amplitudes c_h of the transmission error's mesh harmonics, Re Σ c_h e^{2πihp} at the phase p [m], (count,).
+
+    Exact for the polygon through the points of the mesh periods: a curve with a step has the harmonics of a step.
+
+    Parameters
+    ----------
+    mesh : LoadedMesh
+    count : int
+        Of harmonics, from the first.
+    periods : int
+        Mesh periods that the phases cover.
+
+    Raises
+    ------
+    GearError
+        Where the phases do not lie in these periods, ascending.
+    """
+    phases, values = mesh.phases, mesh.transmission_error
+    if phases[-1] - phases[0] >= periods or np.any(np.diff(phases) <= 0.0):
+        raise GearError(f"harmonics: phases of {periods} mesh periods are needed, ascending and without their end")
+    x = np.append(phases, phases[0] + periods)
+    y = np.append(values, values[0])
+    w = 2.0 * np.pi * np.arange(1, count + 1)[:, None]
+    phasor = np.exp(-1j * w * x)
+    # Integral of a straight segment times e^{-iwx}, by parts.
+    slope = np.diff(y) / np.diff(x)
+    integral = ((y * phasor)[:, :-1] - (y * phasor)[:, 1:]) / (1j * w) + slope * (phasor[:, 1:] - phasor[:, :-1]) / w**2
+    return np.asarray(2.0 / periods * integral.sum(axis=1))
 
 
 _AT_ONCE = 1000

@@ -116,7 +116,7 @@ _N_PER_MM = 1e-3
 
 
 def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> Figure:
-    """Draw load per width and contact pressure over the driver's roll angle and the face.
+    """Draw a tooth pair's line load and contact pressure over the driver's roll angle and the face.
 
     Parameters
     ----------
@@ -139,18 +139,19 @@ def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothConta
     loads, pressures = (
         over_flank(values, mesh.positions, present, faces.shift, places) for values in (mesh.line_loads, pressure)
     )
-    most = np.unravel_index(int(loads.argmax()), loads.shape)
+    carried = np.where(present[..., None], mesh.line_loads, 0.0)
+    most = np.unravel_index(int(carried.argmax()), carried.shape)
     even = mesh.force / (faces.face_width * pair.contact_ratio)
     note = (
-        f"largest load per width {_N_PER_MM * loads[most]:.4g} N/mm, at z = {MILLI * faces.z[most[0]]:.3g} mm, "
-        f"{loads[most] / even:.3g} times the even load of the mean number of pairs; pale lines: contact at one time"
+        f"peak line load of a tooth pair {_N_PER_MM * carried[most]:.4g} N/mm at z = {MILLI * faces.z[most[2]]:.3g} mm,"
+        f" {carried[most] / even:.3g} times the even load of the mean number of pairs; pale lines: contact at one time"
     )
     figure = sheet(HEAD + _MAP_LETTERS + 2.0 * _MAP + _MAP_GAP + FOOT, title, note)
     rolls = np.degrees(pair.driver_roll_angle(places))
     edges = MILLI * np.concatenate([faces.z - 0.5 * faces.width, [faces.z[-1] + 0.5 * faces.width]])
     drawn = []
     for bottom, values, what in (
-        (FOOT + _MAP + _MAP_GAP, _N_PER_MM * loads, "load per width [N/mm]"),
+        (FOOT + _MAP + _MAP_GAP, _N_PER_MM * loads, "line load of a tooth pair [N/mm]"),
         (FOOT, MEGA * pressures, "contact pressure [MPa]"),
     ):
         axes = panel(figure, bottom, _MAP, width=PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS)

@@ -227,7 +227,7 @@ _GAP_PANEL, _LOAD_PANEL, _ROOM = 34.0, 46.0, 4.0  # heights [mm of paper]
 
 
 def draw_face_load(title: str, pair: PairLoad) -> Figure:
-    """Draw the gap of the flanks before the load, and the load per width, over the face.
+    """Draw the gap of the flanks before the load, and the line load of all tooth pairs together, over the face.
 
     Parameters
     ----------
@@ -268,7 +268,7 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     lower.plot(z, _N_PER_MM * load, color=BLUE, lw=1.5, label="mean")
     lower.axhline(_N_PER_MM * load.mean(), color=GREY, lw=0.9, ls="--", label="even")
     lower.set_ylim(0.0, 1.12 * _N_PER_MM * float(phases.max()))
-    lower.set(xlabel="z from the middle of the face [mm]", ylabel="load per width [N/mm]")
+    lower.set(xlabel="z from the middle of the face [mm]", ylabel="line load, all tooth pairs [N/mm]")
     for axes in (upper, lower):
         axes.set_xlim(-0.5 * MILLI * width, 0.5 * MILLI * width)
     for axes in (upper, lower):
@@ -348,6 +348,8 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
     for number, (what, of) in enumerate(shown):
         axes = panel(figure, FOOT + number * (_SMALL + _SMALL_ROOM), _SMALL)
         for place, pair in enumerate(solved.point.pairs):
+            if pair.force == 0.0:
+                continue
             name = f"{name_in_legend(pair.pair.driver.name)} → {name_in_legend(pair.pair.driven.name)}"
             values = [of(row.pairs[place]) for row in rows]
             color = SERIES[place % len(SERIES)]

@@ -1,6 +1,6 @@
 """Transient figures: sensor spectra, transfer paths, tooth friction, modal coordinates and orbits.
 
-- Sensor spectra, a panel each, their leading lines named.
+- Sensor spectra, a panel each, with their leading lines named above.
 - Transfer-path contributions of housing modes and bearings to the leading lines of the sensors, as bars.
 - Tooth friction over time: force across the line of action, and power loss.
 - Modal coordinates in time and frequency, after Figs. 7, 8, 10 and 11 of NASA TM-101442.
@@ -51,8 +51,9 @@ from housing.correlation.comparison import Comparison
 
 FloatArray = npt.NDArray[np.float64]
 
-_HEIGHT, _BETWEEN, _RIGHT = 40.0, 7.0, 14.0  # of a panel, above it, and beside it for levels [mm]
-_NAMED = 6  # lines in a panel
+_HEIGHT, _BETWEEN, _RIGHT = 34.0, 6.5, 14.0  # of a panel, above it, and beside it for levels [mm]
+_ABOVE = 4.5  # of the first panel, for the name of its sensor [mm]
+_NAMED = 5  # lines of a sensor
 _LEAST = 1e-4  # of the highest line, below which none is named
 
 
@@ -65,7 +66,7 @@ def draw_sensor_spectra(
     marked: FloatArray,
     marked_as: str = "housing modes",
 ) -> Figure:
-    """Draw amplitudes in m/s², levels in dB beside them, and what the leading lines are above each panel.
+    """Draw amplitudes in m/s² with levels in dB beside them, a panel for each sensor; name the leading lines above all.
 
     Parameters
     ----------
@@ -83,16 +84,20 @@ def draw_sensor_spectra(
         Names of the quantities.
     """
     width, limit = SHEET_WIDTH - LEFT - _RIGHT, solved.trusted_limit
-    rows = {}
-    for name, spectrum in solved.sensor_spectra.items():
-        named = [line for line in lines[name] if abs(line.value) >= _LEAST * abs(lines[name][0].value)][:_NAMED]
-        labels = [Label(_text(line), line.frequency, abs(line.value), _color(line)) for line in named]
-        rows[name] = (spectrum, arrange(labels, [label.x / limit * width for label in labels], width))
-    height = HEAD + FOOT + sum(_HEIGHT + _BETWEEN + row.height for _, row in rows.values())
+    named = {
+        name: [line for line in found if abs(line.value) >= _LEAST * abs(found[0].value)][:_NAMED]
+        for name, found in lines.items()
+    }
+    # A line stands at the same frequency for all sensors: its name stands once, above them all.
+    once = {_text(line): line for found in named.values() for line in found}
+    labels = [Label(text, line.frequency, 1.0, _color(line)) for text, line in once.items()]
+    row = arrange(labels, [label.x / limit * width for label in labels], width)
+    count = len(solved.sensor_spectra)
+    height = HEAD + FOOT + row.height + count * _HEIGHT + (count - 1) * _BETWEEN + _ABOVE
     note = f"{title}; peak amplitudes, levels of their rms values re 1 µm/s²"
     figure = sheet(height, "Housing acceleration", note)
     bottom = FOOT
-    for number, (name, (spectrum, row)) in enumerate(reversed(rows.items())):
+    for number, (name, spectrum) in enumerate(reversed(solved.sensor_spectra.items())):
         axes = panel(figure, bottom, _HEIGHT, width=width)
         draw_lines(axes, spectrum, limit)
         low, high = axes.get_ylim()
@@ -102,21 +107,27 @@ def draw_sensor_spectra(
         inside = marked[marked <= limit]
         places = np.full(inside.size, 0.02)
         axes.plot(inside, places, marker=6, color=GREY, ms=4, ls="", transform=axes.get_xaxis_transform())
+        for label in row.labels:
+            axes.axvline(label.x, color=GREY, lw=0.4, zorder=0)
+        leading = [(line.frequency, abs(line.value)) for line in named[name]]
+        axes.plot(*np.reshape(leading, (-1, 2)).T, marker="o", color=BLUE, ms=2.6, ls="", zorder=3)
         axes.set_ylabel("acceleration [m/s²]", fontsize=LABEL)
         beside = axes.twinx()
         beside.set_ylim(*decibels([low, high]).tolist())
         beside.set_ylabel("level [dB]", fontsize=LABEL, color=INK)
         beside.tick_params(labelsize=NOTE, colors=INK)
         beside.spines[["top"]].set_visible(False)
-        draw_row(axes, row, panel_size(axes)[1] + 0.8)
-        axes.annotate(
-            name, (0.99, 0.95), xycoords="axes fraction", fontsize=LABEL, ha="right", va="top", parse_math=False
-        )
+        axes.set_title(shortened(name, 40), fontsize=LABEL, loc="left", pad=2.0, parse_math=False)
         if number:
             axes.tick_params(labelbottom=False)
         else:
             axes.set_xlabel("frequency [Hz]")
-        bottom += _HEIGHT + _BETWEEN + row.height
+        if number == count - 1:
+            above = panel(figure, bottom, _HEIGHT, width=width)
+            above.set(xlim=axes.get_xlim(), ylim=(0.0, 1.0))
+            above.set_axis_off()
+            draw_row(above, row, panel_size(axes)[1] + _ABOVE)
+        bottom += _HEIGHT + _BETWEEN
     handles = []
     if len(mesh_frequencies):
         handles.append(Line2D([], [], color=RED, lw=0.7, ls=(0, (4, 3)), label="mesh harmonic"))
@@ -127,7 +138,7 @@ def draw_sensor_spectra(
 
 
 def _text(line: TracedLine) -> str:
-    name = line.named.name.replace(" mode of ", " ")
+    name = line.named.name.replace(" mode of ", " ").replace(" -> ", "→")
     return f"{line.frequency:.0f} Hz {'free ' if line.named.kind == 'mode' else ''}{name}"
 
 

@@ -1,0 +1,453 @@
+r"""Sensor lines: amplitudes of the mesh harmonics at accelerometers about the operating point, and their gradients.
+
+About the operating point a mesh under its mean force F acts as its mean mesh stiffness k and damping c, driven by its
+loaded transmission error e(t) and by the moments of its shuttling load. At a mesh harmonic ω the motion q of the
+machine and the acceleration y of a sensor are
+
+    Z q = f,      Z = K + iωC - ω² I,      f = Σ k e d + moments of shuttling,      y = -ω² sᵀ q,
+
+K and C with the tangents of bearings and meshes, d the directions of the meshes, s that of the sensor. One adjoint
+solve for each line gives the derivative of its amplitude by any parameter of the machine,
+
+    Zᵀ μ = -ω² (y* / |y|) s,      d|y| = Re [μᵀ (df - dZ q) - ω² (y* / |y|) dsᵀ q]
+
+(Choi and Kim, *Structural Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the frequency response).
+
+*Housing*: dZ has dK + iω dC - ω² dM of its coordinates, projected, and the motions of its ports. Its modes and residual
+modes are a fixed basis for the derivative, so both fields must be exact in it: the motion is, by residual modes of the
+bearings, and the adjoint field needs those of the sensors. Modal damping of the ratios ζ follows the modes: C = g(A)
+with g(ω²) = 2ζω and A the projected M⁻¹K, so that
+
+    dC_ab = [(g_a - g_b) dK_ab + (ω_a² g_b - ω_b² g_a) dM_ab] / (ω_a² - ω_b²),
+
+which for one ratio is 2ζ (dK_ab + ω_a ω_b dM_ab) / (ω_a + ω_b).
+
+*Operating point*: where the tangent of a rolling bearing and the gap of flanks are those of the static equilibrium,
+these, and with them k, c, e and the shuttling, change with the deflections there. Their derivatives by bearing
+deflections and approaches of flanks, central differences of the laws, are the gradient of the amplitude by the static
+coordinates; its adjoint (:mod:`coupling.statics.sensitivity`) gives the rest of the derivative.
+
+Left out are the change of mean mesh forces where meshes share a torque, that of the ratios ζ and of dashpots, friction
+of the teeth, and all that is not linear about the mean mesh: contact loss and the variation of k over the mesh period
+times the motion.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from coupling.errors import CouplingError
+from coupling.gears import ToothContact
+from coupling.gears.contact.face_slices import FACE_STATIONS, face_stations, lagrange
+from coupling.gears.loaded.gear_pair import LoadedGearPair
+from coupling.gears.loaded.transmission_error import (
+    LoadedMesh,
+    hunting_period_mesh,
+    loaded_transmission_error,
+    mesh_period_phases,
+    transmission_error_phasors,
+)
+from coupling.machine.assembly import CoupledMachine
+from coupling.machine.connectors import LinearConnector
+from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from coupling.statics.operating_point import BearingLoad, OperatingPoint
+from rotors.rolling_bearings import rolling_state
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_HARMONICS = 12  # of a mesh, at most
+_POINTS = 200  # phases of a mesh period, as in the mean mesh
+_SAME = 1e-9  # relative difference of frequencies that are one
+_GAP_STEP = 0.03  # of the flanks' compression: slices that come into touch one by one change the stiffness in steps
+_BEARING_STEP = 1e-4  # of a bearing's deflection, in the differences of its tangent
+_SHAFT_STEP = 1e-5  # of the shaft's length, in the differences of its motions
+_EQUAL = 1e-6  # relative difference of eigenvalues below which they count as one in a divided difference
+
+
+@dataclass(frozen=True, eq=False)
+class SensorLine:
+    """Line of a sensor at a mesh harmonic.
+
+    Attributes
+    ----------
+    sensor : str
+    frequency : float
+        ω [rad/s].
+    causes : tuple of (int, int)
+        Number of the contact in the system, and harmonic of its mesh frequency, of each mesh that drives the line.
+    value : complex
+        y [m/s²]: the acceleration is Re y e^{iωt}.
+    motion : ndarray of complex, shape (n,)
+        q by the coordinates of the system.
+    adjoint : ndarray of complex, shape (n,)
+        μ, amplitude per unit of a load [(m/s²)/N and its like].
+    """
+
+    sensor: str
+    frequency: float
+    causes: tuple[tuple[int, int], ...]
+    value: complex
+    motion: ComplexArray
+    adjoint: ComplexArray
+
+    @property
+    def amplitude(self) -> float:
+        """|y| [m/s²]."""
+        return abs(self.value)
+
+    @property
+    def weight(self) -> complex:
+        """-ω² y* / |y|, by which a motion of the sensor adds to the amplitude [1/s²]."""
+        return -(self.frequency**2) * self.value.conjugate() / self.amplitude
+
+
+@dataclass(frozen=True, eq=False)
+class HousingRates:
+    """Derivatives of a housing of h coordinates by p parameters.
+
+    Attributes
+    ----------
+    frequencies, ratios : ndarray, shape (h,)
+        ω [rad/s] and ζ of the coordinates.
+    stiffness, mass : ndarray, shape (p, h, h)
+        dK [1/s²] and dM [1] per unit of each parameter.
+    bearings : sequence of mapping of str to ndarray, shape (5, h)
+        Of each parameter, the change of the seats' motions at bearings; where there is none it may be absent.
+    sensors : sequence of mapping of str to ndarray, shape (h,)
+        Of each parameter, the change of the sensors' motions likewise.
+    """
+
+    frequencies: FloatArray
+    ratios: FloatArray
+    stiffness: FloatArray
+    mass: FloatArray
+    bearings: Sequence[Mapping[str, FloatArray]]
+    sensors: Sequence[Mapping[str, FloatArray]]
+
+    @cached_property
+    def damping(self) -> FloatArray:
+        """DC of the modal damping [1/s], shape (p, h, h)."""
+        omega, ratios = self.frequencies, self.ratios
+        values, gains = omega**2, 2.0 * ratios * omega
+        apart = values[:, None] - values[None, :]
+        alike = np.abs(apart) <= _EQUAL * np.maximum(values[:, None], values[None, :])
+        distance = np.where(alike, 1.0, apart)
+        total = omega[:, None] + omega[None, :]
+        equal = (ratios[:, None] + ratios[None, :]) / np.where(total > 0.0, total, np.inf)
+        by_stiffness = np.where(alike, equal, (gains[:, None] - gains[None, :]) / distance)
+        crossed = values[:, None] * gains[None, :] - values[None, :] * gains[:, None]
+        by_mass = np.where(alike, equal * omega[:, None] * omega[None, :], crossed / distance)
+        return np.asarray(by_stiffness * self.stiffness + by_mass * self.mass)
+
+
+@dataclass(frozen=True, eq=False)
+class _GapRates:
+    """Derivatives of a loaded contact by the gap of its flanks at the j stations of the face.
+
+    Attributes
+    ----------
+    stiffness : ndarray, shape (j,)
+        Of k [N/m per m].
+    error : ndarray of complex, shape (j, harmonics)
+        Of e.
+    shuttling : ndarray of complex, shape (j, harmonics, n)
+        Of the moments on the coordinates.
+    """
+
+    stiffness: FloatArray
+    error: ComplexArray
+    shuttling: ComplexArray
+
+
+@dataclass(frozen=True, eq=False)
+class LineModel:
+    """A machine linear about its operating point, driven by its loaded meshes.
+
+    Attributes
+    ----------
+    machine : CoupledMachine
+        Assembled about the point.
+    point : OperatingPoint
+    pairs : tuple of LoadedGearPair
+        Of the machine's meshes.
+    found : tuple of bool
+        Whether the gap of each pair's flanks is that of the operating point.
+    """
+
+    machine: CoupledMachine
+    point: OperatingPoint
+    pairs: tuple[LoadedGearPair, ...]
+    found: tuple[bool, ...]
+
+    @cached_property
+    def contact(self) -> ContactState:
+        """Contacts about their mean forces."""
+        return mean_contact(self.machine.system)
+
+    @cached_property
+    def loaded(self) -> tuple[int, ...]:
+        """Numbers of the contacts that carry a mean force and turn."""
+        force = self.contact.force
+        contacts = self.machine.system.contacts
+        return tuple(n for n, one in enumerate(contacts) if force is not None and force[n] > 0.0 and one.rate != 0.0)
+
+    def lines(self, limit: float, count: int) -> tuple[SensorLine, ...]:
+        """Return the highest lines of each sensor, the highest of all first.
+
+        Parameters
+        ----------
+        limit : float
+            Highest frequency [rad/s].
+        count : int
+            Lines of each sensor.
+
+        Raises
+        ------
+        CouplingError
+            For less than one line.
+        """
+        if count < 1:
+            raise CouplingError(f"{count} lines of each sensor; expected 1 or more")
+        rows = self.machine.sensor_rows
+        motions = {w: linalg.solve(self._dynamic(w), self._load(w, causes)) for w, causes in self._harmonics(limit)}
+        found = []
+        for sensor, row in rows.items():
+            heard = [(-(w**2) * complex(row @ q), w) for w, q in motions.items()]
+            for value, w in sorted(heard, key=lambda one: -abs(one[0]))[:count]:
+                if value == 0.0:
+                    continue
+                weight = -(w**2) * value.conjugate() / abs(value)
+                adjoint = linalg.solve(self._dynamic(w).T, weight * row)
+                causes = next(causes for at, causes in self._harmonics(limit) if at == w)
+                found.append(SensorLine(sensor, w, causes, value, motions[w], adjoint))
+        return tuple(sorted(found, key=lambda one: -one.amplitude))
+
+    def by_static(self, line: SensorLine) -> FloatArray:
+        """Differentiate a line's amplitude by the coordinates of the static machine, shape (n_static,)."""
+        tangent = self.point.tangent
+        total = np.zeros(len(tangent.stiffness))
+        for load in self.point.bearings:
+            if load.mounted.needs_load and load.rolling is not None:
+                total += tangent.bearings[load.name] @ self._by_bearing_deflection(line, load)
+        for number in self.loaded:
+            mesh, _ = self.machine.flanks(number)
+            if number in self._gap_rates:
+                contact = self.point.pairs[mesh].pair.contact
+                by_gap = self._by_gap(line, number)
+                # The gap is the mean approach less that at the stations.
+                by_approach = float(by_gap.sum()) * contact.face_mean
+                by_approach[:-1] -= by_gap
+                total += tangent.pairs[mesh] @ by_approach
+        return total
+
+    def by_bearing_stiffness(self, line: SensorLine, bearing: str) -> float:
+        """Differentiate the amplitude by a factor 1 + p on a bearing's tangent stiffness, at the same equilibrium."""
+        law = self._connector(bearing)
+        moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
+        return -float((adjoint @ law.stiffness @ moved).real)
+
+    def by_bearing_position(self, line: SensorLine, bearing: str) -> float:
+        """Differentiate the amplitude by a bearing's position on its shaft, towards +z, at the same tangents [1/m]."""
+        law, axes = self._connector(bearing), list(self._connector(bearing).axes)
+        force = self._dynamic_force(law, line.frequency, line.motion)
+        against = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
+        slope = self._bearing_slope(self.point.bearing(bearing))[axes]
+        return -float(((slope @ line.adjoint) @ force + against @ (slope @ line.motion)).real)
+
+    def by_housing(self, line: SensorLine, rates: HousingRates) -> FloatArray:
+        """Differentiate the amplitude by parameters of the housing, at the same operating point, shape (p,)."""
+        own, w = self._housing, line.frequency
+        motion, adjoint = line.motion[own], line.adjoint[own]
+        dynamic = rates.stiffness - w**2 * rates.mass + 1j * w * rates.damping
+        total = -np.einsum("a,pab,b->p", adjoint, dynamic, motion, optimize=True).real
+        for number, (bearings, sensors) in enumerate(zip(rates.bearings, rates.sensors, strict=True)):
+            for name, rows in bearings.items():
+                law = self._connector(name)
+                held = rows[list(law.axes)]
+                force = self._dynamic_force(law, w, line.motion)
+                against = self._dynamic_force(law, w, line.adjoint, transposed=True)
+                total[number] += float(((held @ adjoint) @ force + against @ (held @ motion)).real)
+            if line.sensor in sensors:
+                total[number] += (line.weight * complex(sensors[line.sensor] @ motion)).real
+        return np.asarray(total)
+
+    @cached_property
+    def _matrices(self) -> tuple[FloatArray, FloatArray]:
+        return linear_matrices(self.machine.system, self.contact)
+
+    @cached_property
+    def _housing(self) -> slice:
+        components = self.machine.system.components
+        place = next(n for n, part in enumerate(components) if part is self.machine.housing)
+        first = sum(part.size for part in components[:place])
+        return slice(first, first + components[place].size)
+
+    def _dynamic(self, w: float) -> ComplexArray:
+        """Z at a frequency [rad/s], shape (n, n)."""
+        stiffness, damping = self._matrices
+        return np.asarray(stiffness + 1j * w * damping - w**2 * np.eye(len(stiffness)))
+
+    def _harmonics(self, limit: float) -> list[tuple[float, tuple[tuple[int, int], ...]]]:
+        """Frequencies of the mesh harmonics up to a limit [rad/s], ascending, and the meshes that drive each."""
+        found: list[tuple[float, tuple[tuple[int, int], ...]]] = []
+        every = [
+            (2.0 * np.pi * h * abs(self.machine.system.contacts[n].rate), (n, h))
+            for n in self.loaded
+            for h in range(1, _HARMONICS + 1)
+        ]
+        for w, cause in sorted(every):
+            if w > limit * (1.0 + _SAME):
+                break
+            if found and w <= found[-1][0] * (1.0 + _SAME):
+                found[-1] = (found[-1][0], (*found[-1][1], cause))
+            else:
+                found.append((w, (cause,)))
+        return found
+
+    def _load(self, w: float, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+        """Return f at a frequency, shape (n,)."""
+        system = self.machine.system
+        total = np.zeros(system.size, dtype=np.complex128)
+        for load in system.harmonic_loads:
+            if abs(load.frequency - w) <= _SAME * w:
+                total += load.amplitude
+        for number, harmonic in causes:
+            direction = system.contacts[number].direction
+            total += self.contact.stiffness[number] * self._errors[number][harmonic - 1] * direction
+        return total
+
+    @cached_property
+    def _errors(self) -> dict[int, ComplexArray]:
+        """Return e of every loaded contact by harmonic."""
+        contacts = self.machine.system.contacts
+        return {n: self._error(n, self._mesh(n, contacts[n].contact)) for n in self.loaded}
+
+    def _mesh(self, number: int, law: ToothContact) -> LoadedMesh:
+        """Mesh of a contact by some law under its mean force."""
+        assert self.contact.force is not None
+        force = float(self.contact.force[number])
+        if law.hunting_period > 1:
+            return hunting_period_mesh(law, force)
+        return loaded_transmission_error(law, force, mesh_period_phases(law, _POINTS))
+
+    def _error(self, number: int, mesh: LoadedMesh) -> ComplexArray:
+        """Harmonics of the transmission error of a contact at t = 0 [m], shape (harmonics,)."""
+        contact = self.machine.system.contacts[number]
+        found = transmission_error_phasors(mesh, _HARMONICS, contact.contact.hunting_period)
+        found = found.conj() if contact.rate < 0.0 else found
+        orders = np.arange(1, _HARMONICS + 1)
+        return np.asarray(found * np.exp(2j * np.pi * np.sign(contact.rate) * orders * contact.phase))
+
+    @cached_property
+    def _gap_rates(self) -> dict[int, _GapRates]:
+        """Derivatives of the loaded contacts whose flanks follow the operating point."""
+        found = {}
+        for number in self.loaded:
+            mesh, back = self.machine.flanks(number)
+            law = self.machine.meshes[mesh].contact
+            # Flanks that stay even, such as those of spur gears in the middle, have no slices and no first-order change.
+            if self.found[mesh] and law.faces is not None:
+                found[number] = self._gap_rates_of(number, law, back)
+        return found
+
+    def _gap_rates_of(self, number: int, law: ToothContact, back: bool) -> _GapRates:
+        assert law.faces is not None
+        assert self.contact.force is not None
+        system, faces = self.machine.system, law.faces
+        rate, force = abs(system.contacts[number].rate), float(self.contact.force[number])
+        step = _GAP_STEP * force / float(self.contact.stiffness[number])
+        over = lagrange(face_stations(faces.face_width), faces.z)
+        stiffness = np.zeros(FACE_STATIONS)
+        error = np.zeros((FACE_STATIONS, _HARMONICS), dtype=np.complex128)
+        shuttling = np.zeros((FACE_STATIONS, _HARMONICS, system.size), dtype=np.complex128)
+        for station in range(FACE_STATIONS):
+            for way in (1.0, -1.0):
+                moved = replace(law, faces=replace(faces, gap=faces.gap + way * step * over[:, station]))
+                moved = moved.back_flanks if back else moved
+                part = way / (2.0 * step)
+                mesh = self._mesh(number, moved)
+                stiffness[station] += part * mesh.mean_mesh_stiffness
+                error[station] += part * self._error(number, mesh)
+                for load in self.machine.shuttling(number, moved, force)[1]:
+                    order = round(load.frequency / (2.0 * np.pi * rate))
+                    if order <= _HARMONICS:
+                        shuttling[station, order - 1] += part * load.amplitude
+        return _GapRates(stiffness, error, shuttling)
+
+    def _by_gap(self, line: SensorLine, number: int) -> FloatArray:
+        """Differentiate the amplitude by a contact's gap at the stations of the face [1/s² ...], shape (j,)."""
+        rates, mesh = self._gap_rates[number], self.machine.flanks(number)[0]
+        contact, stiffness = self.machine.system.contacts[number], float(self.contact.stiffness[number])
+        along, deflection = line.adjoint @ contact.direction, line.motion @ contact.direction
+        damping = np.zeros(FACE_STATIONS)
+        if self.pairs[mesh].pair.damping is None:
+            # c = 2 ζ sqrt(k m)
+            damping = 0.5 * float(self.contact.damping[number]) / stiffness * rates.stiffness
+        total = -(rates.stiffness + 1j * line.frequency * damping) * along * deflection
+        for cause, harmonic in line.causes:
+            if cause == number:
+                driven = stiffness * rates.error[:, harmonic - 1]
+                driven += rates.stiffness * self._errors[number][harmonic - 1]
+                total = total + along * driven + rates.shuttling[:, harmonic - 1] @ line.adjoint
+        return np.asarray(total.real)
+
+    def _by_bearing_deflection(self, line: SensorLine, load: BearingLoad) -> FloatArray:
+        """Differentiate the amplitude by a rolling bearing's static deflection, through its tangent, shape (5,)."""
+        assert load.rolling is not None
+        law, rolling = self._connector(load.name), load.rolling
+        held = np.ix_(list(law.axes), list(law.axes))
+        moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
+        step = _BEARING_STEP * float(np.linalg.norm(load.deflection[:3]))
+        # Tilts by which the elements move as much.
+        steps = np.array([step] * 3 + [2.0 * step / rolling.bearing.rows[0].pitch_diameter] * 2)
+        found = np.zeros(5)
+        for axis, size in enumerate(steps):
+            change = np.zeros((5, 5))
+            for way in (1.0, -1.0):
+                place = load.deflection + way * size * np.eye(5)[axis]
+                change += way / (2.0 * size) * rolling_state(rolling.bearing, place).stiffness
+            found[axis] = -float((adjoint @ change[held] @ moved).real)
+        return found
+
+    def _connector(self, bearing: str) -> LinearConnector:
+        number = next(n for n, one in enumerate(self.machine.bearings) if one.bearing.name == bearing)
+        return self.machine.system.linear[number]
+
+    def _dynamic_force(
+        self, law: LinearConnector, w: float, field: ComplexArray, *, transposed: bool = False
+    ) -> ComplexArray:
+        """(K + iωC) Dᵀ q of a bearing, or with the transposed law."""
+        dynamic = law.stiffness + 1j * w * law.damping
+        return np.asarray((dynamic.T if transposed else dynamic) @ (law.directions.T @ field))
+
+    def _bearing_slope(self, load: BearingLoad) -> FloatArray:
+        """Slope along z of a bearing's deflection as it moves along its shaft, by the coordinates, shape (5, n)."""
+        mounted = load.mounted
+        rotor = next(one for one in self.machine.rotors if one.name == mounted.rotor)
+        length = self.point.shaft(mounted.rotor).part.shaft.length
+        at, step = mounted.bearing.at, _SHAFT_STEP * length
+        here = rotor.motions(at)
+        # Strains jump at a bearing; the mean of both sides counts. Beyond the end nothing strains.
+        sides = [
+            (rotor.motions(at + way * step) - here) / (way * step)
+            if 0.0 <= at + way * step <= length
+            else _rigid_slope(here)
+            for way in (1.0, -1.0)
+        ]
+        slope = self.machine.rows(rotor.name, 0.5 * (sides[0] + sides[1]))
+        if mounted.seat is not None:
+            assert self.machine.housing is not None
+            seat = self.machine.housing.seat_motions(mounted.seat, rotor.start + at)
+            slope = slope - self.machine.rows(self.machine.housing.name, _rigid_slope(seat))
+        return np.asarray(slope)
+
+
+def _rigid_slope(motions: FloatArray) -> FloatArray:
+    """Slope along z of the motions of a rigid body, by its rotations about x and y, shape (5, m)."""
+    nothing = np.zeros_like(motions[0])
+    return np.array([motions[4], -motions[3], nothing, nothing, nothing])

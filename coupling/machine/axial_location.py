@@ -1,0 +1,168 @@
+"""Axial location of shafts: which bearing takes thrust towards +z and -z, O and X arrangement, rows against each other.
+
+A single row with a contact angle carries thrust in one sense alone. Two such rows locate a shaft if they carry opposite
+senses: back to back (O) where the left one carries the shaft's force towards +z and the right one that towards -z, so
+that the contact lines run apart towards the axis; face to face (X) the other way round (ISO 5593). An axial offset of
+their rings at assembly presses them against each other, a rigid preload. A spring's force on the shaft presses only the
+row that carries it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+from coupling.machine.connectors import MountedBearing
+from rotors.rolling_bearings import BallRow, RollingBearing, Row, SphericalRollerRow
+
+_BOTH = frozenset((1, -1))
+
+
+@dataclass(frozen=True)
+class AxialSupport:
+    """A bearing as far as it holds its shaft along the axis.
+
+    Attributes
+    ----------
+    name : str
+    at : float
+        Station from the shaft's left end [m].
+    senses : frozenset of int
+        Of the shaft's axial force that it carries: 1 towards +z, -1 towards -z.
+    rolling : RollingBearing or None
+        By its elements.
+    """
+
+    name: str
+    at: float
+    senses: frozenset[int]
+    rolling: RollingBearing | None = None
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it carries thrust in one sense alone."""
+        return len(self.senses) == 1
+
+    @property
+    def arrangement(self) -> Literal["O", "X"] | None:
+        """Of two rows within the bearing, one for each sense; None of other bearings."""
+        rows = () if self.rolling is None else sorted(self.rolling.rows, key=lambda row: row.position)
+        if len(rows) != 2 or rows[0].position == rows[1].position or _spherical(rows[0]):
+            return None
+        return {(1, -1): "O", (-1, 1): "X"}.get((rows[0].direction, rows[1].direction))  # type: ignore[return-value]
+
+    @property
+    def spring(self) -> float:
+        """Force of the bearing's spring on the shaft along z [N]."""
+        return 0.0 if self.rolling is None else self.rolling.axial_preload
+
+
+def axial_support(mounted: MountedBearing, speed: float) -> AxialSupport:
+    """Axial support by a mounted bearing at its shaft's speed [rad/s]: by its elements, else by its stiffness k_zz."""
+    elements, bearing = mounted.elements, mounted.bearing
+    if elements is not None:
+        return AxialSupport(bearing.name, bearing.at, elements.thrust_senses, elements)
+    held = bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0
+    return AxialSupport(bearing.name, bearing.at, _BOTH if held else frozenset())
+
+
+@dataclass(frozen=True)
+class AxialLocation:
+    """Axial location of a shaft.
+
+    Attributes
+    ----------
+    shaft : str
+    bearings : sequence of AxialSupport
+        All of the shaft's; kept from left to right.
+    """
+
+    shaft: str
+    bearings: Sequence[AxialSupport]
+
+    def __post_init__(self) -> None:
+        """Keep the bearings from left to right."""
+        object.__setattr__(self, "bearings", tuple(sorted(self.bearings, key=lambda one: one.at)))
+
+    def carrying(self, sense: int) -> tuple[str, ...]:
+        """Names of the bearings that carry the shaft's thrust towards +z (1) or -z (-1), from left to right."""
+        return tuple(one.name for one in self.bearings if sense in one.senses)
+
+    @property
+    def is_located(self) -> bool:
+        """Whether thrust is carried in both senses."""
+        return bool(self.carrying(1) and self.carrying(-1))
+
+    @cached_property
+    def arrangement(self) -> Literal["O", "X"] | None:
+        """O (back to back) or X (face to face) of bearings that carry one sense each; None where some carry both."""
+        carried = [one for one in self.bearings if one.senses]
+        if not self.is_located or not all(one.is_single for one in carried):
+            return None
+        plus, minus = ([one.at for one in carried if sense in one.senses] for sense in (1, -1))
+        if max(plus) < min(minus):
+            return "O"
+        return "X" if max(minus) < min(plus) else None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on rows that all carry thrust one way, and on springs that do not press rows against each other."""
+        return (*self._one_way(), *self._springs())
+
+    def _one_way(self) -> tuple[str, ...]:
+        for sense in (1, -1):
+            names = self.carrying(sense)
+            if names and not self.carrying(-sense):
+                way, other = _along(sense), _along(-sense)
+                verb = {1: "carries", 2: "both carry"}.get(len(names), "all carry")
+                return (
+                    f"shaft {self.shaft!r} is located one way only: {_listed(names)} {verb} its thrust towards {way}, "
+                    f"and no bearing carries it towards {other}; turn one round (`carries`), or add a bearing that "
+                    f"carries thrust towards {other}",
+                )
+        return ()
+
+    def _springs(self) -> tuple[str, ...]:
+        """Springs of bearings that another bearing of the shaft opposes or shares."""
+        sprung = [one for one in self.bearings if one.spring != 0.0]
+        if len({one.spring > 0.0 for one in sprung}) == 2:
+            names = _listed([one.name for one in sprung])
+            forces = " and ".join(f"{abs(one.spring):.4g} N towards {_along(one.spring)}" for one in sprung)
+            left = abs(sum(one.spring for one in sprung))
+            effect = "cancel and press no element" if left == 0.0 else f"leave {left:.4g} N, which presses one way only"
+            return (
+                f"shaft {self.shaft!r}: the `preload` of {names} is a spring's force on the shaft each, and "
+                f"{forces} {effect}; {_RIGID}",
+            )
+        found = []
+        for one in sprung:
+            others = [other.name for other in self.bearings if other.senses and other is not one]
+            if others:
+                found.append(
+                    f"shaft {self.shaft!r}: the `preload` of {one.name!r} is a spring's force on the shaft, "
+                    f"{abs(one.spring):.4g} N towards {_along(one.spring)}, which moves it in {_listed(others)} as "
+                    f"well: it does not press them against each other; {_RIGID}"
+                )
+        return tuple(found)
+
+
+ARRANGEMENTS = {"O": "back to back", "X": "face to face"}
+"""Names of the arrangements (ISO 5593)."""
+
+_RIGID = (
+    "a rigid preload of rows against each other is `axial_offset`, how far an inner ring is moved along `carries` at "
+    "assembly: `load` with a torque of 0 finds the force that follows"
+)
+
+
+def _spherical(row: Row) -> bool:
+    return isinstance(row, SphericalRollerRow) or (isinstance(row, BallRow) and row.self_aligning)
+
+
+def _along(sense: float) -> str:
+    return "+z" if sense > 0.0 else "-z"
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = [repr(name) for name in names]
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

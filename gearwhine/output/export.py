@@ -1,0 +1,318 @@
+"""Export of a results folder: tables as CSV, histories and spectra as universal files, sensors' signals as sound.
+
+Everything is made from what commands left in the folder: the tables of their documents, and the labelled arrays of
+their NetCDF files. Nothing is solved.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import struct
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from fractions import Fraction
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.output.files import file_stems
+from gearwhine.output.sections import Column, Document, Section, Table
+from gearwhine.output.store import stored_results
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from housing.measured.universal_writing import UniversalFunction
+
+FloatArray = npt.NDArray[np.float64]
+Chapters = Callable[[Document], Iterable[Section]]
+Signals = Literal["sensors", "all"]
+
+AUDIO_RATE = 48_000
+"""Sampling rate of sound files [Hz]."""
+
+_DATA = "results.nc"
+_FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # of a full scale
+_RATIO_LIMIT = 10_000  # of the terms of a resampling ratio: the pitch is right to 1e-8
+_HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
+_ATTENUATION = 100.0  # dB, of what would fold back
+_KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response", "Hz": "spectrum"}
+
+
+def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document]:
+    """Write every table of the report as a CSV file: a row of headings with units, numbers with all their digits.
+
+    Parameters
+    ----------
+    folder : path
+        A results folder.
+    chapters : callable
+        Makes the chapters of a command's document.
+    place : path
+        Where the files go.
+
+    Returns
+    -------
+    list of dict
+        File, title and number of rows of each table.
+    """
+    found = [
+        (title, table)
+        for _, document in stored_results(folder)
+        for title, table in _tables(str(document.get("command", "results")), chapters(document))
+    ]
+    written: list[Document] = []
+    for stem, (title, table) in zip(file_stems([title for title, _ in found]), found, strict=True):
+        (place / f"{stem}.csv").write_text(_csv(table), encoding="utf-8", newline="")
+        written.append({"file": f"{stem}.csv", "title": title, "rows": len(table.rows)})
+    return written
+
+
+def _tables(title: str, sections: Iterable[Section]) -> Iterator[tuple[str, Table]]:
+    """Yield the tables of sections and of those inside them, each under the titles that lead to it."""
+    for section in sections:
+        here = " ".join(part for part in (title, section.title) if part)
+        for table in section.tables:
+            yield " ".join(part for part in (here, table.caption) if part), table
+        yield from _tables(here, section.inner)
+
+
+def _csv(table: Table) -> str:
+    columns, _ = table.filled()
+    file = io.StringIO()
+    writer = csv.writer(file)
+    writer.writerow([column.heading for column in columns])
+    for row in table.rows:
+        writer.writerow([_cell(column, row) for column in columns])
+    return file.getvalue()
+
+
+def _cell(column: Column, row: Document) -> Any:
+    value = column.value(row)
+    return repr(value) if isinstance(value, float) else column.text(row)
+
+
+def write_universal_files(
+    folder: Path, place: Path, sensors: Sequence[tuple[str, Sequence[float], int]], signals: Signals = "sensors"
+) -> list[Document]:
+    """Write histories, spectra and transmissibilities as universal files with datasets 58.
+
+    Parameters
+    ----------
+    folder : path
+        A results folder.
+    place : path
+        Where the files go.
+    sensors : sequence of (str, (x, y, z), int)
+        Name, position [m] and direction of each sensor: 1, 2, 3 for x, y, z with a sign, 0 for another.
+    signals : {"sensors", "all"}
+        Whether to leave out forces and motions of bearings, gears and meshes.
+
+    Returns
+    -------
+    list of dict
+        File and number of functions of each.
+    """
+    from housing.measured.universal_writing import write_functions
+
+    points = [(float(x), float(y), float(z)) for _, (x, y, z), _ in sensors]
+    places = {name: (number, direction) for number, (name, _, direction) in enumerate(sensors, start=1)}
+    written: list[Document] = []
+    for command, data in _datasets(folder):
+        count = 0
+
+        def counted(functions: Iterable[UniversalFunction]) -> Iterator[UniversalFunction]:
+            nonlocal count
+            for function in functions:
+                count += 1
+                yield function
+
+        path = place / f"{command}.uff"
+        write_functions(path, counted(_functions(data, places, signals)), points)
+        if count:
+            written.append({"file": path.name, "functions": count})
+        else:
+            path.unlink()
+    return written
+
+
+def _datasets(folder: Path) -> Iterator[tuple[str, xr.Dataset]]:
+    import xarray as xr
+
+    for own, document in stored_results(folder):
+        path = folder / own / _DATA
+        if path.is_file() and not path.is_symlink():
+            with xr.open_dataset(path, engine="h5netcdf") as data:
+                yield str(document.get("command", "results")), data
+
+
+def _functions(data: xr.Dataset, places: dict[str, tuple[int, int]], signals: Signals) -> Iterator[UniversalFunction]:
+    """Yield every real history and every complex or real spectrum along an axis in s or Hz."""
+    from housing.measured.universal_writing import UniversalFunction
+
+    for name, variable in data.data_vars.items():
+        axis = next((dimension for dimension in variable.dims if _axis_unit(data, dimension) in _KINDS), None)
+        others = [dimension for dimension in variable.dims if dimension != axis]
+        is_sensor = any("sensor" in str(dimension) for dimension in others)
+        if axis is None or str(name).endswith("_phase") or (signals == "sensors" and not is_sensor):
+            continue
+        if any(dimension not in data.coords or data[dimension].dtype.kind not in "UO" for dimension in others):
+            continue  # along numbers, such as those of modes
+        phase = data.get(f"{name}_phase")
+        abscissa = np.asarray(data[axis].values, dtype=np.float64)
+        for labels in product(*(data[dimension].values.tolist() for dimension in others)):
+            at = dict(zip(others, labels, strict=True))
+            values = np.asarray(variable.sel(at).values, dtype=np.float64)
+            if phase is not None:
+                values = values * np.exp(1j * np.asarray(phase.sel(at).values))
+            error = at.get("mesh_error")
+            sensor = next((label for dimension, label in at.items() if "sensor" in str(dimension)), labels[0])
+            unit = str(variable.attrs.get("units", ""))
+            long_name = str(variable.attrs.get("long_name", name))
+            yield UniversalFunction(
+                _KINDS[_axis_unit(data, axis)] if error is None else "frequency response function",
+                abscissa,
+                values,
+                _response_unit(unit) if error is not None else unit,
+                _quantity(str(name)),
+                (", ".join(map(str, labels)), long_name, *_remarks(variable, abscissa, _axis_unit(data, axis))),
+                (str(sensor), *places.get(str(sensor), (0, 0))),
+                *(() if error is None else (("mesh", 0, 0), "m", "transmission error")),
+            )
+
+
+def _axis_unit(data: xr.Dataset, dimension: Any) -> str:
+    return str(data[dimension].attrs.get("units", "")) if dimension in data.coords else ""
+
+
+def _response_unit(unit: str) -> str:
+    """Return the unit of a response to a metre of transmission error, for that by a metre."""
+    return {"m s-2 m-1": "m/s2", "N m-1": "N", "N m m-1": "N m"}.get(unit, unit)
+
+
+def _quantity(name: str) -> str:
+    """Return the name of a variable without what the axis says."""
+    for part in ("transmissibility_", "_spectrum"):
+        name = name.replace(part, "")
+    return name.replace("_", " ")
+
+
+def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str) -> tuple[str, ...]:
+    told = [f"window {variable.attrs['window']}"] if "window" in variable.attrs else []
+    if unit == "s":
+        told.append(f"sampling interval {float(abscissa[1] - abscissa[0])!r} s")
+    else:
+        told.append("amplitudes are peaks")
+    for key, words in (("trusted_below_hz", "complete below"), ("complete_below_hz", "complete below")):
+        if key in variable.attrs:
+            told.append(f"{words} {float(variable.attrs[key]):.0f} Hz")
+    return ("; ".join(told),)
+
+
+def write_sounds(folder: Path, place: Path, rate: int = AUDIO_RATE) -> list[Document]:
+    """Write the acceleration history of every sensor as a sound file in 32-bit floating point, to hear and to measure.
+
+    The history less its mean is resampled to an audio rate by a band-limited interpolation and divided by a full
+    scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …) m/s² above its peak. The full scale stands in the
+    file's name, in its comment (chunk LIST INFO ICMT) and in what is returned: acceleration is the sample by the full
+    scale.
+
+    Parameters
+    ----------
+    folder : path
+        A results folder.
+    place : path
+        Where the files go.
+    rate : int
+        [Hz].
+
+    Returns
+    -------
+    list of dict
+        File, sensor, full scale, peak and root mean square [m/s²], length [s] and sampling rate [Hz].
+    """
+    written: list[Document] = []
+    for command, data in _datasets(folder):
+        if "sensor_acceleration" not in data:
+            continue
+        times = np.asarray(data["time"].values, dtype=np.float64)
+        names = [str(name) for name in data["sensor"].values]
+        for stem, name in zip(file_stems(names, f"{command}-"), names, strict=True):
+            signal = np.asarray(data["sensor_acceleration"].sel(sensor=name).values, dtype=np.float64)
+            sound = resampled(signal - signal.mean(), (times[-1] - times[0]) / (len(times) - 1), rate)
+            scale = full_scale(float(np.abs(sound).max()))
+            path = place / f"{stem}-full-scale-{scale:g}-m-per-s2.wav"
+            comment = f"acceleration at {name}; full scale (sample 1.0) is {scale:g} m/s2; gearwhine {command}"
+            _write_wav(path, (sound / scale).astype("<f4"), rate, comment)
+            written.append(
+                {
+                    "file": path.name,
+                    "sensor": name,
+                    "full_scale_m_per_s2": scale,
+                    "peak_m_per_s2": float(np.abs(sound).max()),
+                    "rms_m_per_s2": float(np.sqrt(np.mean(sound**2))),
+                    "seconds": len(sound) / rate,
+                    "sampling_rate_hz": rate,
+                }
+            )
+    return written
+
+
+def full_scale(peak: float) -> float:
+    """Return the first of 1, 2, 5 by powers of ten that is not below a peak; 1 for silence."""
+    if peak <= 0.0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(peak))
+    return next(float(f"{first * power:.1g}") for first in _FIRST_DIGITS if first * power >= peak)
+
+
+def resampled(signal: FloatArray, interval: float, rate: int) -> FloatArray:
+    """Resample a signal by polyphase filtering, with a Kaiser window of 100 dB against folding.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+    interval : float
+        Between its samples [s].
+    rate : int
+        Of the result [Hz].
+
+    References
+    ----------
+    A. V. Oppenheim, R. W. Schafer, Discrete-Time Signal Processing, 3rd ed., Pearson, 2010, sections 4.6 and 7.5.
+    """
+    from scipy.signal import firwin, kaiser_beta, resample_poly
+
+    ratio = Fraction(rate * interval).limit_denominator(_RATIO_LIMIT)
+    up, down = ratio.numerator, ratio.denominator
+    if up == 0:
+        raise ValueError(f"{rate} Hz is below a ten-thousandth of the signal's own rate, {1.0 / interval:.6g} Hz")
+    widest = max(up, down)
+    # The stubs of resample_poly know windows by name only; it takes the taps of a filter, too.
+    taps: Any = firwin(2 * _HALF_LENGTH * widest + 1, 0.95 / widest, window=("kaiser", kaiser_beta(_ATTENUATION)))
+    return np.asarray(resample_poly(signal, up, down, window=taps))
+
+
+def _write_wav(path: Path, samples: npt.NDArray[np.float32], rate: int, comment: str) -> None:
+    """Write a mono sound file in floating point with a comment.
+
+    References
+    ----------
+    Multimedia Programming Interface and Data Specifications 1.0, IBM and Microsoft, 1991: RIFF WAVE, LIST INFO.
+    """
+    from scipy.io import wavfile
+
+    wavfile.write(path, rate, samples)
+    text = comment.encode("ascii", "replace") + b"\0"
+    text += b"\0" * (len(text) % 2)
+    info = b"INFO" + b"ICMT" + struct.pack("<I", len(text)) + text
+    with path.open("r+b") as file:
+        file.seek(0, 2)
+        file.write(b"LIST" + struct.pack("<I", len(info)) + info)
+        size = file.tell() - 8
+        file.seek(4)
+        file.write(struct.pack("<I", size))

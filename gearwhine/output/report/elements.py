@@ -1,0 +1,174 @@
+"""Elements of a report: sections, tables and findings as HTML, and the links between their places.
+
+Every text comes from outside and is escaped here.
+"""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+
+from gearwhine.output.report.pictures import Shown, figure
+from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, is_number
+
+_LONGEST = 60  # of an identifier [characters]
+_WRAPPED = 20  # characters of a cell from which on its column may wrap
+
+
+class Places:
+    """Places of a report by the names that sections, rows and pictures have for links.
+
+    A name belongs to one result, such as that of ``gearwhine run``; a link looks there first, then in all others.
+    """
+
+    def __init__(self) -> None:
+        self._identifiers: dict[tuple[str, str], str] = {}
+        self._taken: set[str] = set()
+
+    def add(self, result: str, name: str) -> None:
+        """Give a name of a result an identifier, once."""
+        if (result, name) in self._identifiers:
+            return
+        stem = re.sub(r"[^a-z0-9]+", "-", f"{result} {name}".lower()).strip("-")[:_LONGEST].strip("-") or "place"
+        identifier, number = stem, 1
+        while identifier in self._taken:
+            number += 1
+            identifier = f"{stem}-{number}"
+        self._taken.add(identifier)
+        self._identifiers[result, name] = identifier
+
+    def add_sections(self, result: str, sections: Iterable[Section], pictures: Mapping[int, Sequence[Shown]]) -> None:
+        """Add the sections of a result with the rows and pictures in them."""
+        for section in sections:
+            self.add(result, section.place)
+            for table in section.tables:
+                for row in table.rows if table.anchor is not None else ():
+                    assert table.anchor is not None
+                    self.add(result, table.anchor(row))
+            for shown in pictures.get(id(section), ()):
+                self.add(result, shown.place)
+            self.add_sections(result, section.inner, pictures)
+
+    def identifier(self, result: str, name: str) -> str:
+        """Return the identifier of a name that was added."""
+        return self._identifiers[result, name]
+
+    def find(self, result: str, names: Sequence[str]) -> str | None:
+        """Return the identifier of the first name that there is, in this result or any; pictures by their beginning."""
+        for name in names:
+            found = [key for key in self._identifiers if key[1] == name]
+            if name.startswith("picture "):
+                found = [key for key in self._identifiers if key[1].startswith(name)]
+            if found:
+                return self._identifiers[min(found, key=lambda key: key[0] != result)]
+        return None
+
+
+class Writer:
+    """Writes sections of one result as HTML, with links to the places of all.
+
+    Parameters
+    ----------
+    result : str
+        Name of the result that the sections belong to.
+    places : Places
+        Of the whole report.
+    pictures : mapping of int to sequence of Shown
+        By the identity of the section.
+    live : mapping of int to str
+        HTML that the interactive form puts at the end of a section, by its identity.
+    """
+
+    def __init__(
+        self,
+        result: str,
+        places: Places,
+        pictures: Mapping[int, Sequence[Shown]],
+        live: Mapping[int, str],
+    ) -> None:
+        self._result, self._places = result, places
+        self._pictures, self._live = pictures, live
+        self._placed: set[str] = set()
+
+    def chapter(self, section: Section, level: int = 3) -> str:
+        """Return a section that folds, with all that is in it."""
+        heading = f"<h{level}>{escape(section.title)}{self._note(section)}</h{level}>"
+        identifier = self._places.identifier(self._result, section.place)
+        inner = "".join(self.chapter(one, level + 1) if one.title else self.content(one) for one in section.inner)
+        return (
+            f'<details open class="level{level}" id="{identifier}"><summary>{heading}</summary>\n'
+            f"{self.content(section)}{inner}</details>\n"
+        )
+
+    def content(self, section: Section) -> str:
+        """Return the sentences, tables and pictures of a section."""
+        parts = []
+        for one in section.content:
+            if isinstance(one, Table):
+                parts.append(self._table(one))
+            elif isinstance(one, Finding):
+                parts.append(self._finding(one))
+            else:
+                parts.append(f"<p>{escape(one.strip())}</p>\n")
+        shown = self._pictures.get(id(section), ())
+        for small, row in ((False, "figures"), (True, "figures small")):
+            if some := [self._figure(one) for one in shown if one.small is small]:
+                parts.append(f'<div class="{row}">\n{"".join(some)}</div>\n')
+        parts.append(self._live.get(id(section), ""))
+        return "".join(parts)
+
+    def _figure(self, shown: Shown) -> str:
+        return figure(shown, self._places.identifier(self._result, shown.place))
+
+    def _note(self, section: Section) -> str:
+        note = section.note.strip()
+        return f' <span class="note">{escape(note)}</span>' if note else ""
+
+    def _finding(self, finding: Finding) -> str:
+        kind, mark = ("passed", "✓") if finding.passed else ("failed", "!")
+        more = ""
+        for name in finding.link:
+            if target := self._places.find(self._result, [name]):
+                more = f' <a href="#{target}">{escape(name.partition(" ")[2])}</a>'
+                break
+        told = f'<span class="mark">{mark}</span> <span>{escape(finding.text)}{more}</span>'
+        return f'<p class="finding {kind}">{told}</p>\n'
+
+    def _table(self, table: Table) -> str:
+        columns, texts = table.filled()
+        # A column is text where none of its values is a number.
+        words = [not any(is_number(row[place]) for row in texts) for place in range(len(columns))]
+        longest = [max(len(row[place]) for row in texts) for place in range(len(columns))]
+        classes = [
+            f' class="text{" long" if length > _WRAPPED else ""}"' if word else ""
+            for word, length in zip(words, longest, strict=True)
+        ]
+        head = "".join(
+            f'<th scope="col"{kind}>{escape(column.heading)}</th>'
+            for column, kind in zip(columns, classes, strict=True)
+        )
+        body = "".join(
+            f"<tr{self._row_identifier(table, row)}>{self._cells(columns, row, cells, classes)}</tr>\n"
+            for row, cells in zip(table.rows, texts, strict=True)
+        )
+        caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
+        return (
+            f'<div class="table"><table>{caption}<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>\n'
+        )
+
+    def _row_identifier(self, table: Table, row: Row) -> str:
+        if table.anchor is None:
+            return ""
+        identifier = self._places.identifier(self._result, table.anchor(row))
+        if identifier in self._placed:
+            return ""
+        self._placed.add(identifier)
+        return f' id="{identifier}"'
+
+    def _cells(self, columns: Sequence[Column], row: Row, texts: Sequence[str], classes: Sequence[str]) -> str:
+        parts = []
+        for column, text, kind in zip(columns, texts, classes, strict=True):
+            # No line ends before a per cent sign.
+            told = escape(text).replace(" %", "\N{NO-BREAK SPACE}%") if text != NOTHING else "–"
+            target = self._places.find(self._result, column.link(row)) if column.link and text != NOTHING else None
+            parts.append(f"<td{kind}>" + (f'<a href="#{target}">{told}</a>' if target else told) + "</td>")
+        return "".join(parts)

@@ -1,0 +1,78 @@
+"""Freshness of results: when they were made, and how their case and input files differ from those of now."""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from gearwhine.output.files import file_contents
+
+_DIFFERENCES = 6  # keys of the case that are named
+_REMARKS = "provenance."  # says where a value is from, and changes none
+
+
+def moment(text: object) -> str:
+    """Return an ISO time in words; a text that is none as it stands."""
+    try:
+        return datetime.fromisoformat(str(text)).strftime("on %Y-%m-%d at %H:%M:%S %Z").strip()
+    except ValueError:
+        return f"at {text}"
+
+
+def stored_case(place: Path) -> Mapping[str, Any] | None:
+    """Return the resolved case beside a result; None where it cannot be read."""
+    try:
+        return tomllib.loads((place / "case.toml").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+
+
+def mismatches(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> list[str]:
+    """Return how the case and the input files of a result differ from those of now; empty where they do not."""
+    return [*_differences(stored_case(place), present), *_changed_files(document.get("input_files"))]
+
+
+def _differences(made: Mapping[str, Any] | None, present: Mapping[str, Any] | None) -> list[str]:
+    """Keys in which the case of a result differs from the present one, in one sentence."""
+    if made is None or present is None:
+        return []
+    before, now = (
+        {key: value for key, value in _entries(one) if not key.startswith(_REMARKS)} for one in (made, present)
+    )
+    keys = [key for key in dict.fromkeys([*before, *now]) if before.get(key) != now.get(key)]
+    if not keys:
+        return []
+    listed = ", ".join(
+        f"{key} was {before.get(key, 'absent')}, is {now.get(key, 'absent')}" for key in keys[:_DIFFERENCES]
+    )
+    more = len(keys) - _DIFFERENCES
+    return [listed + (f", and {more} more keys" if more > 0 else "")]
+
+
+def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+    """Each number or text of a case with its path of keys; entries of lists by their names."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _entries(inner, f"{key}.{name}" if key else name)
+    elif isinstance(value, list) and value and all(isinstance(one, Mapping) for one in value):
+        for place, one in enumerate(value):
+            yield from _entries(one, f"{key}.{one.get('name', place)}")
+    else:
+        yield key, value
+
+
+def _changed_files(files: object) -> list[str]:
+    """Input files whose content is another now, or that are gone."""
+    if not isinstance(files, Mapping):
+        return []
+    found = []
+    for name, content in files.items():
+        try:
+            changed = file_contents([Path(name)])[str(Path(name))] != content
+        except OSError:
+            found.append(f"{name} cannot be read")
+        else:
+            if changed:
+                found.append(f"{name} has changed")
+    return found

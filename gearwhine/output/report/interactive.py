@@ -1,0 +1,214 @@
+"""Interactive parts of a report: shapes that turn and move, curves to zoom and hover, tables to sort and copy.
+
+All that runs is part of the page: the libraries of :mod:`gearwhine.output.viewers` and ``interactive.js``. The page's
+policy allows these scripts alone, by their digests, and no connection to anywhere.
+"""
+
+import base64
+import gzip
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.output.sections import Curves, Section
+
+_RESULTS = "results.nc"
+_POINTS = 4000  # of a curve; of more, the largest of each stretch is shown
+_CELLS = 240, 600  # of colours over two axes
+_DIGITS = 4
+_LIMIT = "trusted_below_hz"  # attribute: values along the abscissa end there
+
+
+@dataclass(frozen=True)
+class MovingShape:
+    """Shape of the housing as an animated 3D model.
+
+    Attributes
+    ----------
+    name : str
+        Of the picture of the same shape, without ending.
+    title, note : str
+    model : bytes
+        GLB.
+    """
+
+    name: str
+    title: str
+    note: str
+    model: bytes
+
+    @property
+    def place(self) -> str:
+        """Name of its place in the report: that of its picture."""
+        return f"picture {self.name}"
+
+
+@dataclass
+class Scripts:
+    """Scripts of a page and data for them, as they are collected."""
+
+    shapes: Sequence[MovingShape] = ()
+    _drawings: list[dict[str, Any]] = field(default_factory=list)
+
+    def curves(self, place: Path, section: Section) -> str:
+        """Return frames for the curves that a section declares and a results file holds; keep their data."""
+        if not section.curves or not (place / _RESULTS).is_file():
+            return ""
+        import xarray as xr
+
+        try:
+            with xr.open_dataset(place / _RESULTS, engine="h5netcdf") as dataset:
+                drawings = [one for declared in section.curves for one in _drawings(dataset, declared)]
+        except (OSError, ValueError):
+            return ""
+        frames = []
+        for drawing in drawings:
+            caption = escape(drawing["caption"])
+            frames.append(
+                f'<figure class="live"><div class="plot" data-plot="{len(self._drawings)}" role="img" '
+                f'aria-label="{caption}"></div>'
+                f"<figcaption>{caption} Drag to zoom, double-click to return.</figcaption></figure>\n"
+            )
+            self._drawings.append(drawing)
+        return "".join(frames)
+
+    def viewer(self, identifiers: Sequence[str]) -> str:
+        """Return the viewer of the shapes, each listed under its identifier."""
+        if not self.shapes:
+            return ""
+        entries = "".join(
+            f'<li id="{identifier}"><button type="button" data-shape="{number}" '
+            f'data-picture="{escape(shape.name)}">{escape(" ".join(shape.title.split()))}</button></li>\n'
+            for number, (identifier, shape) in enumerate(zip(identifiers, self.shapes, strict=True))
+        )
+        return (
+            f'<div class="viewer"><div class="stage"><model-viewer camera-controls autoplay interaction-prompt="none" '
+            f'shadow-intensity="0" camera-orbit="35deg 70deg auto" field-of-view="28deg" environment-image="neutral" '
+            f'alt="Moving shape of the housing"></model-viewer>'
+            f'<p class="told" aria-live="polite"></p><p><button type="button" class="pause">Pause</button> '
+            f'<span class="note">Drag to turn, scroll to zoom. Yellow moves most; the motion is enlarged.</span></p>'
+            f'</div>\n<ol class="shapes">{entries}</ol></div>\n'
+        )
+
+    def policy(self) -> str:
+        """Return the content security policy of a page with these scripts."""
+        digests = " ".join(
+            f"'sha256-{base64.b64encode(hashlib.sha256(text.encode('utf-8')).digest()).decode('ascii')}'"
+            for text in self._texts()
+        )
+        return (
+            # The viewer of shapes has a decoder in WebAssembly.
+            f"default-src 'none'; script-src {digests} 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
+            "img-src data: blob:; connect-src blob: data:; base-uri 'none'; form-action 'none'"
+        )
+
+    def written(self) -> str:
+        """Return the scripts and their data as HTML, for the end of the page."""
+        parts = [
+            f'<script type="application/octet-stream" class="model" data-title="{escape(shape.title)}" '
+            f'data-note="{escape(shape.note)}">{_packed(shape.model)}</script>\n'
+            for shape in self.shapes
+        ]
+        # A slash that ends an element would end the data, too.
+        data = json.dumps(self._drawings, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+        parts.append(f'<script type="application/json" id="drawings">{data}</script>\n')
+        parts += [f"<script>{text}</script>\n" for text in self._texts()]
+        return "".join(parts)
+
+    def _texts(self) -> list[str]:
+        viewers = files("gearwhine.output.viewers")
+        names = ["model-viewer.min.js"] if self.shapes else []
+        names += ["plotly-cartesian.min.js"] if self._drawings else []
+        own = (files(__package__) / "interactive.js").read_text(encoding="utf-8")
+        return [*((viewers / name).read_text(encoding="utf-8") for name in names), own]
+
+
+def _packed(model: bytes) -> str:
+    return base64.b64encode(gzip.compress(model, 9, mtime=0)).decode("ascii")
+
+
+def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
+    """Return the drawings of an array: one of all its curves, or one of colours for each of its signals."""
+    if declared.variable not in dataset or not set(declared.along) <= set(dataset[declared.variable].dims):
+        return []
+    array = dataset[declared.variable].load()
+    if (limit := array.attrs.get(_LIMIT)) is not None:
+        array = array.isel({declared.along[0]: dataset[declared.along[0]].values <= limit})
+    others = [str(name) for name in array.dims if name not in declared.along]
+    stacked = array.stack(signal=others).transpose("signal", *declared.along[::-1])
+    told = [place for place, name in enumerate(others) if array.sizes[name] > 1]
+    labels = [label if isinstance(label, tuple) else (label,) for label in stacked["signal"].values]
+    names = [", ".join(str(label[place]) for place in told or range(len(label))) for label in labels]
+    values = np.asarray(stacked.values, dtype=np.float64)
+    live = np.nanmax(np.abs(values), axis=tuple(range(1, values.ndim)), initial=0.0) > 0.0
+    names, values = [name for name, moves in zip(names, live, strict=True) if moves], values[live]
+    if not names:
+        return []
+    axes = [np.asarray(dataset[name].values, dtype=np.float64)[: array.sizes[name]] for name in declared.along]
+    common = {
+        "caption": declared.caption,
+        "logarithmic": declared.logarithmic,
+        "value": _named(array, declared.caption),
+        "axes": [_named(dataset[name], name.replace("_", " ")) for name in declared.along],
+    }
+    if len(declared.along) == 1:
+        x, curves = _coarse_curves(axes[0], values)
+        lines = [{"name": name, "y": _listed(curve)} for name, curve in zip(names, curves, strict=True)]
+        return [common | {"x": _listed(x), "curves": lines}]
+    found = []
+    for name, table in zip(names, values, strict=True):
+        x, y, z = _coarse_table(axes[0], axes[1], table)
+        colours = {"x": _listed(x), "y": _listed(y), "z": [_listed(row) for row in z]}
+        found.append(common | colours | {"caption": f"{declared.caption.rstrip('.')}: {name}."})
+    return found
+
+
+def _named(array: Any, otherwise: str) -> str:
+    unit = array.attrs.get("units", "")
+    name = str(array.attrs.get("long_name", otherwise)).rstrip(".")
+    return f"{name} [{unit}]" if unit and unit != "1" else name
+
+
+def _listed(values: npt.NDArray[np.float64]) -> list[float | None]:
+    """Return numbers to a few digits; None where there is none."""
+    return [float(f"{value:.{_DIGITS + 2}g}") if np.isfinite(value) else None for value in values]
+
+
+def _coarse_curves(
+    x: npt.NDArray[np.float64], curves: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return at most so many points of each curve: of each stretch the largest, at one abscissa."""
+    step = -(-len(x) // _POINTS)
+    if step <= 1:
+        return x, curves
+    starts = np.arange(0, len(x), step)
+    return x[starts], np.fmax.reduceat(curves, starts, axis=1)
+
+
+def _coarse_table(
+    x: npt.NDArray[np.float64], y: npt.NDArray[np.float64], z: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return at most so many columns and rows: of each cell the largest value."""
+    rows, columns = (
+        np.arange(0, len(axis), max(-(-len(axis) // most), 1)) for axis, most in zip((y, x), _CELLS, strict=True)
+    )
+    return x[columns], y[rows], np.fmax.reduceat(np.fmax.reduceat(z, rows, axis=0), columns, axis=1)
+
+
+def live_parts(scripts: Scripts | None, place: Path, sections: Sequence[Section]) -> Mapping[int, str]:
+    """Return the curves of sections and of those in them as HTML, by the identity of the section."""
+    if scripts is None:
+        return {}
+    found: dict[int, str] = {}
+    for section in sections:
+        found[id(section)] = scripts.curves(place, section)
+        found |= live_parts(scripts, place, section.inner)
+    return found

@@ -1,0 +1,114 @@
+"""Pictures of a report: PNG files of a results folder, packed and embedded in the page.
+
+Figures of few colours become PNG with a palette; shaded surfaces, on which a palette would show steps, become WebP.
+"""
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from io import BytesIO
+from pathlib import Path
+
+from PIL import Image
+
+from gearwhine.output.sections import Picture, Section
+
+_LARGEST = 8 << 20  # bytes: a larger file is no picture of ours
+_LIGHT = 512  # bytes: not worth packing
+_TALL = 1.2  # height over width of a picture that fills a printed page
+_COLOURS, _QUALITY = 256, 85  # of a palette, and of WebP
+_SMALL, _WIDE = 720, 1400  # pixels across, of a small picture and of any
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A picture file with its caption, and whether it is small."""
+
+    path: Path
+    caption: str
+    small: bool = False
+
+    @property
+    def place(self) -> str:
+        """Name of its place in the report."""
+        return f"picture {self.path.stem}"
+
+
+def pictures_in(place: Path) -> list[Path]:
+    """Return the picture files of a folder by name; no links, and none that is too large to be a figure."""
+    found = sorted(place.glob("*.png"))
+    return [path for path in found if path.is_file() and not path.is_symlink() and path.stat().st_size <= _LARGEST]
+
+
+def distribute(sections: Sequence[Section], files: Sequence[Path]) -> tuple[dict[int, list[Shown]], list[Path]]:
+    """Give each file to the section that declares it; inner sections choose before the section around them.
+
+    Returns
+    -------
+    dict of int to list of Shown
+        Pictures by the identity of the section, in the order of declaration.
+    list of Path
+        Files that no section declares.
+    """
+    given: dict[int, list[Shown]] = {}
+    left = list(files)
+
+    def give(section: Section) -> None:
+        for inner in section.inner:
+            give(inner)
+        for declared in section.pictures:
+            mine = [path for path in left if path.stem.startswith(declared.begins)]
+            for path in mine:
+                left.remove(path)
+            if not _repeated(declared, files):
+                given.setdefault(id(section), []).extend(Shown(path, declared.caption, declared.small) for path in mine)
+
+    for section in sections:
+        give(section)
+    return given, left
+
+
+def _repeated(declared: Picture, files: Sequence[Path]) -> bool:
+    """Whether a sheet shows only what other pictures show by themselves."""
+    return bool(declared.sheet_of) and any(path.stem.startswith(declared.sheet_of) for path in files)
+
+
+def figure(shown: Shown, identifier: str) -> str:
+    """Return a picture with its caption as HTML."""
+    caption = escape(shown.caption or f"File {shown.path.name}.")
+    packed = _packed(shown.path, _SMALL if shown.small else _WIDE)
+    if packed is None:
+        return f'<figure id="{identifier}"><figcaption>{caption} The file cannot be read.</figcaption></figure>\n'
+    name = escape(shown.path.stem)
+    kind, data, (width, height) = packed
+    encoded = base64.b64encode(data).decode("ascii")
+    image = f'<img alt="{caption}" width="{width}" height="{height}" src="data:{kind};base64,{encoded}">'
+    tall = ' class="tall"' if height > _TALL * width else ""
+    return f'<figure id="{identifier}" data-picture="{name}"{tall}>{image}<figcaption>{caption}</figcaption></figure>\n'
+
+
+def _packed(path: Path, widest: int) -> tuple[str, bytes, tuple[int, int]] | None:
+    """Return media type, content and size of a picture in the form that takes fewest bytes; None if it is none."""
+    content = path.read_bytes()
+    try:
+        with Image.open(BytesIO(content), formats=["PNG"]) as image:
+            size = image.size
+            flat = Image.new("RGB", size, "white")
+            flat.paste(image, mask=image.getchannel("A") if image.mode == "RGBA" else None)
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None
+    if len(content) <= _LIGHT:
+        return "image/png", content, size
+    if size[0] > widest:
+        flat = flat.resize((widest, max(round(size[1] * widest / size[0]), 1)), Image.Resampling.LANCZOS)
+    buffer, shaded = BytesIO(), BytesIO()
+    # Without dithering, which spoils the compression of flat areas.
+    flat.quantize(_COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(buffer, "PNG", optimize=True)
+    flat.save(shaded, "WEBP", quality=_QUALITY)
+    forms = [
+        ("image/png", content, size),
+        ("image/png", buffer.getvalue(), flat.size),
+        ("image/webp", shaded.getvalue(), flat.size),
+    ]
+    return min(forms, key=lambda form: len(form[1]))

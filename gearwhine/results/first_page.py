@@ -1,0 +1,315 @@
+"""First page of the report: the machine, whether its results are sound, the highest lines, and measured modes."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from gearwhine.case import Case, applied_torques
+from gearwhine.output.quantity import RPM
+from gearwhine.output.sections import Column, Document, Finding, Picture, Section, Table, counted, percent, table_of
+from gearwhine.results.comparison import LINKED_PAIR
+from gearwhine.results.motion import leading_lines, path_place, shape_column
+from gearwhine.results.run import SPECTRUM
+from gearwhine.solve.case_summary import checked_pairs, checked_rotors
+
+if TYPE_CHECKING:
+    from gearwhine.solve.case_summary import CheckedPair, CheckedRotor
+
+_MM = 1e3
+_LINES = 3  # of each sensor
+_MOST_ERROR = 1e-2  # of the energy balance that passes
+_SURE = 0.03  # error of a line by the modal basis that passes
+_BALANCED = 1e-6  # part of the largest load that may be left of the equilibrium
+_PERIODIC = 1e-3  # part by which a periodic motion may miss itself, or change with finer elements
+
+_CHAPTERS = {
+    "Housing modes": ("geometry", "size", "load", "modes file"),
+    "Gears": ("thin tip", "undercut", "backlash", "runout", "overload"),
+    "Rotors": ("rotating damping", "ross"),
+    "Coupled system": ("unstable mode",),
+    "Motion": ("bearing load", "run signature"),
+    "Steady state": ("superposition",),
+    "Updated numbers": ("shapes",),
+    "Operating point": (
+        "sensitivity",
+        "static rating",
+        "bearing tilt",
+        "bearing life",
+        "bearing stiffness",
+        "uneven face",
+        "part of the face",
+        "misalignment",
+        "free motion",
+        "pictures",
+    ),
+}
+"""Chapters that the warnings of each name belong to."""
+
+_PICTURES = (
+    SPECTRUM,
+    Picture("steady-motion", "One period of the motion: mesh force, and its harmonics."),
+    Picture("sweep-rms", "Level of each sensor over the sweep: peaks are resonances of the machine."),
+    Picture("load-misalignment", "Misalignment of the flanks by its causes, which may cancel; black: their sum."),
+    Picture("modes", "Modes side by side, each to a scale of its own; grey lines: at rest."),
+    Picture("transmissibility", "Response to 1 µm of transmission error at any frequency."),
+    Picture("comparison", "Frequencies of the model over measured ones, and their errors."),
+)
+"""The one picture that says most: the first of these that there is."""
+
+
+def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence[str]) -> tuple[Section, ...]:
+    """Return the sections of the first page.
+
+    Parameters
+    ----------
+    case : Case or None
+        None leaves the machine out.
+    documents : sequence of document
+        Of all commands in the folder, the newest first.
+    stale : sequence of str
+        Sentences on results that do not fit the case any more.
+    """
+    sections = (
+        _machine(case, documents),
+        Section("Is it sound?", tuple(_findings(documents, stale))),
+        Section("Highest lines", _lines(documents)),
+        Section("", pictures=_PICTURES),
+        Section("Measured and modelled", _compared(documents)),
+    )
+    return tuple(section for section in sections if section.content or section.pictures)
+
+
+def _machine(case: Case | None, documents: Sequence[Document]) -> Section:
+    if case is None:
+        return Section("Machine")
+    try:
+        rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
+    except (ValueError, RuntimeError) as error:
+        return Section("Machine", (Finding(f"The machine of the case cannot be built: {error}", passed=False),))
+    content: list[str | Finding | Table] = [_paragraph(case, rotors, pairs, documents)]
+    if case.operation is not None and case.rotor:
+        content.append(_operation(case))
+    content += table_of(_SHAFTS, [_shaft(case, rotor) for rotor in rotors], "Shafts")
+    content += table_of(_PAIRS, [_pair(pair) for pair in pairs], "Gear pairs")
+    return Section("Machine", tuple(content))
+
+
+def _paragraph(
+    case: Case, rotors: Sequence["CheckedRotor"], pairs: Sequence["CheckedPair"], documents: Sequence[Document]
+) -> str:
+    """Return what the machine consists of, in a sentence or two."""
+    parts = [
+        counted(number, what)
+        for number, what in ((len(rotors), "shaft"), (len(case.bearing), "bearing"), (len(pairs), "gear pair"))
+        if number
+    ]
+    machine = ", ".join(parts[:-1]) + (" and " if len(parts) > 1 else "") + parts[-1] if parts else ""
+    if case.housing is None:
+        return f"{machine}; no housing.".capitalize()
+    solved = next((found for document in documents if (found := _modes_of(document))), {})
+    kind = "box" if case.housing.box is not None else "housing from CAD" if case.housing.cad else "meshed housing"
+    size = case.housing.box.size if case.housing.box is not None else solved.get("size_m")
+    of_size = "" if size is None else f" of {' × '.join(f'{_MM * side:.4g}' for side in size)} mm"
+    mass = f", {solved['mass_kg']:.4g} kg" if solved.get("mass_kg") else ""
+    held = len(case.housing.support) + len(case.housing.mount)
+    on = f" on {counted(held, 'support')}" if held else ", free"
+    sensors = f"; {counted(len(case.housing.sensor), 'sensor')}" if case.housing.sensor else ""
+    inside = f"{machine} in a " if machine else "A "
+    return f"{inside}{kind}{of_size}{mass}, of {case.housing.material}{on}{sensors}."
+
+
+def _modes_of(document: Document) -> Document:
+    """Return the housing's part of a document, which commands on the housing alone are themselves."""
+    found = document.get("housing", document if "certificate" in document and "mesh" in document else {})
+    return found if isinstance(found, dict) else {}
+
+
+def _operation(case: Case) -> str:
+    assert case.operation is not None
+    torques = applied_torques(case)
+    speed = f"{case.operation.speed * RPM:.5g} rpm of the first driver"
+    if not torques or not case.operation.torque:
+        return f"Operation: {speed}."
+    power = case.operation.speed * abs(case.operation.torque)
+    given = ", ".join(f"{torque.torque:+.4g} N·m on {torque.shaft}" for torque in torques)
+    return f"Operation: {speed}, {given}; {power / 1e3:.4g} kW."
+
+
+_SHAFTS = (
+    Column("shaft", "name"),
+    Column("speed [rpm]", "speed_rpm", "z.5g"),
+    Column("length [mm]", "length_mm", ".4g"),
+    Column("mass [kg]", "mass_kg", ".4g"),
+    Column("bearings", "bearings"),
+)
+_PAIRS = (
+    Column("driver → driven", "name"),
+    Column("teeth", "teeth"),
+    Column("ratio", "ratio", ".4f"),
+    Column("contact ratio", "contact_ratio", ".3f"),
+    Column("mesh frequency [Hz]", "mesh_frequency_hz", ".2f"),
+    Column("torque of the driver [N·m]", "torque_n_m", ".4g"),
+    Column("force of the flanks [N]", "force_n", ".0f"),
+)
+
+
+def _shaft(case: Case, rotor: "CheckedRotor") -> Document:
+    return {
+        "name": rotor.given.name,
+        "speed_rpm": None if rotor.speed is None else rotor.speed * RPM,
+        "length_mm": _MM * rotor.built.length,
+        "mass_kg": float(rotor.built.mass),
+        "bearings": ", ".join(bearing.name for bearing in case.bearing if bearing.rotor == rotor.given.name),
+    }
+
+
+def _pair(pair: "CheckedPair") -> Document:
+    geometry = pair.geometry
+    return {
+        "name": f"{pair.given.driver} → {pair.given.driven}",
+        "teeth": f"{geometry.driver.teeth} : {geometry.driven.teeth}",
+        "ratio": float(geometry.ratio),
+        "contact_ratio": float(geometry.total_contact_ratio),
+        "mesh_frequency_hz": pair.mesh_frequency,
+        "torque_n_m": pair.torque,
+        "force_n": pair.mean_force,
+    }
+
+
+def _findings(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[Finding]:
+    """Yield the proofs of all results, each said once, then what does not fit, then the warnings."""
+    told: set[str] = set()
+    for document in documents:
+        for finding in _proofs(document):
+            if finding.text not in told:
+                told.add(finding.text)
+                yield finding
+    for sentence in stale:
+        yield Finding(sentence, passed=False)
+    for document in documents:
+        for warning in document.get("warnings", ()):
+            if (text := str(warning["message"])) not in told:
+                told.add(text)
+                yield Finding(_sentence(text), passed=False, link=(*_chapter(warning["name"]), "section Warnings"))
+
+
+def _chapter(name: object) -> tuple[str, ...]:
+    return tuple(f"section {chapter}" for chapter, names in _CHAPTERS.items() if name in names)
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "!", "?")) else ".")
+
+
+def _proofs(document: Document) -> Iterator[Finding]:
+    if certificate := _modes_of(document).get("certificate"):
+        yield Finding(
+            f"Housing: {certificate['found']} modes found below {certificate['limit_hz']:.5g} Hz, "
+            f"{certificate['expected']} counted by the matrix's inertia; residuals up to "
+            f"{certificate['max_residual']:.0e}.",
+            passed=bool(certificate["complete"]),
+            link=("section Housing modes",),
+        )
+    rotors = [rotor for rotor in document.get("rotors", ()) if rotor.get("certificate")]
+    if rotors:
+        missing = [rotor["name"] for rotor in rotors if not rotor["certificate"]["complete"]]
+        said = f"modes are missing of {', '.join(missing)}" if missing else "all bending modes below a limit are found"
+        yield Finding(f"Shafts at rest: {said}.", passed=not missing, link=("section Rotors",))
+    system = document.get("system", document if "stability" in document else {})
+    if certificate := system.get("certificate"):
+        yield Finding(
+            f"Coupled system: {certificate['found']} of {certificate['expected']} eigenvalues found, residuals up to "
+            f"{certificate['max_residual']:.0e}.",
+            passed=bool(certificate["complete"]),
+            link=("section Coupled system",),
+        )
+    if stability := system.get("stability"):
+        growing = len(stability["growing"])
+        said = "no mode grows" if stability["stable"] else f"{counted(growing, 'mode')} grow{'s' * (growing == 1)}"
+        yield Finding(f"Stability: {said}.", passed=bool(stability["stable"]), link=("section Coupled system",))
+    load = document.get("load", document if "gear_pairs" in document and "seats" in document else {})
+    if (residual := load.get("residual")) is not None:
+        yield Finding(
+            f"Operating point: forces balance to {residual:.0e} of the largest load.",
+            passed=residual < _BALANCED,
+            link=("section Operating point",),
+        )
+    if (error := document.get("energy_error")) is not None:
+        yield Finding(
+            f"Motion: the energy balance closes to {error:.0e} over {document['steps']} steps.",
+            passed=error < _MOST_ERROR,
+            link=("section Motion",),
+        )
+    for motion in document.get("motions", ()):
+        if (error := motion.get("error")) is not None and motion.get("residual") is not None:
+            yield Finding(
+                f"Steady state: the motion closes to {motion['residual']:.0e} and changes by {error:.0e} with elements "
+                f"half as long; {'stable' if motion['stable'] else 'unstable'}.",
+                passed=max(error, motion["residual"]) < _PERIODIC and bool(motion["stable"]),
+                link=("section Steady state",),
+            )
+    yield from _basis(document)
+
+
+def _basis(document: Document) -> Iterator[Finding]:
+    """Yield how far the modal basis may change the lines that are listed here."""
+    lines = leading_lines(document.get("sensors", ()), "peaks", _LINES)
+    errors = [line["uncertainty"] for line in lines if "uncertainty" in line]
+    if errors and math.isfinite(worst := max(errors)):
+        yield Finding(
+            f"Modal basis: the highest lines are known to {percent(worst)} or better.",
+            passed=worst < _SURE,
+            link=("section Motion",),
+        )
+
+
+def _lines(documents: Sequence[Document]) -> tuple[Table, ...]:
+    """Return the highest lines of each sensor of the newest motion, with their cause."""
+    for document in documents:
+        for sensors, key in _of_motion(document):
+            if rows := leading_lines(sensors, key, _LINES):
+                return table_of(_CAUSES, rows)
+    return ()
+
+
+def _of_motion(document: Document) -> Iterator[tuple[Iterable[Document], str]]:
+    yield document.get("sensors", ()), "peaks"
+    for motion in document.get("motions", ()):
+        yield motion["sensors"], "lines"
+
+
+def _paths_of(row: Document) -> tuple[str, ...]:
+    return path_place(row["sensor"], row["frequency_hz"]), "section Motion", "section Steady state"
+
+
+def _through(row: Document) -> str:
+    """Return the bearing with the largest part of a line, and whether others cancel some of it."""
+    bearings = row.get("contributions", {}).get("bearings", ())
+    if not bearings:
+        return ""
+    cancelled = ", cancelled in part" if bearings[0]["share"] > 1.0 else ""
+    opposed = ", against the others" if bearings[0]["share"] < 0.0 else ""
+    return f"{bearings[0]['name']}{cancelled}{opposed}"
+
+
+_CAUSES = (
+    Column("sensor", "sensor"),
+    Column("frequency [Hz]", "frequency_hz", ".1f", link=_paths_of),
+    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
+    Column("what it is", "name"),
+    Column("mostly through bearing", _through),
+    shape_column("mostly by"),
+)
+
+
+def _compared(documents: Sequence[Document]) -> tuple[str | Table, ...]:
+    """Return the pairs of measured modes and the model's, and their errors, of the newest comparison."""
+    for document in documents:
+        compared = document.get("compare", document if "pairing" in document else {})
+        if pairs := compared.get("pairs"):
+            sentence = (
+                f"Errors of the frequencies: {compared['rms_error_percent']:.2f} % root mean square, "
+                f"{compared['max_error_percent']:.2f} % at most; paired by {compared['pairing']}."
+            )
+            return (sentence, *table_of(LINKED_PAIR, pairs))
+    return ()

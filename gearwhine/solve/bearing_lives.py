@@ -1,0 +1,71 @@
+"""Rated lives of a case's rolling bearings: L10 of ISO 281 and L10r of ISO/TS 16281 by the rating given or derived."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from gearwhine.case import Case, RollingStiffness
+from rotors.rolling_bearings import RollingState, dynamic_rating
+from rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
+
+_HOUR = 3600.0
+
+
+@dataclass(frozen=True, eq=False)
+class BearingLife:
+    """Ratings and lives of a rolling bearing under its load.
+
+    Attributes
+    ----------
+    state : RollingState
+    given_rating : float or None
+        Dynamic rating C that the case gives [N].
+    speed : float or None
+        Of its shaft in operation [rad/s]; None or 0 where it has no life in hours.
+    """
+
+    state: RollingState
+    given_rating: float | None
+    speed: float | None
+
+    @property
+    def rating(self) -> float:
+        """Dynamic rating C [N]: as given, else of the geometry by ISO 281."""
+        rows = self.state.bearing.rows
+        return dynamic_rating(rows[0], len(rows)) if self.given_rating is None else self.given_rating
+
+    @property
+    def rating_from(self) -> str:
+        """Source of the rating: "case" or "geometry"."""
+        return "geometry" if self.given_rating is None else "case"
+
+    @property
+    def equivalent_load(self) -> float | None:
+        """Equivalent dynamic load P by ISO 281 [N]; None where it is not defined."""
+        return equivalent_load(self.state)
+
+    @property
+    def life(self) -> float | None:
+        """Basic rating life L10 by ISO 281 at the speed of operation [h]; None where it is not defined."""
+        return self._hours(rated_revolutions)
+
+    @property
+    def reference_life(self) -> float | None:
+        """Basic reference rating life L10r by ISO/TS 16281 of the elements' loads [h]; None without a speed."""
+        return self._hours(reference_revolutions)
+
+    def _hours(self, life: Callable[[RollingState, float], float | None]) -> float | None:
+        if not self.speed:
+            return None
+        revolutions = life(self.state, self.rating)
+        return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
+
+
+def given_ratings(case: Case) -> dict[str, float]:
+    """Dynamic ratings C that the case gives [N], by the names of its rolling bearings."""
+    found = {
+        one.name: one.stiffness.rolling.dynamic_rating
+        for one in case.bearing
+        if isinstance(one.stiffness, RollingStiffness)
+    }
+    return {name: rating for name, rating in found.items() if rating is not None}

@@ -1,0 +1,136 @@
+"""Fits of a case's parts: bearings in the bores of their seats and on their shafts, gears on their shafts.
+
+Only where the case gives both sizes. A part that does not fit is no error: the model takes neither diameter from the
+other, so that one of them is a slip of the pen or stands for a sleeve that the case leaves out.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from gearwhine.case import Bearing, Case, RollingStiffness
+from gearwhine.case.bearings import RollingCatalogue
+from gearwhine.case.check_housing import box_geometry
+from gearwhine.case.housing import Seat
+from gearwhine.output.quantity import warning
+from meshes import Mesh, find_bores
+from meshes.bores import CylindricalBore
+from rotors import Rotor, Segment
+
+_FIT = 1e-4  # difference of two diameters, or of a place and an end, that is a fit and no other size [m]
+_TOUCHING = 1e-6  # overlap of a part and a shaft segment that is none [m]
+
+
+def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = None) -> list[dict[str, Any]]:
+    """Warn of diameters that do not fit, and of bearings beside the bores of their seats.
+
+    Parameters
+    ----------
+    case : Case
+    rotors : mapping of str to rotors.Rotor
+        Built ones by their names.
+    mesh : Mesh or None
+        Of a housing from a CAD or mesh file, in which the bores of the seats are found.
+    """
+    bores = () if mesh is None else find_bores(mesh, axis=(0.0, 0.0, 1.0))
+    return [
+        *(found for one in case.bearing for found in _of_bearing(case, one, rotors[one.rotor], bores)),
+        *_of_gears(case, rotors),
+    ]
+
+
+def _of_bearing(
+    case: Case, bearing: Bearing, rotor: Rotor, bores: Sequence[CylindricalBore]
+) -> Iterator[dict[str, Any]]:
+    bore, outside, width = _rings(bearing)
+    label = f'bearing "{bearing.name}"'
+    if bore is not None:
+        yield from _on_shaft(label, bore, rotor, bearing.at, width or 0.0)
+    seats = () if case.housing is None else case.housing.seat
+    seat = next((one for one in seats if one.name == bearing.seat), None)
+    if seat is None:
+        return
+    if outside is not None and abs(outside - seat.diameter) > _FIT:
+        yield warning(
+            "bearing seat",
+            f"{label}: its outside diameter of {_mm(outside)} is not the {_mm(seat.diameter)} of the bore of seat "
+            f'"{seat.name}"',
+            bearing=bearing.name,
+            outside_diameter_m=outside,
+            seat_diameter_m=seat.diameter,
+        )
+    z = case.rotor_named(bearing.rotor).start + bearing.at
+    span = _span(case, seat, bores)
+    if span is not None:
+        off, where = max(span[0] - z, z - span[1]), f"the bore, z = {_mm(span[0])} to {_mm(span[1])}"
+    else:
+        half = 0.5 * (width or 0.0)
+        off, where = abs(z - seat.center[2]) - half, f"the seat's centre, z = {_mm(seat.center[2])}, by half its width"
+        if not half:
+            return
+    if off > _FIT:
+        yield warning(
+            "bearing place",
+            f'{label}: its middle at z = {_mm(z)} lies {_mm(off)} beyond {where}, of seat "{seat.name}"; the seat '
+            "moves there as a rigid extension of its bore",
+            bearing=bearing.name,
+            beyond_m=off,
+        )
+
+
+def _rings(bearing: Bearing) -> tuple[float | None, float | None, float | None]:
+    """Bore, outside diameter and width of a rolling bearing [m], as far as the case gives them."""
+    if not isinstance(bearing.stiffness, RollingStiffness):
+        return None, None, None
+    rolling = bearing.stiffness.rolling
+    if isinstance(rolling, RollingCatalogue):
+        size = rolling.catalogue
+        rows = rolling.spacing or 0.0
+        return size.bore, size.outer_diameter, size.width + rows
+    mounting = rolling.mounting
+    return (None, None, None) if mounting is None else (mounting.bore, mounting.outer_diameter, None)
+
+
+def _span(case: Case, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[float, float] | None:
+    """Return the ends of a seat's bore along z [m]: of a box by its walls and bosses, else of the bore found there."""
+    assert case.housing is not None
+    if case.housing.box is not None:
+        box = box_geometry(case.housing.box, case.housing.seat)
+        low, high = box.bore_span(next(bore for bore in box.bores if bore.name == seat.name))
+        return low, high
+    for bore in bores:
+        apart = max(abs(bore.center[axis] - seat.center[axis]) for axis in range(2))
+        ends = bore.center[2] - 0.5 * bore.length, bore.center[2] + 0.5 * bore.length
+        alike = apart <= 10 * _FIT and abs(bore.diameter - seat.diameter) <= 0.02 * seat.diameter
+        if alike and ends[0] - seat.diameter <= seat.center[2] <= ends[1] + seat.diameter:
+            return ends
+    return None
+
+
+def _of_gears(case: Case, rotors: Mapping[str, Rotor]) -> Iterator[dict[str, Any]]:
+    for gear in case.gear:
+        if gear.bore and gear.rotor is not None and gear.at is not None:
+            yield from _on_shaft(f'gear "{gear.name}"', gear.bore, rotors[gear.rotor], gear.at, gear.face_width or 0.0)
+
+
+def _on_shaft(label: str, bore: float, rotor: Rotor, at: float, width: float) -> Iterator[dict[str, Any]]:
+    """Warn where no segment under a part has its bore, a cone somewhere along it."""
+    left, right = at - 0.5 * width, at + 0.5 * width
+    found = []
+    for part, start, end in zip(rotor.segments, rotor.joints, rotor.joints[1:], strict=False):
+        overlaps = min(end, right) - max(start, left) > _TOUCHING or start <= left == right <= end
+        if isinstance(part, Segment) and overlaps:
+            found.append(tuple(outer for outer, _ in part.end_diameters))
+    if not found or any(min(ends) - _FIT <= bore <= max(ends) + _FIT for ends in found):
+        return
+    diameters = list(dict.fromkeys(diameter for ends in found for diameter in ends))
+    shown = " and ".join(_mm(one) for one in diameters)
+    yield warning(
+        "part on shaft",
+        f'{label}: its bore of {_mm(bore)} is not the diameter of rotor "{rotor.name}" at {_mm(at)}, {shown}',
+        bore_m=bore,
+        shaft_diameters_m=diameters,
+    )
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.6g} mm"

@@ -1,0 +1,108 @@
+"""The commands and programs of tutorials and how-to pages run in their order; commands of all other pages are read.
+
+A page runs in an empty folder, as a reader would follow it. Only the effort is less: coarser meshes and shorter runs.
+"""
+
+import re
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from gearwhine.case import bundled_case
+from gearwhine.cli.command_line import app
+
+ROOT = Path(__file__).parents[2]
+RUN = [*sorted((ROOT / "docs" / "tutorials").glob("*.md")), *sorted((ROOT / "docs" / "how-to").glob("*.md"))]
+READ = [
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "benchmarks/README.md")),
+    *sorted((ROOT / "docs").glob("*.md")),
+]
+
+_SHORT = ("transient.revolutions=2", "transient.discard=1", "transient.tolerance=5e-3")
+LESS_EFFORT = {
+    "nasa-gear-noise-rig": ("housing.box.mesh_size=45 mm", *_SHORT),
+    "small-gearbox": ("housing.box.mesh_size=45 mm", *_SHORT),
+    "two-stage-reducer": ("housing.frequency_limit=600 Hz", *_SHORT),
+    "steel-box": (),
+    "friswell-rotor": (),
+}
+"""Settings that are added to the commands on a case."""
+FEWER_POINTS = {"rpm:19": "rpm:2", "N*m:10": "N*m:2"}
+"""Ranges of a sweep that are cut."""
+_WITHOUT_A_CASE = ("examples",)
+
+
+def steps(page: Path) -> list[tuple[str, str]]:
+    """Fenced blocks of a page in their order: language, or ``append FILE`` where a comment says so, and text."""
+    text = page.read_text(encoding="utf-8")
+    found = re.findall(r"(?:^<!-- append: (\S+) -->\n)?^```([^\n]*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    return [(f"append {file}" if file else language, block) for file, language, block in found]
+
+
+def commands(block: str) -> list[list[str]]:
+    """Words of each command of a block, comments left out."""
+    return [words for line in block.splitlines() if (words := shlex.split(line, comments=True))]
+
+
+def with_less_effort(words: list[str]) -> list[str]:
+    if words[0] in _WITHOUT_A_CASE or words[0] == "report":
+        return words
+    case = Path(words[1]).stem
+    settings = LESS_EFFORT["steel-box" if case == "updated" else case]
+    changes = [part for setting in settings for part in ("--set", setting)]
+    for many, few in FEWER_POINTS.items():
+        words = [word.replace(many, few) for word in words]
+    return [*words, *changes]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
+def test_a_page_runs_from_its_first_line_to_its_last(gearwhine: Any, tmp_path: Path, page: Path) -> None:
+    import matplotlib.pyplot as plt
+
+    names: dict[str, Any] = {"__name__": "__main__"}
+    done = 0
+    for kind, block in steps(page):
+        if kind == "":
+            for program, *words in commands(block):
+                assert program == "gearwhine", program
+                outcome = gearwhine(*with_less_effort(words))
+                assert outcome.code == 0, f"{words}: {outcome.err}"
+                done += 1
+        elif kind == "python":
+            exec(compile(block, page.name, "exec"), names)  # noqa: S102 - the page is ours
+            plt.close("all")
+        elif kind.startswith("append "):
+            with (tmp_path / kind.removeprefix("append ")).open("a", encoding="utf-8") as file:
+                file.write(f"\n{block}")
+        else:
+            assert kind in ("toml", "text"), kind
+    assert done >= 2
+    if page.stem == "measured":
+        import gearwhine as gw
+
+        modulus = gw.load("fit/updated.toml").case.material["steel"].youngs_modulus
+        assert modulus == pytest.approx(196e9, rel=2e-3)
+    for named in re.findall(r"`((?:rig|reducer|plan|fit|small-gearbox-results)/[\w.-]+)`", page.read_text("utf-8")):
+        assert (tmp_path / named).exists(), named
+
+
+@pytest.mark.parametrize("page", READ, ids=lambda page: page.stem)
+def test_commands_of_a_page_are_ones_that_can_be_given(page: Path) -> None:
+    made = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    copied: set[str] = set()
+    for kind, block in steps(page):
+        for program, *words in commands(block) if kind == "" else []:
+            if program == "make":
+                assert words[0] in made, words
+            elif program.endswith(("python", "pytest")):
+                scripts = [word for word in words if word.endswith(".py")]
+                assert all((ROOT / script).is_file() for script in scripts), words
+            elif program == "gearwhine" and words[0].islower():
+                app.parse_args(words, exit_on_error=False, print_error=False)
+                if words[0] == "examples":
+                    copied.update(f"{name}.toml" for name in words[2:3])
+                elif not words[1].endswith("updated.toml"):
+                    assert words[1] in copied or bundled_case(words[1]).is_file(), words

@@ -1,0 +1,149 @@
+"""Bearings of a shaft against each other in cases: arrangement, preload by offsets and springs, without torque."""
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearwhine as gw
+from gearwhine.cli import run_command
+from gearwhine.results.check import sections as check_sections
+from gearwhine.results.operating_point import sections
+from rotors.rolling_bearings import catalogue_row
+
+SIZE = {"type": "tapered-roller", "bore": "30 mm", "outer_diameter": "62 mm", "width": "17.25 mm"}
+
+
+def opposed(carries: tuple[str, str] = ("+z", "-z"), **more: Any) -> dict[str, Any]:
+    """Changes of the helical pair: tapered rollers at both ends of both shafts, on the ground."""
+    changes: dict[str, Any] = {}
+    for number in range(4):
+        rolling = {"catalogue": SIZE, "carries": carries[number % 2], **more}
+        changes[f"bearing.{number}.stiffness"] = {"rolling": rolling}
+        changes[f"bearing.{number}.damping"] = {"xx": "8e2 N*s/m", "yy": "8e2 N*s/m"}
+    return changes
+
+
+def inline(value: Any) -> str:
+    """Write a value as TOML on one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {inline(one)}" for key, one in value.items()) + " }"
+    return json.dumps(value)
+
+
+def lines_of(study: gw.Study) -> str:
+    return "\n".join(
+        f"{section.title}{section.note} {' '.join(section.sentences)}"
+        for section in check_sections(study.check().document)
+    )
+
+
+def test_check_names_the_arrangement_and_who_takes_which_thrust() -> None:
+    back, face = gw.load("helical-pair", opposed()), gw.load("helical-pair", opposed(("-z", "+z")))
+    assert back.warnings == face.warnings == ()
+    both = "O arrangement, back to back; thrust towards +z on input-left, towards -z on input-right"
+    assert f"input: {both}" in lines_of(back)
+    assert "X arrangement, face to face; thrust towards +z on input-right, towards -z on input-left" in lines_of(face)
+    (first, _) = back.check().document["axial_location"]
+    assert first == {
+        "rotor": "input",
+        "arrangement": "O",
+        "thrust_plus_z": ["input-left"],
+        "thrust_minus_z": ["input-right"],
+        "rows": {},
+    }
+    assert "input: thrust both ways on input-left" in lines_of(gw.load("helical-pair"))
+    assert "input: no bearing holds it along its axis" in lines_of(gw.load("spur-pair"))
+    assert "intermediate: thrust both ways on intermediate-front (O, back to back)" in lines_of(
+        gw.load("two-stage-reducer")
+    )
+
+
+def test_rows_that_carry_one_way_are_warned_of_by_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    changes = opposed(("+z", "+z"))
+    study = gw.load("helical-pair", changes)
+    found = [text.partition(" is located one way only")[0] for text in study.warnings]
+    assert found == ["shaft 'input'", "shaft 'output'"]
+    assert study.machine.warnings == study.warnings
+    line = "input: thrust towards +z on input-left, input-right; nothing holds it towards -z"
+    assert line in lines_of(study)
+    texts = [f"{key}={inline(value)}" for key, value in changes.items()]
+    assert run_command(["check", "helical-pair", "-q", *(part for text in texts for part in ("--set", text))]) == 0
+    assert capsys.readouterr().err.splitlines() == [f"warning: {text}" for text in study.warnings]
+
+
+def test_a_spring_of_each_of_two_opposed_rows_is_warned_of() -> None:
+    study = gw.load("helical-pair", opposed(preload="300 N"))
+    assert all("cancel and press no element" in text and "`axial_offset`" in text for text in study.warnings)
+    assert len(study.warnings) == 2
+    assert [one["preload_n"] < 1.0 for one in study.operating_point().document["bearings"]] == [True] * 4
+
+
+def test_without_torque_the_equilibrium_is_that_of_the_preload() -> None:
+    """The rows as springs in series with the shaft, which is so stiff here that it takes a few per cent off."""
+    changes = opposed(axial_offset="5 um")
+    result = gw.load("helical-pair", changes | {"operation.torque": "0 N*m"}).operating_point()
+    document = result.document
+    row = catalogue_row("tapered-roller", 0.03, 0.062, 0.01725)
+    rigid = row.axial_force(5e-6)
+    for one, sense in zip(document["bearings"], (1.0, -1.0, 1.0, -1.0), strict=True):
+        assert one["force_n"][2] == pytest.approx(sense * one["preload_n"])
+        assert 0.9 * rigid < one["preload_n"] < rigid
+        # Z c/n Σ δ^(10/9) sin α along its axis: the tangent is that of the power law at the force.
+        slope = (row.axial_force(5.001e-6) - row.axial_force(4.999e-6)) / 2e-9
+        assert one["stiffness"][2][2] == pytest.approx(slope * (one["preload_n"] / rigid) ** 0.1, rel=1e-3)
+    assert document["gear_pairs"] == []
+    assert "loaded_pair" not in result.dataset.dims
+    assert result.dataset["bearing_preload"].attrs["units"] == "N"
+    (section,) = sections(document)
+    text = " ".join(section.sentences)
+    assert (
+        "Static equilibrium without torque, under preload alone, in rigid seats (no housing); no flanks carry" in text
+    )
+    assert [table.caption.partition(":")[0] for table in section.tables] == [
+        "Force and tilting moment of the shafts on their bearings",
+        "Rolling bearings",
+        "Deflection of the shafts",
+    ]
+    # Under the torque the same preload is told.
+    loaded = gw.load("helical-pair", changes).operating_point().document["bearings"]
+    assert [one["preload_n"] for one in loaded] == pytest.approx([one["preload_n"] for one in document["bearings"]])
+    figures = dict(result.figures())
+    assert list(figures) == ["load-shaft-input", "load-shaft-output"]
+
+
+def test_shafts_without_preload_have_none() -> None:
+    changes = {key: value for key, value in opposed(axial_offset="5 um").items() if key[8] in "01"}
+    found = gw.load("helical-pair", changes).operating_point().document["bearings"]
+    assert [one["preload_n"] is None for one in found] == [False, False, True, True]
+
+
+def test_moments_stand_beside_the_forces() -> None:
+    result = gw.load("helical-pair", opposed(axial_offset="5 um")).operating_point()
+    forces, rolling, *_ = sections(result.document)[0].tables
+    columns, texts = forces.filled()
+    headings = [column.heading for column in columns]
+    assert headings == ["bearing", "x [N]", "y [N]", "z [N]", "about x [N m]", "about y [N m]", "tilt [µrad]"]
+    for one, row in zip(result.solved.point.bearings, texts, strict=True):
+        shown = np.array([float(text) for text in row[1:6]])
+        np.testing.assert_allclose(shown, one.force, atol=0.51)
+        np.testing.assert_allclose(shown[3:], one.force[3:], atol=0.051)
+    columns, texts = rolling.filled()
+    headings = [column.heading for column in columns]
+    assert headings == ["bearing", "pressure [GPa]", "preload [N]", "L10 [h]", "L10r [h]", "x, y, z [N/µm]"]
+    stiffness = np.diag(result.solved.point.bearings[0].stiffness)[:3]
+    assert [float(part) for part in texts[0][-1].split(",")] == pytest.approx(1e-6 * stiffness, rel=1e-3)
+
+
+def test_balls_that_carry_thrust_on_the_wrong_shoulder_are_warned_of() -> None:
+    """Both bearings of each shaft carry towards +z; the wheel is pushed along -z, with all of the thrust."""
+    balls = {"count": 13, "element_diameter": "9.6 mm", "pitch_diameter": "46 mm", "contact_angle": "40 deg"}
+    changes = opposed(("+z", "+z"))
+    for number in range(4):
+        changes[f"bearing.{number}.stiffness"] = {"rolling": balls}
+    document = gw.load("helical-pair", changes).operating_point().document
+    found = [one for one in document["warnings"] if one["name"] == "thrust side"]
+    assert {one["bearing"] for one in found} == {"output-left", "output-right"}
+    assert sum(one["thrust_n"] for one in found) == pytest.approx(-document["gear_pairs"][0]["thrust_n"], rel=1e-6)
+    assert "N towards -z, against their contact angle" in found[0]["message"]

@@ -1,0 +1,110 @@
+"""Fits that `check` warns of: bearings in seats and on shafts, gears on shafts, bearings without a seat."""
+
+from typing import Any
+
+import pytest
+
+import gearwhine as gw
+from gearwhine.case import load_case
+from gearwhine.case.checks import warnings_of
+
+BALLS = {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "52 mm", "width": "13 mm"}
+
+
+def rolling(**changes: str) -> dict[str, Any]:
+    return {"rolling": {"catalogue": BALLS | changes}}
+
+
+def found(name: str, changes: dict[str, Any]) -> dict[tuple[str, str], dict[str, Any]]:
+    """Warnings of parts that do not fit, by their kind and the part."""
+    document = gw.load(name, changes).check().document
+    kinds = ("bearing seat", "bearing place", "part on shaft")
+    return {
+        (one["name"], one["message"].split('"')[1]): one for one in document.get("warnings", ()) if one["name"] in kinds
+    }
+
+
+def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
+    """One check of the reducer with four slips; its bores are found in the drawing, 52 mm long about z = -98 mm."""
+    size = "bearing.input-back.stiffness.rolling.catalogue"
+    told = found(
+        "two-stage-reducer",
+        {
+            f"{size}.outer_diameter": "62 mm",
+            f"{size}.width": "16 mm",
+            "bearing.output-back.at": "28 mm",
+            "bearing.intermediate-back.stiffness.rolling.catalogue.bore": "35 mm",
+            "gear.wheel 1.bore": "45 mm",
+        },
+    )
+    assert set(told) == {
+        ("bearing seat", "input-back"),
+        ("bearing place", "output-back"),
+        ("part on shaft", "intermediate-back"),
+        ("part on shaft", "wheel 1"),
+    }
+    seat = told["bearing seat", "input-back"]["message"]
+    assert seat == (
+        'bearing "input-back": its outside diameter of 62 mm is not the 72 mm of the bore of seat "input-back"'
+    )
+    # The middle at -98 + 28 mm, the bore's end at -98 + 26 mm.
+    place = told["bearing place", "output-back"]
+    assert place["beyond_m"] == pytest.approx(2e-3, abs=1e-4)
+    assert (
+        'its middle at z = -70 mm lies 2 mm beyond the bore, z = -124 mm to -72 mm, of seat "output-back"'
+        in (place["message"])
+    )
+    shaft = 'its bore of 35 mm is not the diameter of rotor "intermediate" at 11 mm, 40 mm'
+    assert shaft in told["part on shaft", "intermediate-back"]["message"]
+    wheel = 'gear "wheel 1": its bore of 45 mm is not the diameter of rotor "intermediate" at 135 mm, 48 mm'
+    assert told["part on shaft", "wheel 1"]["message"] == wheel
+
+
+def test_fits_of_a_box() -> None:
+    """Bores of 52 mm through walls of 10 mm that end at z = -80 and 80 mm; the left ends of the shafts at -100 mm."""
+    load = {"x": "300 N", "y": "100 N", "z": "0 N"}
+    fitting = {"bearing.input-back.stiffness": rolling(), "bearing.input-back.load": load}
+    assert found("small-gearbox", fitting) == {}
+    assert found("small-gearbox", fitting | {"bearing.input-back.at": "25 mm"}) == {}
+    (place,) = found("small-gearbox", fitting | {"bearing.input-back.at": "34 mm"}).values()
+    assert place["beyond_m"] == pytest.approx(4e-3)
+    assert "z = -80 mm to -70 mm" in place["message"]
+    (wide,) = found(
+        "small-gearbox", fitting | {"bearing.input-back.stiffness": rolling(outer_diameter="55 mm")}
+    ).values()
+    assert (wide["outside_diameter_m"], wide["seat_diameter_m"]) == pytest.approx((55e-3, 52e-3))
+    # Sizes of a bearing by its geometry are those of its mounting; without any there is nothing to compare.
+    balls = {"count": 9, "element_diameter": "7 mm", "pitch_diameter": "41 mm"}
+    bare = fitting | {"bearing.input-back.stiffness": {"rolling": balls}}
+    assert found("small-gearbox", bare) == {}
+    mounted = {"rolling": balls | {"mounting": {"bore": "28 mm", "outer_diameter": "52 mm"}}}
+    assert set(found("small-gearbox", bare | {"bearing.input-back.stiffness": mounted})) == {
+        ("part on shaft", "input-back")
+    }
+
+
+def test_a_part_across_a_step_fits_either_diameter() -> None:
+    steps = [{"length": "100 mm", "diameter": "40 mm"}, {"length": "140 mm", "diameter": "50 mm"}]
+    for bore, fits in (("40 mm", True), ("50 mm", True), ("45 mm", False)):
+        changes = {"rotor.input.segments": steps, "gear.pinion.at": "100 mm", "gear.wheel.at": "100 mm"}
+        told = found("helical-pair", changes | {"gear.pinion.bore": bore})
+        assert (("part on shaft", "pinion") not in told) is fits
+    cone = [{"length": "240 mm", "diameter": "40 mm", "right_diameter": "50 mm"}]
+    assert ("part on shaft", "pinion") not in found(
+        "helical-pair", {"rotor.input.segments": cone, "gear.pinion.bore": "45 mm"}
+    )
+
+
+def test_a_bearing_without_a_seat_beside_a_housing_is_named() -> None:
+    assert warnings_of(load_case("two-stage-reducer").case) == ()
+    (told,) = warnings_of(load_case("small-gearbox", ["bearing.output-front.seat="]).case)
+    assert told == (
+        "bearing \"output-front\" has no 'seat': it stands on the ground, not in [housing]; give the name of a "
+        '[[housing.seat]], or seat = "ground" where that is meant'
+    )
+    two = ["bearing.output-front.seat=", "bearing.input-back.seat="]
+    (told,) = warnings_of(load_case("small-gearbox", two).case)
+    assert told.startswith('bearings "input-back", "output-front" have no \'seat\': they stand on the ground')
+    assert warnings_of(load_case("small-gearbox", ["bearing.output-front.seat=ground"]).case) == ()
+    (told,) = warnings_of(load_case("small-gearbox", ["bearing.*.seat=ground"]).case)
+    assert "no bearing stands in a seat" in told
