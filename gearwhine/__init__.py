@@ -20,6 +20,7 @@ The parts of a machine as objects of the library: :class:`Housing`, :class:`Mach
 ``housing``, ``rotors`` and ``coupling``.
 """
 
+import sys
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
@@ -103,3 +104,7 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return __all__
+
+
+if "IPython" in sys.modules:
+    import_module("gearwhine.notebook").register()

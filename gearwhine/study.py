@@ -121,6 +121,11 @@ class Study:
         """Return the case's title."""
         return f"<Study of {self.case.title or 'an untitled case'!r}>"
 
+    def _repr_html_(self) -> str:
+        from gearwhine.notebook import case_html
+
+        return case_html(self.case)
+
     @property
     def housing(self) -> SolvedHousing | None:
         """The solved housing, which the first call meshes and solves; None in a case without one."""
@@ -318,7 +323,7 @@ class Study:
         *,
         signals: Signals = "sensors",
     ) -> list[str]:
-        """Write the results in a folder in formats of other programs; see :func:`gearwhine.analyses.case.export_results`.
+        """Write results in formats of other programs; see :func:`gearwhine.analyses.case.export_results`.
 
         Returns
         -------

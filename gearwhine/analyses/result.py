@@ -86,6 +86,11 @@ class Result(Generic[Solved]):
         """Return the command, the case's title and the keys of the document."""
         return f"<Result of {self.command!r} on {self.case.title!r}: {', '.join(self.document)}>"
 
+    def _repr_html_(self) -> str:
+        from gearwhine.notebook import result_html
+
+        return result_html(self)
+
     @cached_property
     def dataset(self) -> xr.Dataset:
         """Every quantity with its dimensions, unit and long name, as in the NetCDF file."""

@@ -137,7 +137,7 @@ def export(
 ) -> None:
     """Write the results in a folder in formats of other programs: of a folder, or of a case's OUT.
 
-    OUT is ./<case>-results by default; the files go to OUT/exports. Without --csv, --uff or --wav all three are written.
+    OUT is ./<case>-results by default; the files go to OUT/exports. Without --csv, --uff or --wav all are written.
     """
     from gearwhine.analyses.case import Format, export_results, export_sections
     from gearwhine.output.terminal import shown_by

@@ -70,7 +70,7 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
         Sentences on results that do not fit the case any more.
     """
     sections = (
-        _machine(case, documents),
+        machine_section(case, documents),
         Section("Is it sound?", tuple(_findings(documents, stale))),
         Section("Highest lines", _lines(documents)),
         Section("", pictures=_PICTURES),
@@ -79,7 +79,8 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
     return tuple(section for section in sections if section.content or section.pictures)
 
 
-def _machine(case: Case | None, documents: Sequence[Document]) -> Section:
+def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Section:
+    """Return the machine of a case in a paragraph and tables; ``documents`` know the size and mass of its housing."""
     if case is None:
         return Section("Machine")
     try:

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 from scipy.sparse.linalg import eigsh
 
+from gearwhine.notebook import machine_html, modes_html
 from gearwhine.solve import updating
 
 
@@ -52,3 +53,7 @@ def test_modes_of_shafts_in_a_housing_are_those_of_its_matrices(example: Any) ->
     elastic = found["modes"].frequencies_hz[found["modes"].frequencies_hz > 1.0]
     assert elastic[:20] == pytest.approx(frequencies[:20], rel=1e-6)
     assert found["machine"].mesh_frequencies[0] == pytest.approx(30 * 3000 / 60)
+    # As notebooks show them.
+    assert "<td>1500.00</td>" in machine_html(found["machine"])
+    modes = found["machine"].housing
+    assert f"<td>{modes.frequencies_hz[2]:.1f}</td>" in modes_html(modes)

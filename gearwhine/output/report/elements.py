@@ -172,3 +172,23 @@ class Writer:
             target = self._places.find(self._result, column.link(row)) if column.link and text != NOTHING else None
             parts.append(f"<td{kind}>" + (f'<a href="#{target}">{told}</a>' if target else told) + "</td>")
         return "".join(parts)
+
+
+def fragment(sections: Sequence[Section]) -> str:
+    """Return sections without pictures as a piece of HTML, such as a notebook shows; it brings its few styles."""
+    places = Places()
+    places.add_sections("", sections, {})
+    writer = Writer("", places, {}, {})
+    body = "".join(writer.chapter(one) if one.title else writer.content(one) for one in sections)
+    return f'<div class="gearwhine"><style>{_FRAGMENT_STYLE}</style>\n{body}</div>'
+
+
+_FRAGMENT_STYLE = """
+.gearwhine table { border-collapse: collapse; margin: .5em 0; font-variant-numeric: tabular-nums; }
+.gearwhine caption { text-align: left; opacity: .7; }
+.gearwhine th, .gearwhine td { text-align: right; padding: .15em .7em; border-bottom: 1px solid #8884; }
+.gearwhine th.text, .gearwhine td.text { text-align: left; }
+.gearwhine .table { overflow-x: auto; }
+.gearwhine summary h3, .gearwhine summary h4, .gearwhine summary h5 { display: inline; }
+.gearwhine .failed { color: #b5382a; }
+"""

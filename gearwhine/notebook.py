@@ -1,0 +1,119 @@
+"""Display in notebooks: cases, studies, machines, housing modes and results as tables.
+
+Studies and results show themselves (``_repr_html_``). The library's own objects know nothing of HTML: where gearwhine
+is imported under IPython, :func:`register` gives them a formatter there.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from gearwhine.output.quantity import RPM
+from gearwhine.output.report.elements import fragment
+from gearwhine.output.sections import Column, Finding, Section, table_of
+
+if TYPE_CHECKING:
+    from coupling import Machine
+    from gearwhine.analyses.result import Result
+    from gearwhine.case import Case
+    from housing import HousingModes
+
+_MM = 1e3
+_MOST_MODES = 30
+
+_SHAFTS = (
+    Column("shaft", "name"),
+    Column("speed [rpm]", "speed_rpm", "z.5g"),
+    Column("length [mm]", "length_mm", ".4g"),
+    Column("mass [kg]", "mass_kg", ".4g"),
+    Column("bearings", "bearings"),
+    Column("gears", "gears"),
+)
+_PAIRS = (
+    Column("driver → driven", "name"),
+    Column("teeth", "teeth"),
+    Column("contact ratio", "contact_ratio", ".3f"),
+    Column("mesh frequency [Hz]", "mesh_frequency_hz", ".2f"),
+)
+_MODES = (
+    Column("mode", "number"),
+    Column("frequency [Hz]", "frequency_hz", ".1f"),
+    Column("damping ratio [%]", "damping_ratio", ".3g", 100.0),
+)
+
+
+def register() -> None:
+    """Give IPython, where it runs, formatters for machines, housing modes and cases."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    if shell is None:
+        return
+    formatter = shell.display_formatter.formatters["text/html"]
+    formatter.for_type_by_name("coupling.machine.description", "Machine", machine_html)
+    formatter.for_type_by_name("housing.model.housing", "HousingModes", modes_html)
+    formatter.for_type_by_name("gearwhine.case.model", "Case", case_html)
+
+
+def case_html(case: Case) -> str:
+    """Return the machine of a case, as the first page of a report has it."""
+    from gearwhine.results.first_page import machine_section
+
+    found = machine_section(case)
+    return fragment([Section(case.title or found.title, found.content)])
+
+
+def result_html(result: Result[Any]) -> str:
+    """Return the warnings and chapters of a result, as its report has them; pictures are ``result.plot()``."""
+    from gearwhine.results import chapters_of
+
+    warnings = tuple(Finding(one, passed=False) for one in result.warnings)
+    head = Section("", (f"gearwhine {result.command}: {result.case.title}", *warnings))
+    return fragment([head, *chapters_of(result.document | {"command": result.command})])
+
+
+def machine_html(machine: Machine) -> str:
+    """Return the shafts and gear pairs of a machine, with their speeds and mesh frequencies."""
+    shafts = [
+        {
+            "name": shaft.name,
+            "speed_rpm": machine.speeds[shaft.name] * RPM,
+            "length_mm": _MM * shaft.rotor.length,
+            "mass_kg": float(shaft.rotor.mass),
+            "bearings": ", ".join(one.bearing.name for one in machine.bearings if one.rotor == shaft.name),
+            "gears": ", ".join(one.gear.name for one in machine.gears if one.shaft == shaft.name),
+        }
+        for shaft in machine.shafts
+    ]
+    geometries: Sequence[Any] = machine.pair_geometries
+    pairs = [
+        {
+            "name": f"{pair.driver} → {pair.driven}",
+            "teeth": f"{geometry.driver.teeth} : {geometry.driven.teeth}",
+            "contact_ratio": float(geometry.total_contact_ratio),
+            "mesh_frequency_hz": float(frequency),
+        }
+        for pair, geometry, frequency in zip(machine.gear_pairs, geometries, machine.mesh_frequencies, strict=True)
+    ]
+    stand = "in a housing" if machine.housing is not None else "on the ground"
+    operation = f"{machine.speed * RPM:.5g} rpm, {machine.torque:.5g} N·m; bearings {stand}"
+    return fragment([Section("", (operation, *table_of(_SHAFTS, shafts), *table_of(_PAIRS, pairs)))])
+
+
+def modes_html(modes: HousingModes) -> str:
+    """Return the lowest natural frequencies of a housing, and the certificate of all."""
+    certificate = modes.mode_set.certificate
+    rows = [
+        {"number": number, "frequency_hz": float(frequency), "damping_ratio": float(ratio)}
+        for number, (frequency, ratio) in enumerate(
+            zip(modes.frequencies_hz, modes.damping_ratios, strict=True), start=1
+        )
+    ]
+    count = len(rows)
+    proof = Finding(
+        f"{certificate.found} modes found, {certificate.expected} counted by the matrix's inertia",
+        passed=certificate.complete,
+    )
+    more = (f"and {count - _MOST_MODES} more",) if count > _MOST_MODES else ()
+    return fragment([Section("", (proof, *table_of(_MODES, rows[:_MOST_MODES]), *more))])

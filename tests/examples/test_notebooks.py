@@ -1,0 +1,45 @@
+"""Notebooks: those of the repository are their scripts', run in a kernel, and show objects as tables and figures."""
+
+import json
+import runpy
+from pathlib import Path
+from typing import Any
+
+import nbclient
+import nbformat
+import pytest
+
+import gearwhine as gw
+
+ROOT = Path(__file__).parents[2]
+MAKER = runpy.run_path(str(ROOT / "scripts" / "make_notebooks.py"))
+NAMES = MAKER["NAMES"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_notebook_is_made_of_its_script(name: str) -> None:
+    written = (ROOT / "docs" / "notebooks" / f"{name}.ipynb").read_text(encoding="utf-8")
+    assert written == MAKER["text_of"](name), "renew it by scripts/make_notebooks.py"
+    nbformat.validate(json.loads(written))
+
+
+def outputs(notebook: Any) -> list[Any]:
+    return [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_notebook_runs_and_shows_tables(name: str) -> None:
+    notebook = nbformat.read(ROOT / "docs" / "notebooks" / f"{name}.ipynb", as_version=4)
+    folder = {"metadata": {"path": str(ROOT / "docs" / "notebooks")}}
+    nbclient.NotebookClient(notebook, timeout=300, resources=folder).execute()
+    shown = [output.data for output in outputs(notebook) if "data" in output]
+    assert any("<table>" in data.get("text/html", "") for data in shown)
+    if name == "operating_point":
+        assert any("image/png" in data for data in shown)
+
+
+def test_hostile_names_stay_text_in_a_notebook() -> None:
+    study = gw.load("spur-pair", {"title": "<script>alert(1)</script>"})
+    shown = study._repr_html_()
+    assert "<script>" not in shown
+    assert "&lt;script&gt;" in shown
