@@ -427,7 +427,7 @@ def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
     for one in solved.pairs:
         typed, found = one.misalignment.taken, one.load.misalignment
-        if one.misalignment.origin != "case":
+        if one.misalignment.origin != "case" or typed is None:
             continue
         if abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
             continue
