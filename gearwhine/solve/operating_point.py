@@ -289,7 +289,8 @@ def find_load(
     except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError) as error:
         if case.needs_operating_point:
             raise
-        return None, [warning("operating point", f"no operating point beside it: {error}")]
+        message = f"no operating point is found, against which to hold the loads that the case gives: {error}"
+        return None, [warning("operating point", message)]
     return found, load_warnings(case, found)
 
 
