@@ -352,13 +352,14 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
+    on_bearings = bool(document.get("bearings"))
     parts = {
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
         "location": [_location_line(one) for one in document.get("axial_location", ())],
         "analysis": [line for one in document.get("rotor_analysis", ()) for line in _analysis_lines(one)],
-        "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair)],
+        "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
         "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
@@ -505,7 +506,7 @@ def _analysis_lines(analysis: Document) -> Iterator[str]:
         yield f"{analysis['rotor']}: torsional response to {counted(analysis['torques'], 'torque')}"
 
 
-def _pair_lines(pair: Document) -> list[str]:
+def _pair_lines(pair: Document, on_bearings: bool) -> list[str]:
     lines = [
         f"{pair['driver']} → {pair['driven']}: ratio {pair['ratio']:.6g}, {_contact_ratios(pair)}, "
         f"stiffness {pair['stiffness_model']}",
@@ -519,7 +520,7 @@ def _pair_lines(pair: Document) -> list[str]:
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
     origin = pair.get("misalignment_from", "default")
-    if origin != "default" or pair["mean_force_n"]:
+    if origin != "default" or (pair["mean_force_n"] and on_bearings):
         words = misalignment_words(pair.get("misalignment_rad"), origin, None)
         lines.append(words + ("" if origin == "case" else "; `gearwhine load` finds it"))
     return lines

@@ -273,7 +273,8 @@ def find_load(
     except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError) as error:
         if case.needs_operating_point:
             raise
-        return None, [warning("operating point", f"no operating point beside it: {error}")]
+        message = f"no operating point is found, against which to hold the loads that the case gives: {error}"
+        return None, [warning("operating point", message)]
     return found, load_warnings(case, found)
 
 
@@ -448,7 +449,7 @@ def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
     for one in solved.pairs:
         typed, found = one.misalignment.taken, one.load.misalignment
-        if typed is None or one.misalignment.origin != "case":
+        if one.misalignment.origin != "case" or typed is None:
             continue
         if abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
             continue

@@ -71,7 +71,11 @@ def test_options_of_one_folder_keep_each_others_results(tmp_path: Path, capsys: 
     assert "Change by a step of one parameter" in page
     assert "load over torque" in page
     capsys.readouterr()
-    # Another equilibrium has none of it.
+    # Another equilibrium has none of it: one of other numbers, or of another case.
+    summary = out / "summary.json"
+    summary.write_text(json.dumps(third | {"shafts": []}), encoding="utf-8")
+    assert not {"kept", "sensitivity", "over_torque"} & set(load())
+    load("--over-torque")
     other = load("--set", "operation.torque=50 N*m")
     assert not {"kept", "sensitivity", "over_torque"} & set(other)
     assert "load-over-torque.png" not in {path.name for path in out.iterdir()}

@@ -234,7 +234,8 @@ def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: 
         bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}
     found, told = find_load(parse_case(changed), None)
     assert found is None
-    assert told[0]["message"] == "no operating point beside it: no static equilibrium of the machine"
+    assert told[0]["message"].startswith("no operating point is found")
+    assert told[0]["message"].endswith(": no static equilibrium of the machine")
     with pytest.raises(EquilibriumNotFoundError):
         find_load(parse_case(document()), None)
     assert find_load(parse_case(document() | {"operation": {"speed": "1500 rpm", "torque": "0 N*m"}}), None) == (
