@@ -312,6 +312,25 @@ class OperatingPoint:
         """Return the deflection of the shaft of this name."""
         return next(one for one in self.shafts if one.name == name)
 
+    def gear_forces(self, number: int) -> tuple[FloatArray, FloatArray]:
+        """Return the forces of a pair's flanks on the shafts of driver and driven gear, (6,) each.
+
+        Along x, y, z [N] and about them [N m], at the middle of the common face. The thrust acts at the pitch point and
+        the load of an uneven face off its middle, so that both have moments.
+        """
+        pair = self.pairs[number]
+        _, loads, _ = FaceContactLaw(pair.pair.contact, pair.pair.clearance).at(pair.approach)
+        found = []
+        for gear in (pair.pair.driver, pair.pair.driven):
+            part = self.shaft(gear.shaft).part
+            nodes = -(self.tangent.pairs[number] @ loads)[self.tangent.shafts[gear.shaft]].reshape(-1, 6)
+            arm = part.shaft.places - gear.at
+            whole = nodes.sum(axis=0)
+            whole[3] -= float(arm @ nodes[:, 1])
+            whole[4] += float(arm @ nodes[:, 0])
+            found.append(whole)
+        return found[0], found[1]
+
     def bearing(self, name: str) -> BearingLoad:
         """Return the load of the bearing of this name."""
         return next(one for one in self.bearings if one.name == name)

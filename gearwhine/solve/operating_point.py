@@ -36,6 +36,7 @@ TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 """Parts of the torque of operation at which the equilibrium is found over torque."""
 
 _PLACES = 201  # along a shaft, where its deflection is told
+_ROUNDED = 1e-15  # deflection that is none [m]
 _DIFFERENCE = 0.1  # part of the larger of two numbers by which they may differ without a word
 _ALIGNED = 1e-6  # difference of misalignments that is none [rad]
 _UNEVEN = 2.0  # K_Hβ beyond which a face is said to carry unevenly
@@ -157,10 +158,10 @@ class DeflectedShaft:
 
     @property
     def largest(self) -> tuple[float, float]:
-        """Largest displacement across the axis [m], and its place from the left end [m]."""
+        """Largest displacement across the axis [m], and its place from the left end [m]; zeros where it is rounding."""
         across = np.hypot(self.motion[0], self.motion[1])
         place = int(across.argmax())
-        return float(across[place]), float(self.at[place])
+        return (float(across[place]), float(self.at[place])) if across[place] > _ROUNDED else (0.0, 0.0)
 
     @property
     def twist(self) -> float:

@@ -311,6 +311,31 @@ def test_tapered_rollers_hold_a_shaft_between_them() -> None:
         assert abs(left + right) == pytest.approx(thrust, rel=1e-6)
 
 
+def test_flanks_and_bearings_hold_each_shaft_in_balance() -> None:
+    """Forces and moments about the left end, of the gear at its middle and of the bearings at theirs; torque by T."""
+    machine = one_stage(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek", backlash=1e-4)])
+    point = machine.operating_point()
+    (pair,) = point.pairs
+    torques = {one.rotor: one.value for one in machine.constant_torques}
+    for gear, flanks in zip((pair.pair.driver, pair.pair.driven), point.gear_forces(0), strict=True):
+        total = flanks + moved(flanks, gear.at)
+        for one in point.bearings:
+            if one.mounted.rotor == gear.shaft:
+                force = -np.append(one.force, 0.0)
+                total += force + moved(force, one.mounted.bearing.at)
+        total[5] += torques[gear.shaft]
+        assert total[:3] == pytest.approx(np.zeros(3), abs=1e-7 * pair.force)
+        assert total[3:] == pytest.approx(np.zeros(3), abs=1e-8 * pair.force)
+        # The thrust at the pitch point tilts the shaft: without moments the balance would miss this much.
+        radius = pair.pair.geometry.working_pitch_radii[int(gear is pair.pair.driven)]
+        assert float(np.hypot(*flanks[3:5])) == pytest.approx(abs(pair.thrust) * radius, rel=0.3)
+
+
+def moved(force: FloatArray, at: float) -> FloatArray:
+    """Moment about the left end of a force at a place on the axis, in six components."""
+    return np.array([0.0, 0.0, 0.0, -at * force[1], at * force[0], 0.0])
+
+
 def test_a_gear_with_a_rim_does_not_stiffen_its_shaft() -> None:
     """A solid pinion bends with its shaft and stiffens it; a rim on a web stands on one section of the bare shaft."""
     solid = one_stage()

@@ -12,7 +12,7 @@ from gearwhine.results.check import sections as check_sections
 from gearwhine.results.operating_point import sections
 from rotors.rolling_bearings import catalogue_row
 
-SIZE = {"type": "tapered-roller", "bore": "30 mm", "outer_diameter": "62 mm", "width": "17.25 mm"}
+SIZE = {"type": "tapered-roller", "bore": "40 mm", "outer_diameter": "80 mm", "width": "19.75 mm"}
 
 
 def opposed(carries: tuple[str, str] = ("+z", "-z"), **more: Any) -> dict[str, Any]:
@@ -85,7 +85,7 @@ def test_without_torque_the_equilibrium_is_that_of_the_preload() -> None:
     changes = opposed(axial_offset="5 um")
     result = gw.load("helical-pair", changes | {"operation.torque": "0 N*m"}).operating_point()
     document = result.document
-    row = catalogue_row("tapered-roller", 0.03, 0.062, 0.01725)
+    row = catalogue_row("tapered-roller", 0.04, 0.08, 0.01975)
     rigid = row.axial_force(5e-6)
     for one, sense in zip(document["bearings"], (1.0, -1.0, 1.0, -1.0), strict=True):
         assert one["force_n"][2] == pytest.approx(sense * one["preload_n"])
@@ -111,6 +111,13 @@ def test_without_torque_the_equilibrium_is_that_of_the_preload() -> None:
     assert [one["preload_n"] for one in loaded] == pytest.approx([one["preload_n"] for one in document["bearings"]])
     figures = dict(result.figures())
     assert list(figures) == ["load-shaft-input", "load-shaft-output"]
+    # The preload pulls at the shaft along its axis alone.
+    assert [one["largest_deflection_m"] for one in document["shafts"]] == [0.0, 0.0]
+    note = figures["load-shaft-input"].texts[1].get_text()
+    assert note == "no deflection across the axis; arrows: forces on the shaft, below them thrusts"
+    for axes in figures["load-shaft-input"].axes:
+        told = [text.get_text() for text in axes.texts if text.get_text()]
+        assert told == [f"{document['bearings'][0]['preload_n']:.4g} N"] * 2
 
 
 def test_shafts_without_preload_have_none() -> None:

@@ -54,6 +54,46 @@ def test_shafts_show_their_forces_and_deflection(loaded: Result[SolvedLoad], fig
     assert "deflections 500 times as large as lengths" in figure.texts[1].get_text()
 
 
+def test_rows_below_a_shaft_show_thrust_and_moments(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
+    """The free body is complete: drawn numbers and senses balance in either plane, moments about the left end."""
+    figure, point = figures["load-shaft-input"], loaded.solved.point
+    (pinion, _) = point.gear_forces(0)
+    assert "below them thrusts and moments" in figure.texts[1].get_text()
+    drawn = 0
+    for plane, axes in enumerate(figure.axes):
+        numbers = [text.get_text() for text in axes.texts if not isinstance(text, Annotation)]
+        # The left bearing holds what the pinion is pushed with, which are the two thrusts.
+        thrust = f"{abs(pinion[2]):.4g} N"
+        assert numbers.count(thrust) == 2
+        arrows = [patch for patch in axes.patches if patch.get_label() == "_thrust"]
+        ways = {}
+        for arrow in arrows:
+            (tail, _), (tip, _) = arrow._posA_posB  # type: ignore[attr-defined]
+            ways[round(0.5 * (tail + tip))] = np.sign(tip - tail)
+        assert ways == {20: -np.sign(pinion[2]), 120: np.sign(pinion[2])}
+        # From z towards x a moment is about +y, from z towards y about -x.
+        turning = pinion[4] if plane == 0 else -pinion[3]
+        # Where the thrust does not tilt the shaft, across the line of centres, there is none to see.
+        seen = abs(turning) > 0.02 * np.abs(pinion[3:5]).max()
+        assert (f"{abs(turning):.3g} N·m" in numbers) is bool(seen)
+        if not seen:
+            continue
+        drawn += 1
+        arcs = [np.asarray(line.get_xydata()) for line in axes.lines if line.get_label() == "_arc"]
+        (arc,) = [one for one in arcs if abs(one[:, 0].mean() - 120.0) < 3.0]
+        # Along the arc to its head, counter-clockwise where positive.
+        chords = np.array([arc[arc.shape[0] // 2] - arc[0], arc[-1] - arc[0]])
+        assert np.sign(np.linalg.det(chords)) == np.sign(turning)
+    assert drawn == 1
+
+
+def test_a_shaft_without_thrust_and_moments_has_no_rows() -> None:
+    figure = dict(gw.load("spur-pair").operating_point().figures())["load-shaft-input"]
+    assert "below" not in figure.texts[1].get_text()
+    for axes in figure.axes:
+        assert not [patch for patch in axes.patches if patch.get_label() in ("_thrust", "_moment")]
+
+
 def test_faces_show_gap_and_load(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
     (pair,) = loaded.solved.point.pairs
     upper, lower = figures["load-face-pinion-wheel"].axes

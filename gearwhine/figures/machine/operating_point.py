@@ -9,7 +9,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Polygon
+from matplotlib.patches import FancyArrowPatch, Patch, Polygon
 
 from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.case import Case
@@ -31,9 +31,13 @@ from gearwhine.figures.style import (
     RED,
     SERIES,
     SHEET_WIDTH,
+    Label,
+    arrange,
+    draw_row,
     legend,
     name_in_legend,
     panel,
+    panel_size,
     sheet,
     shortened,
 )
@@ -47,24 +51,53 @@ _TALLEST, _SLIMMEST = 34.0, 7.0  # of a shaft with its gears between the largest
 _BESIDE, _BETWEEN = 6.0, 6.0  # margins and room between the two planes [mm of paper]
 _LARGEST, _ARROW, _WORDS = 5.0, 13.0, 5.0  # deflection, arrow of the largest force and its number [mm of paper]
 _STEPS = (1, 2, 5)
+_ROW, _GLYPH, _ARC = 12.0, 2.5, 1.5  # row of thrusts or moments, its middle from its top, radius [mm of paper]
 _LEAST = 1e-3  # part of the largest force below which none is drawn
+_LEAST_MOMENT = 0.02  # the same of moments
 _BODY, _SHAFT = "#d9cfb4", "#c9d5e0"
 _N_PER_MM = 1e-3
 
 
 @dataclass(frozen=True)
 class DrawnForce:
-    """A force on a shaft: its place from the left end [m], components along x and y [N], and whether a gear's."""
+    """A force on a shaft.
+
+    Attributes
+    ----------
+    at : float
+        Place from the left end [m].
+    force : tuple of float
+        Along x and y [N].
+    of_gear : bool
+        Of a gear, else of a bearing.
+    thrust : float
+        Along z [N].
+    moment : tuple of float
+        About x and y [N m].
+    """
 
     at: float
     force: tuple[float, float]
     of_gear: bool
+    thrust: float = 0.0
+    moment: tuple[float, float] = (0.0, 0.0)
+
+    def turning(self, plane: int) -> float:
+        """Moment in the x-z (0) or y-z plane (1) [N m], positive from z towards the other axis: M_y or -M_x."""
+        return self.moment[1] if plane == 0 else -self.moment[0]
+
+    @property
+    def color(self) -> str:
+        """Colour of its arrows."""
+        return RED if self.of_gear else INK
 
 
 def draw_deflected_shaft(
     title: str, assembly: RotorAssembly, shaft: DeflectedShaft, forces: Sequence[DrawnForce]
 ) -> Figure:
     """Draw a shaft to scale in both planes, its deflection exaggerated, with the forces on it as arrows.
+
+    Rows below have the thrusts, and the moments in the plane.
 
     Parameters
     ----------
@@ -77,13 +110,22 @@ def draw_deflected_shaft(
     """
     width = 0.5 * (SHEET_WIDTH - 2.0 * _BESIDE - _BETWEEN)
     view = _view(assembly, width)
-    across = float(np.hypot(shaft.motion[0], shaft.motion[1]).max())
+    across, _ = shaft.largest
     factor = _exaggeration(across, view)
-    strongest = max((abs(part) for one in forces for part in one.force), default=0.0) or 1.0
+    strongest = max((abs(part) for one in forces for part in (*one.force, one.thrust)), default=0.0) or 1.0
     below, above = _extent(assembly, view, shaft, forces, factor, strongest)
+    thrusts = [one for one in forces if abs(one.thrust) >= _LEAST * strongest]
+    largest = max((abs(part) for one in forces for part in one.moment), default=0.0)
+    turned = [[one for one in forces if abs(one.turning(plane)) > _LEAST_MOMENT * largest] for plane in range(2)]
+    # Moments of a thousandth of a millimetre of arm are rounding of the picture.
+    turned = turned if largest > 1e-6 * strongest else [[], []]
+    rows = bool(thrusts) + any(turned)
+    lowest, below = below, below + rows * _ROW
     height = below + above
     note = f"deflections {factor:g} times as large as lengths, {MICRO * across:.3g} µm at most"
-    note += "; arrows: forces on the shaft"
+    note = note if across else "no deflection across the axis"
+    what = " and ".join(["thrusts"] * bool(thrusts) + ["moments"] * any(turned))
+    note += "; arrows: forces on the shaft" + (f", below them {what}" if what else "")
     if view.stretch > 1:
         note += f"; diameters {view.stretch} times as large as lengths"
     figure = sheet(HEAD + 4.0 + height + FOOT, title, note)
@@ -102,6 +144,11 @@ def draw_deflected_shaft(
         axes.plot(MM * shaft.at, moved, color=BLUE, lw=1.3, zorder=5, label="deflection")
         for one in forces:
             _draw_force(axes, assembly, view, one, plane, strongest, float(np.interp(one.at, shaft.at, moved)))
+        level = below - lowest - _GLYPH
+        if thrusts:
+            _draw_thrusts(axes, view, thrusts, level, below, strongest)
+        if turned[plane]:
+            _draw_moments(axes, view, turned[plane], plane, level - _ROW * bool(thrusts), below)
     handles = [
         Line2D([], [], color=GREY, lw=0.8, ls="--", label="without load"),
         Line2D([], [], color=BLUE, lw=1.3, label="centre line"),
@@ -207,7 +254,7 @@ def _draw_force(
     sense = 1.0 if value > 0.0 else -1.0
     tip = moved - sense * view.across(_surface(assembly, one))
     tail = tip - sense * view.length(_arrow_length(value, strongest))
-    color = RED if one.of_gear else INK
+    color = one.color
     arrow = {"arrowstyle": "-|>,head_width=0.16,head_length=0.4", "color": color, "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (MM * one.at, tip), (MM * one.at, tail), arrowprops=arrow, zorder=6)
     axes.annotate(
@@ -221,6 +268,44 @@ def _draw_force(
         va="top" if sense > 0.0 else "bottom",
         zorder=7,
     )
+
+
+def _draw_thrusts(
+    axes: Axes, view: ShaftView, thrusts: Sequence[DrawnForce], level: float, below: float, strongest: float
+) -> None:
+    """Draw thrusts as arrows along the shaft in a row, ``level`` [mm of paper] from the panel's bottom."""
+    y = view.length(level - below)
+    for one in thrusts:
+        half = 0.5 * view.length(_arrow_length(one.thrust, strongest)) * (1.0 if one.thrust > 0.0 else -1.0)
+        _add_arrow(axes, (MM * one.at - half, y), (MM * one.at + half, y), one.color, "_thrust")
+    _name_row(axes, view, [(one, f"{abs(one.thrust):.4g} N") for one in thrusts], y, level)
+
+
+def _draw_moments(
+    axes: Axes, view: ShaftView, turned: Sequence[DrawnForce], plane: int, level: float, below: float
+) -> None:
+    """Draw moments in a plane as arcs with an arrow in their sense in a row, as thrusts."""
+    y, radius = view.length(level - below), view.length(_ARC)
+    for one in turned:
+        sense = 1.0 if one.turning(plane) > 0.0 else -1.0
+        angles = np.radians(np.linspace(-40.0, 200.0, 40))
+        across, up = MM * one.at + sense * radius * np.cos(angles), y + radius * np.sin(angles)
+        axes.plot(across[:-4], up[:-4], color=one.color, lw=1.1, zorder=6, label="_arc", solid_capstyle="butt")
+        _add_arrow(axes, (across[-6], up[-6]), (across[-1], up[-1]), one.color, "_moment")
+    _name_row(axes, view, [(one, f"{abs(one.turning(plane)):.3g} N·m") for one in turned], y, level)
+
+
+def _add_arrow(axes: Axes, tail: tuple[float, float], tip: tuple[float, float], color: str, label: str) -> None:
+    style = "-|>,head_width=1.5,head_length=2.8"
+    look = {"arrowstyle": style, "mutation_scale": 1.0, "shrinkA": 0.0, "shrinkB": 0.0, "lw": 1.1, "zorder": 6}
+    axes.add_patch(FancyArrowPatch(tail, tip, color=color, label=label, **look))
+
+
+def _name_row(axes: Axes, view: ShaftView, named: Sequence[tuple[DrawnForce, str]], y: float, level: float) -> None:
+    """Write the numbers of a row below its arrows."""
+    labels = [Label(text, MM * one.at, y - view.length(_ARC), one.color) for one, text in named]
+    row = arrange(labels, [view.paper(one.at) for one, _ in named], panel_size(axes)[0])
+    draw_row(axes, row, level - _ARC, above=False)
 
 
 _GAP_PANEL, _LOAD_PANEL, _ROOM = 34.0, 46.0, 4.0  # heights [mm of paper]
@@ -368,6 +453,12 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
     return figure
 
 
+def _drawn(at: float, force: FloatArray, *, of_gear: bool) -> DrawnForce:
+    """Return a force of components along x, y, z and about x, y on a shaft."""
+    x, y, z, about_x, about_y = force.tolist()
+    return DrawnForce(at, (x, y), of_gear, z, (about_x, about_y))
+
+
 def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     """Draw the operating point of a case.
 
@@ -384,26 +475,21 @@ def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
         ``load-over-torque``.
     matplotlib.figure.Figure
     """
-    bearings: dict[str, list[DrawnForce]] = {shaft.name: [] for shaft in solved.shafts}
+    acting: dict[str, list[DrawnForce]] = {shaft.name: [] for shaft in solved.shafts}
     for one in solved.point.bearings:
-        x, y = (-one.force[:2]).tolist()
-        bearings[one.mounted.rotor].append(DrawnForce(one.mounted.bearing.at, (x, y), of_gear=False))
+        acting[one.mounted.rotor].append(_drawn(one.mounted.bearing.at, -one.force, of_gear=False))
     gears: dict[tuple[str, float], FloatArray] = {}
-    for pair in solved.point.pairs:
-        for gear, side in ((pair.pair.driver, -1.0), (pair.pair.driven, 1.0)):
-            push = side * pair.force * np.array(pair.pair.push)
-            gears[gear.shaft, gear.at] = gears.get((gear.shaft, gear.at), np.zeros(2)) + push
+    for number, pair in enumerate(solved.point.pairs):
+        for gear, force in zip((pair.pair.driver, pair.pair.driven), solved.point.gear_forces(number), strict=True):
+            gears[gear.shaft, gear.at] = gears.get((gear.shaft, gear.at), np.zeros(5)) + force[:5]
+    for (name, at), force in gears.items():
+        acting[name].append(_drawn(at, force, of_gear=True))
     stems = file_stems([shaft.name for shaft in solved.shafts], "load-shaft-")
     for stem, shaft in zip(stems, solved.shafts, strict=True):
         held = [one.mounted.bearing for one in solved.point.bearings if one.mounted.rotor == shaft.name]
         assembly = rotor_assembly(case, solved.machine.rotor(shaft.name), held)
-        forces = bearings[shaft.name] + [
-            DrawnForce(at, (float(force[0]), float(force[1])), of_gear=True)
-            for (name, at), force in gears.items()
-            if name == shaft.name
-        ]
         title = f"Shaft {shortened(shaft.name, 20)} under load"
-        yield stem, draw_deflected_shaft(title, assembly, shaft, forces)
+        yield stem, draw_deflected_shaft(title, assembly, shaft, acting[shaft.name])
     pairs = [pair for pair in solved.point.pairs if pair.force > 0.0]
     if pairs:
         yield "load-misalignment", draw_misalignment("Misalignment of the flanks by cause", pairs)
