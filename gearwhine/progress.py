@@ -1,5 +1,6 @@
 """Progress of long work: a live line on a terminal, plain lines elsewhere, nothing when quiet."""
 
+import logging
 import sys
 import time
 from collections.abc import Iterator
@@ -30,10 +31,40 @@ def shown(*, quiet: bool) -> Iterator[Progress]:
     if quiet:
         yield silent
     elif sys.stderr.isatty():
-        with _live() as progress:
-            yield progress
+        with _live() as progress, _with_compilation(progress) as both:
+            yield both
     else:
-        yield _lines()
+        with _with_compilation(_lines()) as both:
+            yield both
+
+
+_COMPILER = "rotors.numerics.compiled"  # named, not imported: with numba it takes longer than many a command
+_COMPILING = "compiling kernels, the first time only"
+
+
+@contextmanager
+def _with_compilation(progress: Progress) -> Iterator[Progress]:
+    """Report also, as news of the present work, that kernels are compiled, which may take a minute."""
+    work = "starting"
+
+    def both(message: str, fraction: float | None = None) -> None:
+        nonlocal work
+        work = _work(message)
+        progress(message, fraction)
+
+    class News(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            progress(f"{work}: {_COMPILING}")
+
+    news, logger = News(), logging.getLogger(_COMPILER)
+    level = logger.level
+    logger.addHandler(news)
+    logger.setLevel(logging.INFO)
+    try:
+        yield both
+    finally:
+        logger.setLevel(level)
+        logger.removeHandler(news)
 
 
 @contextmanager

@@ -177,10 +177,11 @@ class Result(Generic[Solved]):
             self._write_data(place, kept.variables)
             for file in kept.files:
                 shutil.copyfile(file, place / file.name)
-            if pictures:
-                from gearwhine.figures.style import save_all
+            for name, figure in self.figures(progress) if pictures else ():
+                # Loaded where there is a figure: matplotlib takes as long as the modes of a small housing.
+                from gearwhine.figures.style import save
 
-                save_all(self.figures(progress), place)
+                save(figure, place / f"{name}.png")
             self._files(place, pictures=pictures)
             if self._started is not None:
                 now = time.perf_counter()

@@ -304,11 +304,14 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
     if solved.load is not None:
         yield from figures.draw_load(case, solved.load)
     if solved.system is not None:
+        progress("drawing the coupled system")
         yield from figures.draw_system(case, solved.system)
     if solved.transient is not None:
+        progress("drawing the motion")
         found = solved.transient, solved.signature, solved.housing, solved.comparison
         yield from figures.draw_transient(case, *found)
     if solved.run_signature is not None:
         yield from figures.draw_run(case, solved.run_signature, solved.housing)
     if solved.housing is not None and solved.comparison is not None:
+        progress("drawing the comparison with measured modes")
         yield from figures.draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)

@@ -205,7 +205,7 @@ def solve_transient(
     rows += 2 * len(machine.system.contacts)
     signals = nothing.columns.shape[1]
     chosen = sampling(case, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block)
-    progress("compiling the time stepper (the first time takes longer)")
+    progress("preparing the time stepper")
     integration = (machine.system, chosen.settings, outputs)
     start = starting_state(case, machine)
     key = integration_key(*integration, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)

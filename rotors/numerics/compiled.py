@@ -1,6 +1,6 @@
 """Compilation of kernels by numba: decorators :func:`counted`, :func:`uncounted` and :func:`inner`, and the cache.
 
-Importing this module imports numba.
+Importing this module imports numba. A kernel that is compiled, which takes seconds, is logged at the level INFO.
 
 Numba counts references to every array that enters or leaves a function, atomically; with tuples of a dozen arrays that
 costs several times the arithmetic of a step, and most of the compile time. Kernels that make no arrays need no counts:
@@ -19,6 +19,7 @@ Folders that no process has used for a month are removed.
 """
 
 import hashlib
+import logging
 import os
 import re
 import shutil
@@ -33,6 +34,7 @@ import llvmlite
 import numba
 import numpy as np
 from numba import njit
+from numba.core import event
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 # A product and the sum it goes into may be rounded once.
@@ -46,6 +48,21 @@ _UNUSED = 30 * 86400.0
 """Age of a folder that is removed [s]."""
 _KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
 _IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
+
+
+class _Log(event.Listener):  # type: ignore[misc]  # numba has no types
+    """Logs each kernel of this program that is compiled, not one that is read from the cache."""
+
+    def on_start(self, event: Any) -> None:
+        function = event.data["dispatcher"].py_func
+        if function.__module__.partition(".")[0] in _PACKAGES:
+            logging.getLogger(__name__).info("compiling %s", function.__qualname__)
+
+    def on_end(self, event: Any) -> None:
+        pass
+
+
+event.register("numba:compile", _Log())
 
 
 def counted(**options: Any) -> Callable[[Kernel], Kernel]:

@@ -72,6 +72,15 @@ def test_the_housing_is_solved_once(study: gw.Study) -> None:
     assert study.modes().solved is study.housing
 
 
+def test_modes_are_written_without_loading_a_library_of_figures(tmp_path: Path) -> None:
+    code = (
+        f"import sys, gearwhine as gw; files = gw.load('small-gearbox', {COARSE!r}).modes().write({str(tmp_path)!r})\n"
+        "print('results.nc' in files, 'matplotlib' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "False"]
+
+
 def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> None:
     found = study.system(campbell=True)
     files = found.write(tmp_path)

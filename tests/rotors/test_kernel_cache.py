@@ -69,6 +69,26 @@ def test_a_changed_called_kernel_or_constant_is_compiled_anew(tmp_path: Path) ->
     assert run(tmp_path) == (-4.0, 0)
 
 
+def test_kernels_are_logged_when_they_are_compiled_not_when_read(tmp_path: Path) -> None:
+    packages(tmp_path)
+    code = (
+        "import logging; logging.basicConfig(level='INFO', format='%(message)s'); from rotors.caller import g; g(1.0)"
+    )
+    environment = {key: value for key, value in os.environ.items() if key != "NUMBA_CACHE_DIR"}
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            cwd=tmp_path,
+            env=environment | {"PYTHONPATH": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stderr.splitlines()
+        for _ in range(2)
+    ]
+    assert said == [["compiling g", "compiling f"], []]
+
+
 def test_the_digest_covers_every_kernel_and_what_it_imports() -> None:
     kernels = [factor, evaluate_contact, friction_history, penetration, by_pairs]
     files = {Path(kernel.py_func.__code__.co_filename) for kernel in kernels}  # type: ignore[attr-defined]
