@@ -55,6 +55,7 @@ html_static_path = ["site/static"]
 html_css_files = ["gearwhine.css"]
 html_math_renderer = "mathml"
 html_copy_source = False
+html_show_copyright = False
 # Summaries are fetched page by page, which a browser refuses to pages that are opened from a folder.
 html_show_search_summary = False
 
