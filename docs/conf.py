@@ -8,7 +8,10 @@ import re
 import sys
 from pathlib import Path
 
+from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+from sphinx.ext.napoleon.docstring import NumpyDocstring
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "docs" / "site")]
@@ -55,6 +58,7 @@ html_static_path = ["site/static"]
 html_css_files = ["gearwhine.css"]
 html_math_renderer = "mathml"
 html_copy_source = False
+html_show_copyright = False
 # Summaries are fetched page by page, which a browser refuses to pages that are opened from a folder.
 html_show_search_summary = False
 
@@ -62,6 +66,7 @@ _ARRAYS = {
     "ndarray[tuple[Any, ...], dtype[float64]]": "FloatArray",
     "ndarray[tuple[Any, ...], dtype[complex128]]": "ComplexArray",
 }
+_pages_of: dict[str, list[str]] = {}
 _START = """\
 <!doctype html><meta charset="utf-8"><title>Gearwhine</title>
 <meta http-equiv="refresh" content="0; url=docs/index.html"><a href="docs/index.html">Gearwhine</a>
@@ -70,8 +75,30 @@ _START = """\
 
 def write_pages(app: Sphinx) -> None:
     """Write the pages that no one writes by hand."""
+    global _pages_of
     gallery.write_gallery(ROOT, ROOT / "docs" / "gallery", python_pages.ROOMS)
-    python_pages.write_pages(ROOT, ROOT / "docs" / "reference")
+    _pages_of = python_pages.write_pages(ROOT, ROOT / "docs" / "reference")
+
+
+def find_public_name(
+    app: Sphinx, env: BuildEnvironment, node: nodes.Element, shown: nodes.Element
+) -> nodes.Element | None:
+    """Link a name to its page, whichever package's docstring has it: the front door's names are those of the rooms."""
+    name = node["reftarget"].rpartition(".")[2]
+    homes = _pages_of.get(name, [])
+    if node.get("refdomain") != "py" or len(homes) != 1:
+        return None
+    domain = env.domains.python_domain
+    return domain.resolve_xref(env, node["refdoc"], app.builder, "obj", f"{homes[0]}.{name}", node, shown)
+
+
+def whole_attribute(self: NumpyDocstring) -> tuple[str, list[str]]:
+    """Read the docstring of an attribute as prose: what stands before its first colon is no type."""
+    lines = self._dedent(self._consume_to_end())
+    return "", self.__class__(lines, self._config).lines()
+
+
+NumpyDocstring._consume_inline_attribute = whole_attribute
 
 
 def name_arrays(
@@ -106,6 +133,7 @@ def add_start(app: Sphinx, failure: Exception | None) -> None:
 def setup(app: Sphinx) -> None:
     """Connect what happens while building."""
     app.connect("builder-inited", write_pages)
+    app.connect("missing-reference", find_public_name)
     app.connect("autodoc-process-signature", name_arrays)
     app.connect("autodoc-process-docstring", keep_bars)
     app.connect("build-finished", add_start)

@@ -8,6 +8,7 @@ import ast
 import inspect
 from functools import cache
 from importlib import import_module
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -82,22 +83,30 @@ def directive(package: str, name: str) -> str:
     """Return the directive of `sphinx.ext.autodoc` that documents a name."""
     value = getattr(import_module(package), name)
     if inspect.isclass(value):
-        return f".. autoclass:: {name}\n   :members:\n   :show-inheritance:"
+        bases = "" if value.__bases__ == (object,) else "\n   :show-inheritance:"
+        return f".. autoclass:: {name}\n   :members:{bases}"
     if callable(value):
         return f".. autofunction:: {name}"
     return f".. autodata:: {origin(package, name)}.{name}\n   :no-value:"
 
 
 def summary(package: str, name: str) -> str:
-    """First sentence of a name's docstring; of a constant its page has it."""
+    """First paragraph of a name's docstring, of a constant the text below it."""
     value = getattr(import_module(package), name)
-    if not callable(value):
-        return "Constant."
-    return (inspect.getdoc(value) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    text = (inspect.getdoc(value) or "") if callable(value) else _text_below(origin(package, name), name)
+    return text.split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+
+
+def _text_below(module: str, name: str) -> str:
+    for line, text in pairwise(ast.parse(inspect.getsource(import_module(module))).body):
+        targets = line.targets if isinstance(line, ast.Assign) else [getattr(line, "target", None)]
+        if any(isinstance(target, ast.Name) and target.id == name for target in targets) and isinstance(text, ast.Expr):
+            return inspect.cleandoc(str(ast.literal_eval(text.value)))
+    return "Constant."
 
 
 def write_pages(root: Path, folder: Path) -> dict[str, list[str]]:
-    """Write all pages into a folder; return the names of each package."""
+    """Write all pages into a folder; return for each name the packages that have its page."""
     names_of = {package: public_names(package) for package in packages(root)}
     home_of = homes(names_of)
     pages = {}
@@ -118,7 +127,11 @@ def write_pages(root: Path, folder: Path) -> dict[str, list[str]]:
         # An unchanged page keeps its time, so that the next build takes it from the last one.
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
-    return names_of
+    pages_of: dict[str, list[str]] = {}
+    for (package, name), home in home_of.items():
+        if home == package:
+            pages_of.setdefault(name, []).append(home)
+    return pages_of
 
 
 def _title(text: str) -> str:

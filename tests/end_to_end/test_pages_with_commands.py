@@ -24,7 +24,7 @@ _SHORT = ("transient.revolutions=2", "transient.discard=1", "transient.tolerance
 LESS_EFFORT = {
     "nasa-gear-noise-rig": ("housing.box.mesh_size=45 mm", *_SHORT),
     "small-gearbox": ("housing.box.mesh_size=45 mm", *_SHORT),
-    "two-stage-reducer": ("housing.frequency_limit=600 Hz", *_SHORT),
+    "two-stage-reducer": ("housing.cad.mesh_size=18 mm", "housing.frequency_limit=600 Hz", *_SHORT),
     "steel-box": (),
     "friswell-rotor": (),
 }

@@ -134,6 +134,23 @@ def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert float(names["force"].mean()) == pytest.approx(mean, rel=5e-3)
 
 
+def test_the_variant_of_the_reducer_is_drawn(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(ROOT / "scripts")
+    (block,) = blocks("docs/two-stage-reducer.md")
+    exec(compile(block, "docs/two-stage-reducer.md", "exec"), {})  # noqa: S102 - the page is ours
+    assert (tmp_path / "two-stage-reducer.step").stat().st_size > 100_000
+
+
+def test_programs_of_all_pages_are_run() -> None:
+    """Those of README are an example, and tutorials and how-to pages run as a whole."""
+    here = {"README.md", "docs/python.md", "docs/two-stage-reducer.md"}
+    for page in PAGES:
+        name = page.relative_to(ROOT).as_posix()
+        if "```python" in page.read_text(encoding="utf-8"):
+            assert name in here or name.split("/")[1] in ("tutorials", "how-to"), name
+
+
 def test_files_that_contributing_names_exist() -> None:
     """A path in the tables of the tree is that of a file or folder."""
     page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
