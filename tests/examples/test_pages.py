@@ -60,6 +60,15 @@ def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert float(names["force"].mean()) == pytest.approx(mean, rel=5e-3)
 
 
+def test_the_page_on_the_report_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    (block,) = blocks("docs/report.md")
+    names: dict[str, Any] = {"__name__": "__main__"}
+    exec(compile(block, "docs/report.md", "exec"), names)  # noqa: S102 - the page is ours
+    assert names["page"] == Path("out", "report.html")
+    assert "<h2 id=" in names["page"].read_text(encoding="utf-8")
+
+
 def test_files_that_contributing_names_exist() -> None:
     """A path in the tables of the tree is that of a file or folder."""
     page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
