@@ -177,9 +177,10 @@ def moving_shapes(folder: Path) -> list[MovingShape]:
         Empty is the list where it holds no modes of a housing that can be read.
     """
     from gearwhine.solve.operating_shapes import operating_shape_of_line, stored_lines
+    from housing.errors import ModeFileError
     from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
     from housing.pictures.gltf import light_model
-    from housing.storage.mode_file import ModeFileError, read_modes
+    from housing.storage.mode_file import read_modes
 
     try:
         record = read_modes(folder / MODE_CACHE_FILE)

@@ -179,12 +179,12 @@ def operating_shape_of_line(line: RunLine, modes: ModeSet, housing: DrawnHousing
         motion = line.shape.displacement(modes, housing.nodes)
         largest = float(peak_displacement(motion).max())
         shares = _leading(line, modes)
-        modes = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
+        told = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
         return DrawnShape(
             f"line-{line.hertz:.1f}Hz",
             f"Operating shape at {line.hertz:.1f} Hz" + (f"   {line.name}" if line.name else ""),
             f"largest {_MICRO * largest:.3g} µm, {largest * line.shape.frequency**2:.3g} m/s² (peak)\n"
-            f"kinetic energy: modes {modes}",
+            f"kinetic energy: modes {told}",
             motion,
             "Displacement [µm], peak",
             _MICRO * largest,
