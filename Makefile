@@ -19,7 +19,7 @@ export OPENBLAS_NUM_THREADS ?= 2
 # Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo test lint types unit docs reference validation stiffness-page install install-dev system format constraints clean
+.PHONY: demo test lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
@@ -36,7 +36,7 @@ lint: install-dev
 types: install-dev
 	$(BIN)/mypy
 
-unit: install-dev
+unit: install-dev browser
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile
 
 install: $(VENV)/.installed system $(VENV)/.compiled
@@ -45,6 +45,10 @@ install-dev: $(VENV)/.installed-dev system $(VENV)/.compiled
 # gmsh and VTK need libraries from the system: this says which, and installs them where it may.
 system: | $(VENV)/.installed
 	@sh scripts/system_libraries.sh $(BIN)/python
+
+# Chromium for the tests of the report, where it can be had; they are skipped without it.
+browser: | $(VENV)/.installed
+	@sh scripts/system_libraries.sh $(BIN)/python --browser
 
 # After what it needs of the system, therefore last.
 $(VENV)/.compiled: pyproject.toml constraints.txt | $(BIN)/python

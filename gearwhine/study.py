@@ -205,6 +205,16 @@ class Study:
             progress=self.progress,
         )
 
+    def report(self, folder: str | os.PathLike[str], *, interactive: bool = False) -> Path:
+        """Write all results in a folder as one HTML page; return the file.
+
+        See :func:`gearwhine.analyses.case.write_report`.
+        """
+        from gearwhine.analyses.case import write_report
+
+        written = write_report(Path(folder), self.case, interactive=interactive, progress=self.progress)
+        return Path(folder) / str(written["files"][0])
+
     def rotors(self) -> Result[tuple[SolvedRotor, ...]]:
         """Find modes, whirl and critical speeds of each rotor; see :func:`gearwhine.analyses.machine.rotors`."""
         from gearwhine.analyses import machine

@@ -96,13 +96,14 @@ class Finding:
     Attributes
     ----------
     text : str
-    passed : bool
+    passed : bool or None
+        None where it is a warning, which may be neither.
     link : tuple of str
         Names of places in the report, of which the first that is there shows more.
     """
 
     text: str
-    passed: bool
+    passed: bool | None
     link: tuple[str, ...] = ()
 
     def __str__(self) -> str:

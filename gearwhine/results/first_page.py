@@ -71,7 +71,7 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
     """
     sections = (
         machine_section(case, documents),
-        Section("Is it sound?", tuple(_findings(documents, stale))),
+        Section("Is it sound?", _findings(documents, stale)),
         Section("Highest lines", _lines(documents)),
         Section("", pictures=_PICTURES),
         Section("Measured and modelled", _compared(documents)),
@@ -177,7 +177,17 @@ def _pair(pair: "CheckedPair") -> Document:
     }
 
 
-def _findings(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[Finding]:
+def _findings(documents: Sequence[Document], stale: Sequence[str]) -> tuple[str | Finding, ...]:
+    """Return the verdict in a sentence, and what it comes from."""
+    found = tuple(_told(documents, stale))
+    passed, failed, warned = (sum(one.passed is kind for one in found) for kind in (True, False, None))
+    if not found:
+        return ()
+    verdict = f"{counted(passed, 'check')} passed" + (f", {failed} did not" if failed else ", none failed")
+    return (f"{verdict}; {counted(warned, 'warning') if warned else 'no warnings'}.", *found)
+
+
+def _told(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[Finding]:
     """Yield the proofs of all results, each said once, then what does not fit, then the warnings."""
     told: set[str] = set()
     for document in documents:
@@ -191,7 +201,7 @@ def _findings(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[F
         for warning in document.get("warnings", ()):
             if (text := str(warning["message"])) not in told:
                 told.add(text)
-                yield Finding(_sentence(text), passed=False, link=(*_chapter(warning["name"]), "section Warnings"))
+                yield Finding(_sentence(text), passed=None, link=(*_chapter(warning["name"]), "section Warnings"))
 
 
 def _chapter(name: object) -> tuple[str, ...]:

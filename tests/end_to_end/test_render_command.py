@@ -1,10 +1,13 @@
 """`gearwhine render` beyond modes: lines of a run, measured shapes, films, and a renderer that dies."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+
+from gearwhine.mode_pictures import moving_shapes
 
 pytestmark = pytest.mark.rendered
 
@@ -22,10 +25,39 @@ def run_on_file(gearwhine, tmp_path: Path) -> Path:
     spectrum = np.zeros((len(content["housing_mode"]), 21, 2))
     spectrum[1, 10, 1] = 1.0
     content["housing_acceleration_spectrum"] = (("housing_mode", "housing_line", "part"), spectrum)
+    content["line_frequency"] = (("sensor", "line"), [[500.0, np.nan]])
+    content["line_name"] = (("sensor", "line"), [["1× shaft", ""]])
     content = content.assign_coords(housing_line=np.arange(21) * 50.0)
     path.unlink()
     content.to_netcdf(path, engine="h5netcdf")
     return path
+
+
+def test_an_interactive_report_has_the_shapes_of_the_folder(gearwhine, run_on_file: Path, tmp_path: Path) -> None:
+    outcome = gearwhine("report", *CASE, "--interactive", "-o", "out", "--json")
+    assert outcome.code == 0, outcome.err
+    assert outcome.document["files"] == ["report-interactive.html"]
+    assert not (tmp_path / "out" / "report.html").exists()
+    page = (tmp_path / "out" / "report-interactive.html").read_text(encoding="utf-8")
+    listed = re.findall(r'data-shape="\d+" data-picture="([^"]+)"', page)
+    with xr.open_dataset(tmp_path / "out" / "modes.nc", engine="h5netcdf") as kept:
+        modes = kept["frequency"].values
+        shape = kept["shape"].values[1]
+    assert listed == ["line-500.0Hz", *(f"mode-{n:02d}-{hertz:.0f}Hz" for n, hertz in enumerate(modes, start=1))]
+    # The line is mode 2 alone, and so says its size as `render` does.
+    told = re.search(r'data-title="([^"]*1× shaft)" data-note="largest ([\d.e+-]+) µm', page)
+    assert told is not None
+    largest = np.linalg.norm(shape, axis=1).max() / (2.0 * np.pi * 500.0) ** 2
+    assert float(told[2]) == pytest.approx(1e6 * largest, rel=1e-2)
+    # Modes of another solution may have other signs: no line is made of them.
+    with xr.open_dataset(run_on_file, engine="h5netcdf") as dataset:
+        content = dataset.load()
+    content["survey_shape"][1] *= -1.0
+    run_on_file.unlink()
+    content.to_netcdf(run_on_file, engine="h5netcdf")
+    assert [shape.name for shape in moving_shapes(tmp_path / "out")] == listed[1:]
+    (tmp_path / "out" / "modes.nc").unlink()
+    assert moving_shapes(tmp_path / "out") == []
 
 
 def test_a_line_is_drawn_in_its_true_size(gearwhine, run_on_file: Path, tmp_path: Path) -> None:

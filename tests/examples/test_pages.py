@@ -144,11 +144,20 @@ def test_the_variant_of_the_reducer_is_drawn(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_programs_of_all_pages_are_run() -> None:
     """Those of README are an example, and tutorials and how-to pages run as a whole."""
-    here = {"README.md", "docs/python.md", "docs/two-stage-reducer.md"}
+    here = {"README.md", "docs/python.md", "docs/report.md", "docs/two-stage-reducer.md"}
     for page in PAGES:
         name = page.relative_to(ROOT).as_posix()
         if "```python" in page.read_text(encoding="utf-8"):
             assert name in here or name.split("/")[1] in ("tutorials", "how-to"), name
+
+
+def test_the_page_on_the_report_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    (block,) = blocks("docs/report.md")
+    names: dict[str, Any] = {"__name__": "__main__"}
+    exec(compile(block, "docs/report.md", "exec"), names)  # noqa: S102 - the page is ours
+    assert names["page"] == Path("out", "report.html")
+    assert "<h2 id=" in names["page"].read_text(encoding="utf-8")
 
 
 def test_files_that_contributing_names_exist() -> None:

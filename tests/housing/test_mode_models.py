@@ -1,5 +1,6 @@
 """Moving models of modes: valid glTF 2.0 by the specification's rules, and what an independent reader makes of them."""
 
+import gzip
 import json
 import struct
 from collections.abc import Callable
@@ -8,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
 from housing import HousingError, ModeSet, solve_modes
 from housing.fem.matrices import Matrices
-from housing.pictures.drawn_shapes import _CUTS, outer_skin
-from housing.pictures.gltf import write_mode_models
+from housing.pictures.drawn_shapes import _CUTS, DRAWN_SCALE, DrawnShape, drawn_housing, outer_skin, peak_displacement
+from housing.pictures.gltf import light_model, write_mode_models
 from meshes import Mesh
 from meshes.elements import facet_nodes
 
@@ -239,3 +241,35 @@ def test_facets_of_every_kind_are_cut_whole(corners: int, middles: int) -> None:
     assert np.all(areas > 0.0)
     assert areas.sum() == pytest.approx(1.0 if corners == 4 else 0.5)
     assert set(cuts.ravel()) == set(range(len(points)))
+
+
+def test_a_light_model_runs_around_as_its_motion_does(box: Mesh) -> None:
+    """Targets by their weights are Re U e^{iθ} of the points that are left, which were there before."""
+    surface = drawn_housing(box)
+    places = surface.rest / surface.diagonal
+    motion = np.stack([np.exp(3j * places[:, 1]), 1j * places[:, 0], places[:, 2] + 0j], axis=1)
+    shape = DrawnShape("line", "runs around", "", motion)
+    most = len(surface.triangles) // 3
+    model = Model(light_model(surface, shape, most))
+    assert 0.5 * most < len(model.triangles) <= most
+    rest = model.attribute("POSITION")
+    distance, kept = KDTree(surface.rest).query(rest)
+    assert distance.max() < 1e-3 * surface.diagonal  # of eleven binary digits
+    assert len(set(kept)) == len(rest)
+    cosine, sine = (model.array(target["POSITION"]).astype(float) for target in model.primitive["targets"])
+    (sampler,) = model.document["animations"][0]["samplers"]
+    angles = 2.0 * np.pi * model.array(sampler["input"]) / model.array(sampler["input"])[-1]
+    weights = model.array(sampler["output"]).reshape(-1, 2)
+    np.testing.assert_allclose(weights, np.stack([np.cos(angles), np.sin(angles)], axis=1), atol=1e-6)
+    # cosine cos + sine sin = Re (cosine - i sine) e^{iθ}: that is U but for its size and the start of its phase.
+    drawn, given = cosine - 1j * sine, motion[kept]
+    factor = np.vdot(given, drawn) / np.vdot(given, given)
+    np.testing.assert_allclose(drawn, factor * given, atol=2e-3 * np.abs(drawn).max())
+    assert peak_displacement(drawn).max() == pytest.approx(DRAWN_SCALE * surface.diagonal, rel=0.02)
+
+
+def test_a_light_model_is_smaller(box: Mesh, modes: ModeSet, file: Path) -> None:
+    surface = drawn_housing(box)
+    shape = DrawnShape("mode-07", "mode 7", "", modes.shapes[6][surface.nodes])
+    packed = len(gzip.compress(light_model(surface, shape, 10**9)))
+    assert packed < 0.6 * len(gzip.compress(file.read_bytes()))

@@ -11,6 +11,7 @@ from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, is_number
 
 _LONGEST = 60  # of an identifier [characters]
+_MARKS = {True: ("passed", "✓"), False: ("failed", "✗"), None: ("warned", "!")}  # of findings
 _WRAPPED = 20  # characters of a cell from which on its column may wrap
 
 
@@ -124,7 +125,7 @@ class Writer:
         return f' <span class="note">{escape(note)}</span>' if note else ""
 
     def _finding(self, finding: Finding) -> str:
-        kind, mark = ("passed", "✓") if finding.passed else ("failed", "!")
+        kind, mark = _MARKS[finding.passed]
         more = ""
         for name in finding.link:
             if target := self._places.find(self._result, [name]):

@@ -209,7 +209,7 @@ def _chapters(result: _Result, places: Places, scripts: Scripts | None) -> str:
     made = result.document.get("made_at")
     told = f'<p class="note">Made {escape(moment(made))}.</p>\n' if made else ""
     told += "".join(
-        f'<p class="finding failed"><span class="mark">!</span> '
+        f'<p class="finding failed"><span class="mark">✗</span> '
         f"<span>Does not fit the case any more: {escape(one)}.</span></p>\n"
         for one in result.stale
     )
