@@ -37,16 +37,23 @@ def run(
     on_case(case, common, work, shown_by(sections, timed=True))
 
 
-def check(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
+def check(
+    case: CaseName,
+    *,
+    verbose: Annotated[
+        bool, Parameter(name=["--verbose", "-v"], negative=(), help="Show every part, with the origin of its values.")
+    ] = False,
+    common: Common = NONE_GIVEN,
+) -> None:
     """Check the case and show speeds, mesh frequencies, torques and sizes; solve nothing."""
     from gearwhine.analyses import case as analyses
     from gearwhine.output.terminal import shown_by
-    from gearwhine.results.check import sections
+    from gearwhine.results.check import sections, summary
 
     def work(given: "Case", progress: "Progress") -> dict[str, Any]:
         return written(analyses.check(given, progress=progress), common.output, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections if verbose else summary))
 
 
 def examples(

@@ -1,6 +1,7 @@
 """Results on the terminal: the sections of a document, its files and its time."""
 
 from collections.abc import Callable, Iterable
+from textwrap import wrap
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -13,6 +14,7 @@ from gearwhine.output.sections import Document, Section, Table, is_number
 
 _WIDTH = 120
 _LISTED = 12  # files that are named
+_NARROWEST = 20  # columns of a wrapped text
 
 
 def open_console() -> Console:
@@ -53,7 +55,8 @@ def show_files(document: Document) -> None:
 def show_section(console: Console, section: Section, indent: int = 0) -> None:
     """Print a section; content under a title is set in by two columns."""
     if section.title:
-        console.print(Text.assemble(" " * indent, (section.title, "bold"), section.note))
+        told = _hanging(console, section.note, indent + len(section.title))
+        console.print(Text.assemble(" " * indent, (section.title, "bold"), told))
         indent += 2
     for one in section.content:
         if isinstance(one, Table):
@@ -61,9 +64,22 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
                 console.print(f"{' ' * indent}{one.caption}")
             console.print(Padding(_grid(one), (0, 0, 1, indent), expand=False))
         else:
-            console.print(f"{' ' * indent}{one}")
+            console.print(f"{' ' * indent}{_hanging(console, one, indent)}")
     for inner in section.inner:
         show_section(console, inner, indent)
+
+
+def _hanging(console: Console, text: str, before: int) -> str:
+    """Wrap a text at the width of a terminal; its further lines begin below its first letter.
+
+    ``before`` is the number of columns in front of it.
+    """
+    if not console.is_terminal:
+        return text
+    lead = text[: len(text) - len(text.lstrip())]
+    width = max(console.width - before - len(lead), _NARROWEST)
+    lines = wrap(text.strip(), width, break_long_words=False, break_on_hyphens=False) or [""]
+    return lead + f"\n{' ' * (before + len(lead))}".join(lines)
 
 
 def show_written(console: Console, document: Document) -> None:

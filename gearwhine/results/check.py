@@ -1,7 +1,7 @@
 """Check of a case: quantities known by arithmetic alone, and how the terminal shows them."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -345,10 +345,75 @@ _WIDTH = 12  # of the column with the names of parts
 
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the parts of a case in words, a part's name before its first line."""
+    return _in_words(_parts(document))
+
+
+def summary(document: Document) -> tuple[Section, ...]:
+    """Return the case in about a dozen lines: parts counted, bearings that locate their shafts, meshes, operation."""
+    return (*_in_words(_summed(document)), Section("", ("All of it: gearwhine check CASE --verbose",)))
+
+
+def _in_words(parts: Iterable[tuple[str, list[str]]]) -> tuple[Section, ...]:
     return tuple(
         Section(part, tuple(f"{'':{_WIDTH - 2}}{line}" for line in lines), note=f"{'':{_WIDTH - len(part)}}{first}")
-        for part, (first, *lines) in _parts(document)
+        for part, (first, *lines) in parts
     )
+
+
+def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
+    parts = {
+        "housing": _housing_summary(document["housing"]) if "housing" in document else [],
+        "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
+        "bearings": _bearing_summary(document.get("bearings", ())),
+        "location": [_location_line(one) for one in document.get("axial_location", ()) if _is_told(one)],
+        "gear pairs": [_pair_summary(pair) for pair in document.get("gear_pairs", ())],
+        "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
+        "transient": [_transient_line(document["transient"])] if "transient" in document else [],
+        "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
+        "measured": list(_measured_lines(document["measured"])) if "measured" in document else [],
+    }
+    return ((part, lines) for part, lines in parts.items() if lines)
+
+
+def _housing_summary(housing: Document) -> list[str]:
+    """Return what the housing is, and the numbers of what it has."""
+    first = _housing_lines(housing)[0]
+    counts = [
+        counted(len(housing[key]), word)
+        for key, word in (
+            ("seats", "seat"),
+            ("supports", "support"),
+            ("mounts", "mount"),
+            ("joints", "joint"),
+            ("sensors", "sensor"),
+        )
+        if housing[key]
+    ]
+    counts += [f"{len(housing['masses'])} lumped mass" + "es" * (len(housing["masses"]) > 1)] * bool(housing["masses"])
+    counts += [counted(len(housing["bores"]), "bore") + " in the drawing"] if housing.get("bores") else []
+    return [first, ", ".join(counts)] if counts else [first]
+
+
+def _bearing_summary(bearings: Sequence[Document]) -> list[str]:
+    if not bearings:
+        return []
+    on_ground = sum(one["seat"] == "ground" for one in bearings)
+    seated = len(bearings) - on_ground
+    parts = [f"{seated} in seats of the housing"] * bool(seated) + [f"{on_ground} on the ground"] * bool(on_ground)
+    return [", ".join(parts)]
+
+
+def _is_told(location: Document) -> bool:
+    """Whether the location of a rotor is worth a line: rows that carry one way, or thrust that is held one way only."""
+    return bool(location["rows"]) or bool(location["thrust_plus_z"]) != bool(location["thrust_minus_z"])
+
+
+def _pair_summary(pair: Document) -> str:
+    teeth = " : ".join(str(gear["teeth"]) for gear in pair["geometry"]["gears"])
+    line = f"{pair['driver']} → {pair['driven']}: {teeth} teeth, contact ratio {pair['total_contact_ratio']:.3f}"
+    if pair["mesh_frequency_hz"] is not None:
+        line += f", mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean force {pair['mean_force_n']:.1f} N"
+    return line
 
 
 def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:

@@ -664,7 +664,10 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(SENSOR_COLUMNS, document.get("sensors", ()))
     if traced := _signature_table(document):
         yield from traced
-        yield "Levels of rms values re 1 µm/s²; shares in phase with the line, all of which add up to it."
+        yield (
+            "Levels of rms values re 1 µm/s². Shares are in phase with the line and add up to it; "
+            "of parts that cancel each other some exceed 100 %."
+        )
     if "steps" in document:
         yield (
             f"Transient: {document['steps']} {_STEPS[document['method']]}, "

@@ -208,6 +208,20 @@ def test_examples_copy(gearwhine, tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["spur-pair.toml"]
 
 
+def test_check_sums_up_in_a_dozen_lines_and_shows_all_when_asked(gearwhine) -> None:
+    brief = gearwhine("check", "nasa-gear-noise-rig", "-q").out.splitlines()
+    assert len(brief) <= 14
+    assert "housing     box of 279 x 254 x 330 mm, elements of 12 mm, steel; all modes below 3200 Hz" in brief
+    assert "            4 seats, 4 supports, 3 sensors" in brief
+    assert "bearings    4 in seats of the housing" in brief
+    assert brief[-1] == "All of it: gearwhine check CASE --verbose"
+    (pair,) = (line for line in brief if line.startswith("gear pairs  driver → driven: "))
+    assert pair.endswith("28 : 28 teeth, contact ratio 1.638, mesh frequency 2566.67 Hz, mean force 1718.2 N")
+    long = gearwhine("check", "nasa-gear-noise-rig", "-q", "--verbose").out
+    assert "standing    gear.*.teeth: published: Table I" in long
+    assert "All of it" not in long
+
+
 @pytest.mark.parametrize(
     ("command", "case", "said"),
     [

@@ -232,7 +232,7 @@ def test_the_overhung_fan_has_all_of_it(solved_rotor: Any) -> None:
 
 
 def test_check_says_what_a_rotor_and_its_bearings_are_made_of(gearwhine: Any) -> None:
-    out = gearwhine("check", "overhung-fan").out
+    out = gearwhine("check", "overhung-fan", "--verbose").out
     assert "fan: 2570 mm with 1 coupling" in out
     assert "by a pedestal of 150 kg, tables over 200 to 2500 rpm" in out
     assert "Campbell diagram at 47 speeds, 200 to 2500 rpm" in out

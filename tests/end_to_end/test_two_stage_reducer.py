@@ -130,7 +130,7 @@ def test_the_operating_point_finds_the_loads_by_hand(case: Case) -> None:
 
 def test_check_tells_mesh_frequencies_and_speeds(gearwhine: Any) -> None:
     """Closed forms z n / 60. A shaft that turns the other way has a speed of 0, not of -0."""
-    shown = gearwhine("check", NAME, "-q", "--set", "housing=", "--set", "bearing.*.seat=ground").out
+    shown = gearwhine("check", NAME, "-q", "--verbose", "--set", "housing=", "--set", "bearing.*.seat=ground").out
     assert f"{19 * 1450 / 60:.2f} Hz" in shown
     assert f"{17 * 1450 * 19 / 77 / 60:.2f} Hz" in shown
     assert "Campbell diagram at 51 speeds, -536.688 to 0 rpm" in shown

@@ -156,5 +156,5 @@ def test_the_check_says_which_region_is_of_what(tmp_path: Path, capsys: pytest.C
     )
     (tmp_path / "case.toml").write_text(text)
     assert load_case(str(tmp_path / "case.toml")).case.housing is not None
-    assert run_command(["check", str(tmp_path / "case.toml"), "-q"]) == 0
+    assert run_command(["check", str(tmp_path / "case.toml"), "-q", "-v"]) == 0
     assert "regions: cover of steel" in capsys.readouterr().out

@@ -285,9 +285,9 @@ def test_check_and_gears_say_which_misalignment_they_take(tmp_path: Path, capsys
     ):
         bare["gear_pair"][0]["misalignment"] = angle
         file.write_text(dump_case(parse_case(bare)), encoding="utf-8")
-        assert run_command([command, str(file), "-q"]) == 0
+        assert run_command([command, str(file), "-q", *["--verbose"] * (command == "check")]) == 0
         assert expected in capsys.readouterr().out
-    assert run_command(["check", "spur-pair", "-q"]) == 0
+    assert run_command(["check", "spur-pair", "-q", "-v"]) == 0
     assert "misalignment taken as 0, as the case gives none; `gearwhine load` finds it" in capsys.readouterr().out
 
 
