@@ -250,7 +250,12 @@ def residual_attachment_modes(
 
 
 def joined_residual_modes(
-    stiffness: Operator, mass: Operator, first: ResidualModes, second: ResidualModes, vectors: FloatArray, free: IntArray
+    stiffness: Operator,
+    mass: Operator,
+    first: ResidualModes,
+    second: ResidualModes,
+    vectors: FloatArray,
+    free: IntArray,
 ) -> ResidualModes:
     """Join two sets of residual modes of the same kept modes into one that spans both.
 
