@@ -63,7 +63,7 @@ def case() -> Case:
     document["housing"]["material"] = "iron"
     document["housing"]["support"][0]["stiffness"]["y"] = 2e9
     document["gear_pair"][0]["misalignment"] = "found"
-    document["gear"][0]["errors"] = {"helix": {"crowning": "30 um"}}
+    document["gear"][0]["errors"] = {"helix": {"crowning": "2 um"}}
     for bearing in document["bearing"]:
         bearing["stiffness"] = BALLS
     return parse_case(document)
@@ -174,21 +174,21 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved)
             patch.setattr(description, "static_bearing", made)
             return machine.operating_point()
 
-    either = [at_point(case, solved, stiffer(size)) for size in (2e-3, -2e-3)]
-    expected = (either[0] - either[1]) / 4e-3
+    either = [at_point(case, solved, stiffer(size)) for size in (5e-4, -5e-4)]
+    expected = (either[0] - either[1]) / 1e-3
     assert (np.abs(own - expected) < 1e-3 * np.abs(expected).max()).all()
     assert np.abs(own).max() > 1e-3
 
 
 def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
-    """The gap of crowned flanks, part of whose face carries: stiffness, damping and transmission error of the mesh."""
+    """The gap of crowned flanks whose whole face carries: transmission error and shuttling of the mesh."""
     found = solved[2]
     model, lines, given = found.model, chosen(found.lines), found.model.machine
     (mesh,) = given.meshes
     faces = mesh.contact.faces
     assert faces is not None
     (pair,) = solved[1].pairs
-    assert pair.carrying_part < 1.0
+    assert pair.carrying_part == 1.0
     places = sensor_lines.face_stations(faces.face_width)
     tilt = 2.0 * places / faces.face_width
     step, either = 0.2e-6, []
@@ -211,7 +211,7 @@ def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
         either.append(np.array([one.amplitude for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))]))
     expected = (either[0] - either[1]) / (2.0 * step)
     own = np.array([model._by_gap(one, 0) @ tilt for one in lines])
-    np.testing.assert_allclose(own, expected, atol=0.05 * np.abs(expected).max())
+    np.testing.assert_allclose(own, expected, atol=1e-3 * np.abs(expected).max())
     assert np.abs(expected).max() > 0.0
 
 
@@ -236,24 +236,24 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
     first = given.bearings[0]
     name, made = first.bearing.name, first.bearing
     np.testing.assert_allclose(with_bearing(first), before, rtol=1e-9)
-    for part in (1e-3, 0.2):
+    for part in (1e-5, 0.2):
         stiffer = replace(first, bearing=replace(made, stiffness=(1.0 + part) * made.stiffness))
         change = with_bearing(stiffer) - before
         stepped = [model.stepped_bearing_stiffness(one, name, part) for one in lines]
-        np.testing.assert_allclose(stepped, change, rtol=1e-6)
-        if part == 1e-3:
+        np.testing.assert_allclose(stepped, change, rtol=1e-5)
+        if part == 1e-5:
             own = [part * model.by_bearing_stiffness(one, name) for one in lines]
-            np.testing.assert_allclose(own, change, rtol=0.02)
+            np.testing.assert_allclose(own, change, rtol=2e-3)
     slopes = [model.by_bearing_position(one, name) for one in lines]
     # The part by the bearing's own deflection is another test's.
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sensor_lines, "deflection_slope", lambda *_: np.zeros(5))
         own = np.array([model.by_bearing_position(one, name) for one in lines])
-        stepped = [model.stepped_bearing_position(one, name, 1e-6) for one in lines]
+        stepped = [model.stepped_bearing_position(one, name, 1e-7) for one in lines]
     either = [with_bearing(replace(first, bearing=replace(made, at=made.at + way * 1e-5))) for way in (1.0, -1.0)]
     expected = (either[0] - either[1]) / 2e-5
     np.testing.assert_allclose(own, expected, atol=1e-3 * np.abs(expected).max())
-    np.testing.assert_allclose(stepped, 1e-6 * own, atol=1e-3 * np.abs(1e-6 * own).max())
+    np.testing.assert_allclose(stepped, 1e-7 * own, atol=1e-3 * np.abs(1e-7 * own).max())
     assert not np.allclose(slopes, own, rtol=1e-6)
 
 
