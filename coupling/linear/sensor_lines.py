@@ -27,6 +27,9 @@ these, and with them k, c, e and the shuttling, change with the deflections ther
 deflections and approaches of flanks, central differences of the laws, are the gradient of the amplitude by the static
 coordinates; its adjoint (:mod:`coupling.statics.sensitivity`) gives the rest of the derivative.
 
+A first-order change is right for steps that move no resonance past the line. For others the response is solved anew
+with the matrices changed to first order (:meth:`LineModel.stepped_housing`), which needs no new modes.
+
 Left out are the change of mean mesh forces where meshes share a torque, that of the ratios ζ and of dashpots, friction
 of the teeth, and all that is not linear about the mean mesh: contact loss and the variation of k over the mesh period
 times the motion.
@@ -55,6 +58,7 @@ from coupling.machine.assembly import CoupledMachine
 from coupling.machine.connectors import LinearConnector
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from coupling.statics.operating_point import BearingLoad, OperatingPoint
+from coupling.statics.sensitivity import deflection_slope
 from rotors.rolling_bearings import rolling_state
 
 FloatArray = npt.NDArray[np.float64]
@@ -120,6 +124,8 @@ class HousingRates:
         Of each parameter, the change of the seats' motions at bearings; where there is none it may be absent.
     sensors : sequence of mapping of str to ndarray, shape (h,)
         Of each parameter, the change of the sensors' motions likewise.
+    static : sequence of mapping of str to ndarray, shape (5,)
+        Of each parameter, the change of the seats' motions at bearings in the static displacement field [m, rad].
     """
 
     frequencies: FloatArray
@@ -128,6 +134,7 @@ class HousingRates:
     mass: FloatArray
     bearings: Sequence[Mapping[str, FloatArray]]
     sensors: Sequence[Mapping[str, FloatArray]]
+    static: Sequence[Mapping[str, FloatArray]]
 
     @cached_property
     def damping(self) -> FloatArray:
@@ -232,8 +239,7 @@ class LineModel:
         tangent = self.point.tangent
         total = np.zeros(len(tangent.stiffness))
         for load in self.point.bearings:
-            if load.mounted.needs_load and load.rolling is not None:
-                total += tangent.bearings[load.name] @ self._by_bearing_deflection(line, load)
+            total += tangent.bearings[load.name] @ self._by_bearing_deflection(line, load.name)
         for number in self.loaded:
             mesh, _ = self.machine.flanks(number)
             if number in self._gap_rates:
@@ -252,12 +258,15 @@ class LineModel:
         return -float((adjoint @ law.stiffness @ moved).real)
 
     def by_bearing_position(self, line: SensorLine, bearing: str) -> float:
-        """Differentiate the amplitude by a bearing's position on its shaft, towards +z, at the same tangents [1/m]."""
+        """Differentiate the amplitude by a bearing's position on its shaft, towards +z, at the same static motions."""
         law, axes = self._connector(bearing), list(self._connector(bearing).axes)
         force = self._dynamic_force(law, line.frequency, line.motion)
         against = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
-        slope = self._bearing_slope(self.point.bearing(bearing))[axes]
-        return -float(((slope @ line.adjoint) @ force + against @ (slope @ line.motion)).real)
+        load = self.point.bearing(bearing)
+        slope = self._bearing_slope(load)[axes]
+        own = -float(((slope @ line.adjoint) @ force + against @ (slope @ line.motion)).real)
+        # Its static deflection changes with its place too.
+        return own + float(self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load))
 
     def by_housing(self, line: SensorLine, rates: HousingRates) -> FloatArray:
         """Differentiate the amplitude by parameters of the housing, at the same operating point, shape (p,)."""
@@ -272,9 +281,58 @@ class LineModel:
                 force = self._dynamic_force(law, w, line.motion)
                 against = self._dynamic_force(law, w, line.adjoint, transposed=True)
                 total[number] += float(((held @ adjoint) @ force + against @ (held @ motion)).real)
+            total[number] += self._by_seats(line, rates, number)
             if line.sensor in sensors:
                 total[number] += (line.weight * complex(sensors[line.sensor] @ motion)).real
         return np.asarray(total)
+
+    def stepped_bearing_stiffness(self, line: SensorLine, bearing: str, part: float) -> float:
+        """Change of the amplitude by a factor 1 + part on a bearing's tangent, the response solved anew [m/s²]."""
+        law = self._connector(bearing)
+        change = part * law.directions @ law.stiffness @ law.directions.T
+        return self._solved_anew(line, self._dynamic(line.frequency) + change)
+
+    def stepped_bearing_position(self, line: SensorLine, bearing: str, step: float) -> float:
+        """Change of the amplitude as a bearing moves along its shaft, the response solved anew [m/s²]."""
+        law, load = self._connector(bearing), self.point.bearing(bearing)
+        inner = law.stiffness + 1j * line.frequency * law.damping
+        moved = law.directions + step * self._bearing_slope(load)[list(law.axes)].T
+        change = moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+        by_tangent = self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load)
+        return self._solved_anew(line, self._dynamic(line.frequency) + change) + step * float(by_tangent)
+
+    def stepped_housing(self, line: SensorLine, rates: HousingRates, number: int, step: float) -> float:
+        """Change of the amplitude by a step of a parameter of the housing, the response solved anew [m/s²].
+
+        Matrices and ports change to first order, so that resonances move with them.
+        """
+        own, w = self._housing, line.frequency
+        dynamic = self._dynamic(w)
+        change = rates.stiffness[number] - w**2 * rates.mass[number] + 1j * w * rates.damping[number]
+        dynamic[own, own] += step * change
+        for name, rows in rates.bearings[number].items():
+            law = self._connector(name)
+            moved = law.directions.copy()
+            moved[own] -= step * rows[list(law.axes)].T
+            inner = law.stiffness + 1j * w * law.damping
+            dynamic += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
+        sensor = self.machine.sensor_rows[line.sensor].copy()
+        if line.sensor in rates.sensors[number]:
+            sensor[own] += step * rates.sensors[number][line.sensor]
+        return self._solved_anew(line, dynamic, sensor) + step * self._by_seats(line, rates, number)
+
+    def _by_seats(self, line: SensorLine, rates: HousingRates, number: int) -> float:
+        """Differentiate the amplitude by the seats' motions in the static field, through the bearings' tangents."""
+        # The deflection is that of the shaft against its seat.
+        return -sum(
+            float(self._by_bearing_deflection(line, name) @ moved) for name, moved in rates.static[number].items()
+        )
+
+    def _solved_anew(self, line: SensorLine, dynamic: ComplexArray, sensor: FloatArray | None = None) -> float:
+        """Change of the amplitude with another dynamic stiffness [m/s²]."""
+        row = self.machine.sensor_rows[line.sensor] if sensor is None else sensor
+        motion = linalg.solve(dynamic, self._load(line.frequency, line.causes))
+        return line.frequency**2 * abs(complex(row @ motion)) - line.amplitude
 
     @cached_property
     def _matrices(self) -> tuple[FloatArray, FloatArray]:
@@ -350,7 +408,7 @@ class LineModel:
         for number in self.loaded:
             mesh, back = self.machine.flanks(number)
             law = self.machine.meshes[mesh].contact
-            # Flanks that stay even, such as those of spur gears in the middle, have no slices and no first-order change.
+            # Even flanks, such as those of spur gears in the middle, have no slices and no first-order change.
             if self.found[mesh] and law.faces is not None:
                 found[number] = self._gap_rates_of(number, law, back)
         return found
@@ -380,7 +438,7 @@ class LineModel:
         return _GapRates(stiffness, error, shuttling)
 
     def _by_gap(self, line: SensorLine, number: int) -> FloatArray:
-        """Differentiate the amplitude by a contact's gap at the stations of the face [1/s² ...], shape (j,)."""
+        """Differentiate the amplitude by a contact's gap at the stations of the face, shape (j,)."""
         rates, mesh = self._gap_rates[number], self.machine.flanks(number)[0]
         contact, stiffness = self.machine.system.contacts[number], float(self.contact.stiffness[number])
         along, deflection = line.adjoint @ contact.direction, line.motion @ contact.direction
@@ -396,23 +454,20 @@ class LineModel:
                 total = total + along * driven + rates.shuttling[:, harmonic - 1] @ line.adjoint
         return np.asarray(total.real)
 
-    def _by_bearing_deflection(self, line: SensorLine, load: BearingLoad) -> FloatArray:
-        """Differentiate the amplitude by a rolling bearing's static deflection, through its tangent, shape (5,)."""
-        assert load.rolling is not None
-        law, rolling = self._connector(load.name), load.rolling
+    def _by_bearing_deflection(self, line: SensorLine, bearing: str) -> FloatArray:
+        """Differentiate the amplitude by a bearing's static deflection, through its tangent, shape (5,)."""
+        if bearing not in self._tangent_rates:
+            return np.zeros(5)
+        law = self._connector(bearing)
         held = np.ix_(list(law.axes), list(law.axes))
         moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
-        step = _BEARING_STEP * float(np.linalg.norm(load.deflection[:3]))
-        # Tilts by which the elements move as much.
-        steps = np.array([step] * 3 + [2.0 * step / rolling.bearing.rows[0].pitch_diameter] * 2)
-        found = np.zeros(5)
-        for axis, size in enumerate(steps):
-            change = np.zeros((5, 5))
-            for way in (1.0, -1.0):
-                place = load.deflection + way * size * np.eye(5)[axis]
-                change += way / (2.0 * size) * rolling_state(rolling.bearing, place).stiffness
-            found[axis] = -float((adjoint @ change[held] @ moved).real)
-        return found
+        return np.array([-float((adjoint @ change[held] @ moved).real) for change in self._tangent_rates[bearing]])
+
+    @cached_property
+    def _tangent_rates(self) -> dict[str, FloatArray]:
+        """Derivatives of the tangents that follow the equilibrium by the bearing's deflection, shape (5, 5, 5) each."""
+        loads = self.point.bearings
+        return {one.name: _tangent_rate(one) for one in loads if one.mounted.needs_load and one.rolling is not None}
 
     def _connector(self, bearing: str) -> LinearConnector:
         number = next(n for n, one in enumerate(self.machine.bearings) if one.bearing.name == bearing)
@@ -445,6 +500,21 @@ class LineModel:
             seat = self.machine.housing.seat_motions(mounted.seat, rotor.start + at)
             slope = slope - self.machine.rows(self.machine.housing.name, _rigid_slope(seat))
         return np.asarray(slope)
+
+
+def _tangent_rate(load: BearingLoad) -> FloatArray:
+    """Differentiate a rolling bearing's tangent by its deflection, shape (5, 5, 5)."""
+    assert load.rolling is not None
+    bearing = load.rolling.bearing
+    step = _BEARING_STEP * float(np.linalg.norm(load.deflection[:3]))
+    # Tilts by which the elements move as much.
+    steps = np.array([step] * 3 + [2.0 * step / bearing.rows[0].pitch_diameter] * 2)
+    found = np.zeros((5, 5, 5))
+    for axis, size in enumerate(steps):
+        for way in (1.0, -1.0):
+            place = load.deflection + way * size * np.eye(5)[axis]
+            found[axis] += way / (2.0 * size) * rolling_state(bearing, place).stiffness
+    return found
 
 
 def _rigid_slope(motions: FloatArray) -> FloatArray:

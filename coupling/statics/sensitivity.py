@@ -70,8 +70,7 @@ class Adjoint:
         shaft = self.point.shaft(load.mounted.rotor)
         adjoint = ShaftDeflection(shaft.part, self.values[self.point.tangent.shafts[shaft.name]], None)
         moved = _slope(adjoint, load) - _seat_slope(self.point, load, self.housing)
-        own = _slope(shaft, load) - _seat_slope(self.point, load, self.point.housing)
-        return -float(moved @ load.force + self.force(bearing) @ own)
+        return -float(moved @ load.force + self.force(bearing) @ deflection_slope(self.point, load))
 
 
 def adjoint(point: OperatingPoint, gradient: FloatArray) -> Adjoint:
@@ -101,6 +100,11 @@ def tilt_adjoint(point: OperatingPoint, bearing: str) -> Adjoint:
     """Solve the adjoint state of the angle between a shaft and its seat [rad]; its tilt must not be zero."""
     load = point.bearing(bearing)
     return adjoint(point, point.tangent.bearings[bearing][:, 3:] @ (load.deflection[3:] / load.tilt))
+
+
+def deflection_slope(point: OperatingPoint, load: BearingLoad) -> FloatArray:
+    """Differentiate a bearing's deflection by its position on its shaft at the equilibrium's motions, shape (5,)."""
+    return _slope(point.shaft(load.mounted.rotor), load) - _seat_slope(point, load, point.housing)
 
 
 def _face_gradients(pair: PairLoad) -> FloatArray:

@@ -61,7 +61,7 @@ def load(
         Parameter(
             name=["--sensitivity"],
             negative=(),
-            help="Also rank walls, bearing stiffness and positions by their effect on gear pairs and sensor lines.",
+            help="Also rank walls and bearings by what they change in gear pairs and in the lines of sensors.",
         ),
     ] = False,
     line: Annotated[

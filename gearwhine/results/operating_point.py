@@ -436,6 +436,8 @@ INFLUENCE = (
             Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
             Quantity("amplitude_m_per_s2", lambda one: one.change),
             Quantity("level_db", lambda one: one.level),
+            Quantity("first_order_m_per_s2", lambda one: one.first_order),
+            Quantity("first_order_db", lambda one: one.first_order_level),
         ),
     ),
     Rows(
@@ -469,11 +471,16 @@ def _influence(name: str, unit: str, what: str, column: int) -> Quantity:
     return Quantity("", taken, f"{name}_change", ("influence", "loaded_pair"), unit, what)
 
 
-def _line_changes(solved: "SolvedLoad") -> Any:
-    """Changes of every line's amplitude by every parameter's step, for the file."""
-    if solved.sensitivity is None or not solved.sensitivity.sensor_lines:
-        return None
-    return np.array([one.lines for one in solved.sensitivity.influences])
+def _line_changes(of: str, name: str, what: str) -> Quantity:
+    """Declare changes of every line's amplitude by every parameter's step, for the file."""
+
+    def taken(solved: "SolvedLoad") -> Any:
+        if solved.sensitivity is None or not solved.sensitivity.sensor_lines:
+            return None
+        return np.array([getattr(one, of) for one in solved.sensitivity.influences])
+
+    what = f"change of the line's amplitude of acceleration by a step of the parameter, {what}"
+    return Quantity("", taken, name, ("influence", "sensor_line"), "m/s2", what)
 
 
 def _sensor_lines(solved: "SolvedLoad") -> Any:
@@ -537,14 +544,8 @@ LOAD = (
     _influence("misalignment", "rad", "angle between the flanks", 0),
     _influence("face_load_factor", "1", "face load factor K_Hbeta", 1),
     _influence("transmission_error_peak_to_peak", "m", "peak-to-peak static transmission error", 2),
-    Quantity(
-        "",
-        _line_changes,
-        "line_amplitude_change",
-        ("influence", "sensor_line"),
-        "m/s2",
-        "change of the line's amplitude of acceleration by a step of the parameter, to first order",
-    ),
+    _line_changes("stepped", "line_amplitude_change", "the response solved anew"),
+    _line_changes("lines", "line_amplitude_first_order_change", "to first order"),
     Quantity(
         "",
         lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
@@ -727,7 +728,7 @@ _LINE_COLUMNS = (
     Column("of", "kind"),
     Column("step", "step"),
     Column("level [dB]", "level_db", "+.2f"),
-    Column("amplitude [m/s²]", "amplitude_m_per_s2", "+.3g"),
+    Column("first order [dB]", "first_order_db", "+.2f"),
 )
 
 
@@ -739,17 +740,18 @@ def _lines(document: Document) -> Iterator[str | Table]:
     yield from table_of(columns_of(SENSOR_LINE), lines, "Sensors' lines at mesh harmonics, linear about the mean load")
     number = next(n for n, one in enumerate(lines) if one["ranked"])
     chosen = f"{lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
-    rows = [
-        {key: one[key] for key in ("parameter", "kind", "step")} | one["lines"][number]
-        for one in document["sensitivity"]
-    ]
-    rows.sort(key=lambda row: -abs(row["level_db"]))
-    yield from table_of(
-        _LINE_COLUMNS, rows[:_MOST_INFLUENCES], f"Change of the line of {chosen} by a step of one parameter"
-    )
+    for of_bearings, what in ((False, "the housing"), (True, "a bearing")):
+        rows = [
+            {key: one[key] for key in ("parameter", "kind", "step")} | one["lines"][number]
+            for one in document["sensitivity"]
+            if one["kind"].startswith("bearing") is of_bearings
+        ]
+        rows.sort(key=lambda row: -abs(row["level_db"]))
+        caption = f"Change of the line of {chosen} by a step of one parameter of {what}"
+        yield from table_of(_LINE_COLUMNS, rows[:_MOST_INFLUENCES], caption)
     held = document.get("lines_without")
     fixed = "" if held is None else f"; the case fixes {held}, which do not follow the walls"
-    yield f"To first order; damping ratios, friction of the teeth and mean mesh forces are kept{fixed}"
+    yield f"In these changes damping ratios, friction of the teeth and mean mesh forces are kept{fixed}"
 
 
 def _content(document: Document) -> Iterator[str | Table]:

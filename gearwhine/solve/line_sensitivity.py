@@ -83,6 +83,7 @@ class SolvedLines:
         rates: Sequence[ModelSensitivity],
         bearings: Sequence[PortRates],
         sensors: Sequence[PortRates],
+        displacement: FloatArray,
     ) -> HousingRates:
         """Project derivatives of the housing by some parameters on its modes and residual modes.
 
@@ -93,6 +94,8 @@ class SolvedLines:
         rates : sequence of ModelSensitivity
         bearings, sensors : sequence of mapping
             Of each parameter, the change of the ports of bearings and of sensors.
+        displacement : ndarray, shape (n_nodes, 3)
+            At the operating point [m].
         """
         modes, ratios = self.housing.modes, self.housing.damping_ratios
         shapes, omega = modes.shapes, modes.frequencies
@@ -111,6 +114,7 @@ class SolvedLines:
             found.mass,
             [{name: np.asarray(rows @ flat) for name, rows in one.items()} for one in bearings],
             [{name: np.asarray(rows @ flat)[0] for name, rows in one.items()} for one in sensors],
+            [{name: np.asarray(rows @ displacement.ravel()) for name, rows in one.items()} for one in bearings],
         )
 
 

@@ -1,7 +1,8 @@
 """Sensitivity of a case's operating point: change of gear pairs and sensors' lines by walls and bearings.
 
-The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.sensor_lines`. Parameters of the housing are those of the case's
-``[update]``, else the walls of a box; of any other housing, the flat faces of its surface.
+The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.sensor_lines`. Parameters of
+the housing are those of the case's ``[update]``, else the walls of a box; of any other housing, the flat faces of its
+surface.
 """
 
 import math
@@ -37,6 +38,7 @@ FloatArray = npt.NDArray[np.float64]
 Ports = dict[str, sparse.csr_array]
 
 _LENGTH, _PART = 1e-3, 0.1  # steps of the table: of lengths [m], and relative ones
+_OUT = 1e-3  # part of a line below which it is not told
 _TWO_PI = 2.0 * np.pi
 _LEAST_FACE = 0.01  # part of the whole surface from which a flat face is told
 
@@ -56,7 +58,9 @@ class Influence:
     changes : ndarray, shape (n_pairs, 3)
         Of the `OUTCOMES` by the step; NaN for the last two of an idle pair.
     lines : ndarray, shape (n_lines,)
-        Of the lines' amplitudes by the step [m/s²].
+        Of the lines' amplitudes by the step to first order [m/s²].
+    stepped : ndarray, shape (n_lines,)
+        The same with the response at the step solved anew.
     """
 
     parameter: str
@@ -65,6 +69,7 @@ class Influence:
     is_length: bool
     changes: FloatArray
     lines: FloatArray
+    stepped: FloatArray
 
     @property
     def step_text(self) -> str:
@@ -74,22 +79,31 @@ class Influence:
 
 @dataclass(frozen=True, eq=False)
 class LineChange:
-    """Change of a line by a step of a parameter, to first order.
+    """Change of a line by a step of a parameter.
 
     Attributes
     ----------
     line : SensorLine
+    first_order : float
+        Of its amplitude to first order [m/s²].
     change : float
-        Of its amplitude [m/s²].
+        Of its amplitude, the response solved anew [m/s²].
     """
 
     line: SensorLine
+    first_order: float
     change: float
 
     @property
+    def first_order_level(self) -> float:
+        """Change of its level to first order [dB]."""
+        return 20.0 / math.log(10.0) * self.first_order / self.line.amplitude
+
+    @property
     def level(self) -> float:
-        """Change of its level [dB]."""
-        return 20.0 / math.log(10.0) * self.change / self.line.amplitude
+        """Change of its level, the response solved anew [dB]."""
+        # The part by the equilibrium is linear: a line that it would put out is as good as out.
+        return 20.0 * math.log10(max(1.0 + self.change / self.line.amplitude, _OUT))
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +139,9 @@ class LoadSensitivity:
         return () if self.lines is None else self.lines.lines
 
     def line_changes(self, influence: Influence) -> list[LineChange]:
-        """Changes of all lines by the step of a parameter."""
-        return [LineChange(*one) for one in zip(self.sensor_lines, influence.lines.tolist(), strict=True)]
+        """Pair all lines with their changes by the step of a parameter."""
+        changes = zip(influence.lines.tolist(), influence.stepped.tolist(), strict=True)
+        return [LineChange(line, *one) for line, one in zip(self.sensor_lines, changes, strict=True)]
 
 
 def solve_load_sensitivity(
@@ -168,22 +183,31 @@ def solve_load_sensitivity(
     adjoints += [adjoint(point, model.by_static(one)) for one in lines if model is not None]
 
     def influence(
-        parameter: str, kind: str, derivatives: FloatArray, direct: FloatArray, step: float, *, is_length: bool
+        parameter: str,
+        kind: str,
+        step: tuple[float, bool],
+        derivatives: FloatArray,
+        direct: FloatArray,
+        anew: FloatArray,
     ) -> Influence:
-        """Derivatives by the equilibrium of gear pairs and lines, and those of the lines at the same equilibrium."""
+        """Gather derivatives by the equilibrium, those of lines at the same equilibrium, and lines at the step."""
         changes = np.full((len(pairs), len(OUTCOMES)), np.nan)
+        size = step[0]
         for place, derivative in zip(places, derivatives, strict=False):
-            changes[place] = step * derivative
-        return Influence(parameter, kind, step, is_length, changes, step * (derivatives[len(places) :] + direct))
+            changes[place] = size * derivative
+        static = size * derivatives[len(places) :]
+        return Influence(name, kind, *step, changes, static + size * direct, static + anew)
 
     found = []
     for name in (bearing.name for bearing in point.bearings):
-        stiffness = np.array([one.by_bearing_stiffness(name) for one in adjoints])
+        derivatives = np.array([one.by_bearing_stiffness(name) for one in adjoints])
         direct = np.array([model.by_bearing_stiffness(one, name) for one in lines if model is not None])
-        found.append(influence(name, "bearing stiffness", stiffness, direct, _PART, is_length=False))
-        position = np.array([one.by_bearing_position(name) for one in adjoints])
+        anew = np.array([model.stepped_bearing_stiffness(one, name, _PART) for one in lines if model is not None])
+        found.append(influence(name, "bearing stiffness", (_PART, False), derivatives, direct, anew))
+        derivatives = np.array([one.by_bearing_position(name) for one in adjoints])
         direct = np.array([model.by_bearing_position(one, name) for one in lines if model is not None])
-        found.append(influence(name, "bearing position", position, direct, _LENGTH, is_length=True))
+        anew = np.array([model.stepped_bearing_position(one, name, _LENGTH) for one in lines if model is not None])
+        found.append(influence(name, "bearing position", (_LENGTH, True), derivatives, direct, anew))
     density, note, line_density = None, None, None
     if adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
@@ -206,14 +230,21 @@ def solve_load_sensitivity(
             note = f"the mesh of the box does not follow its walls, so that flat faces stand in their place: {error}"
         kind = "housing" if parameters else "face"
         derivatives = fields.by_parameters(changes.rates, changes.bearings) / changes.slopes
-        own = np.zeros((len(lines), len(changes.names)))
+        steps = np.array([_LENGTH if size is None else _PART * size for size in changes.sizes])
+        own = np.zeros((len(lines), len(steps)))
+        anew = np.zeros_like(own)
         if solved is not None:
-            rates = solved.rates(fields.constants, changes.rates, changes.bearings, changes.sensors)
-            own = np.array([solved.model.by_housing(one, rates) for one in lines]) / changes.slopes
-        for name, column, direct, size in zip(changes.names, derivatives.T, own.T, changes.sizes, strict=True):
-            one = influence(
-                name, kind, column, direct, _LENGTH if size is None else _PART * size, is_length=size is None
+            rates = solved.rates(
+                fields.constants, changes.rates, changes.bearings, changes.sensors, fields.displacement
             )
+            own = np.array([solved.model.by_housing(one, rates) for one in lines]) / changes.slopes
+            inner = steps / changes.slopes
+            anew = np.array(
+                [[solved.model.stepped_housing(one, rates, n, step) for n, step in enumerate(inner)] for one in lines]
+            )
+        for n, (name, size) in enumerate(zip(changes.names, changes.sizes, strict=True)):
+            step = (float(steps[n]), size is None)
+            one = influence(name, kind, step, derivatives[:, n], own[:, n], anew[:, n])
             found.append(one if size is None else replace(one, step=_PART))
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     found.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))

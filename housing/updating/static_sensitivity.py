@@ -91,9 +91,8 @@ class StaticSensitivity:
 
         Gradients of the fields are averaged over the elements at a node, weighted by their volumes there.
         """
-        strains, constants = _strains(
-            self.mesh, np.concatenate([self.displacement[None], self.adjoint]), self.constants
-        )
+        fields = np.concatenate([self.displacement[None], self.adjoint])
+        strains, constants = _strains(self.mesh, fields, self.constants)
         own = np.einsum("nij,anij->an", _stress(strains[0], constants), strains[1:], optimize=True)
         return np.asarray(constants[2] * (self.adjoint @ self.gravity) - own)
 

@@ -227,7 +227,9 @@ def period_mean(phases: FloatArray, values: FloatArray) -> float:
 
 
 def transmission_error_phasors(mesh: LoadedMesh, count: int, periods: int = 1) -> ComplexArray:
-    """Complex amplitudes c_h of the transmission error's mesh harmonics, Re Σ c_h e^{2πihp} at the phase p [m], (count,).
+    """Complex amplitudes c_h of the mesh harmonics of the transmission error [m], shape (count,).
+
+    At the phase p the transmission error is its mean plus Re Σ c_h e^{2πihp}.
 
     Exact for the polygon through the points of the mesh periods: a curve with a step has the harmonics of a step.
 

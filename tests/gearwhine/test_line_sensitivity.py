@@ -1,0 +1,336 @@
+"""Gradients of sensors' lines, against lines of machines whose housing is moved, solved and assembled anew."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import gearwhine as gw
+from coupling import assemble_machine
+from coupling.linear import sensor_lines
+from coupling.linear.sensor_lines import HousingRates, LineModel, SensorLine
+from coupling.machine import description
+from coupling.machine.connectors import MountedBearing
+from coupling.statics.operating_point import OperatingPoint
+from coupling.statics.sensitivity import adjoint
+from coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
+from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import describe_machine, full_housing_component
+from gearwhine.from_case.mesh import build_mesh
+from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.progress import silent
+from gearwhine.results.operating_point import sections
+from gearwhine.solve import housing_modes
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
+from gearwhine.solve.load_sensitivity import case_changes, face_changes, housing_fields
+from housing.updating.static_sensitivity import harmonic_surface_density
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+
+LIMIT = 2.0 * np.pi * 5500.0
+PARAMETERS = [
+    UpdateParameter(name="front wall", keys=("housing.box.wall.front",), range=("5 mm", "20 mm")),
+    UpdateParameter(name="bottom wall", keys=("housing.box.wall.bottom",), range=("5 mm", "20 mm")),
+    UpdateParameter(name="top wall", keys=("housing.box.wall.top",), range=("5 mm", "20 mm")),
+    UpdateParameter(
+        name="length", keys=("housing.box.size[2]", "housing.seat.*.center[2]"), range=(0.9, 1.1), factor=True
+    ),
+    UpdateParameter(name="feet", keys=("housing.support.*.stiffness.y",), range=(0.5, 2.0), factor=True),
+    UpdateParameter(name="modulus", keys=("material.iron.youngs_modulus",), range=("90 GPa", "130 GPa")),
+]
+BALLS = {
+    "rolling": {
+        "catalogue": {"type": "deep-groove", "bore": "25 mm", "outer_diameter": "52 mm", "width": "15 mm"},
+        "clearance": "5 um",
+    }
+}
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    """The small gearbox on ball bearings whose stiffness follows the load, its gears out of the middle.
+
+    Its modes reach up to 12 kHz, so that the fields of the lines are exact to 1e-4 between them.
+    """
+    overrides = ["housing.box.mesh_size=60 mm", "gear.*.at=70 mm", "housing.frequency_limit=12 kHz"]
+    document = case_document(load_case("small-gearbox", overrides).case)
+    document["material"]["iron"] = {"youngs_modulus": "110 GPa", "poisson_ratio": 0.25, "density": "7200 kg/m^3"}
+    document["housing"]["material"] = "iron"
+    document["housing"]["support"][0]["stiffness"]["y"] = 2e9
+    document["gear_pair"][0]["misalignment"] = "found"
+    document["gear"][0]["errors"] = {"helix": {"crowning": "2 um"}}
+    for bearing in document["bearing"]:
+        bearing["stiffness"] = BALLS
+    return parse_case(document)
+
+
+Solved = tuple[SolvedHousing, OperatingPoint, SolvedLines]
+
+
+def solve(case: Case, mesh: Mesh) -> Solved:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
+        housing = solve_housing(case)
+    machine = describe_machine(case, full_housing_component(case, housing))
+    point = machine.operating_point()
+    lines = solve_lines(case, machine, point, housing, silent, count=9)
+    assert lines is not None
+    return housing, point, lines
+
+
+@pytest.fixture(scope="module")
+def solved(case: Case) -> Solved:
+    return solve(case, build_mesh(case))
+
+
+def chosen(lines: Sequence[SensorLine]) -> list[SensorLine]:
+    """Lines up to the second mesh harmonic, by sensor and frequency."""
+    return sorted((one for one in lines if one.frequency < LIMIT), key=lambda one: (one.sensor, one.frequency))
+
+
+def amplitudes(solved: Solved) -> FloatArray:
+    return np.array([one.amplitude for one in chosen(solved[2].lines)])
+
+
+def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
+    """Walls, length with its seats, springs and a modulus together: to 5e-4 of the sum of their parts.
+
+    Fourth-order differences of mesh, modes, equilibrium, assembly and line.
+    """
+    housing, point, found = solved
+    lines = chosen(found.lines)
+    assert len(lines) == 4
+    adjoints = [adjoint(point, found.model.by_static(one)) for one in lines]
+    fields = housing_fields(case, housing, point, adjoints)
+    changes = case_changes(case, housing.mesh, PARAMETERS)
+    rates = found.rates(fields.constants, changes.rates, changes.bearings, changes.sensors, fields.displacement)
+    static = fields.by_parameters(changes.rates, changes.bearings)
+    own = (static + [found.model.by_housing(one, rates) for one in lines]) / changes.slopes
+    fitted = fitted_case(case, parameters=PARAMETERS)
+    meshed = MeshedParameters(fitted, fitted.start, case, housing.mesh)
+    values = np.array([number.start for number in fitted.numbers])
+    way = values * np.random.default_rng(1).normal(size=len(values))
+    step, either = 1e-3, []
+    for size in (step, -step, 2.0 * step, -2.0 * step):
+        there = fitted.at((values + size * way).tolist())
+        geometry = geometry_of(there)
+        assert geometry is not None
+        either.append(amplitudes(solve(there, meshed.morph.moved(geometry))))
+    expected = (8.0 * (either[0] - either[1]) - (either[2] - either[3])) / (12.0 * step)
+    assert (np.abs(own @ way - expected) < 5e-4 * np.abs(own * way).sum(axis=1)).all()
+    # Each line answers to the step as its slope says.
+    number = [number.given.name for number in fitted.numbers].index("bottom wall")
+    small = 1e-6 / changes.slopes[number]
+    stepped = [found.model.stepped_housing(one, rates, number, small) for one in lines]
+    direct = np.array([found.model.by_housing(one, rates)[number] for one in lines])
+    np.testing.assert_allclose(stepped, small * direct, rtol=1e-3)
+
+
+@dataclass(frozen=True, eq=False)
+class Scaled(RollingElementLaw):
+    """Rolling elements with energy, force and tangent multiplied."""
+
+    factor: float = 1.0
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        energy, force, tangent = super().at(deflection)
+        return self.factor * energy, self.factor * force, self.factor * tangent
+
+
+def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
+    """Amplitudes of the machine about another equilibrium, on the same modes."""
+    _, _, found = solved
+    machine = describe_machine(case, full_housing_component(case, found.housing)).at_operating_point(point)
+    pairs = solve_gears(case, silent, {one.names: one.station_gap for one in point.pairs})
+    # The basis of the shafts stays, so that the difference has no part by it.
+    assembled = machine.assemble(pairs, found.model.machine.rotors)
+    model = LineModel(assembled, point, pairs, found.model.found)
+    return np.array([one.amplitude for one in chosen(model.lines(2.0 * np.pi * 15e3, 9))])
+
+
+def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved) -> None:
+    """A bearing's law that is stiffer in the equilibrium alone, to 1e-3: by tangents, mesh stiffness and errors."""
+    housing, point, found = solved
+    machine = describe_machine(case, full_housing_component(case, housing))
+    name = point.bearings[0].name
+    own = np.array(
+        [adjoint(point, found.model.by_static(one)).by_bearing_stiffness(name) for one in chosen(found.lines)]
+    )
+
+    def stiffer(size: float) -> OperatingPoint:
+        def made(mounted: MountedBearing, speed: float) -> StaticBearing:
+            bearing = static_bearing(mounted, speed)
+            if mounted.bearing.name != name:
+                return bearing
+            assert isinstance(bearing.law, RollingElementLaw)
+            return replace(bearing, law=Scaled(bearing.law.elements, 1.0 + size))
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(description, "static_bearing", made)
+            return machine.operating_point()
+
+    either = [at_point(case, solved, stiffer(size)) for size in (5e-4, -5e-4)]
+    expected = (either[0] - either[1]) / 1e-3
+    assert (np.abs(own - expected) < 1e-3 * np.abs(expected).max()).all()
+    assert np.abs(own).max() > 1e-3
+
+
+def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
+    """The gap of crowned flanks whose whole face carries: transmission error and shuttling of the mesh."""
+    found = solved[2]
+    model, lines, given = found.model, chosen(found.lines), found.model.machine
+    (mesh,) = given.meshes
+    faces = mesh.contact.faces
+    assert faces is not None
+    (pair,) = solved[1].pairs
+    assert pair.carrying_part == 1.0
+    places = sensor_lines.face_stations(faces.face_width)
+    tilt = 2.0 * places / faces.face_width
+    step, either = 0.2e-6, []
+    for way in (1.0, -1.0):
+        gap = faces.gap + way * step * 2.0 * faces.z / faces.face_width
+        contact = replace(mesh.contact, faces=replace(faces, gap=gap))
+        damping = contact.damping * np.sqrt(
+            sensor_lines.loaded_transmission_error(contact, pair.force).mean_mesh_stiffness
+            / sensor_lines.loaded_transmission_error(mesh.contact, pair.force).mean_mesh_stiffness
+        )
+        changed = replace(mesh, contact=contact.with_damping(float(damping), contact.damping_depth))
+        machine = assemble_machine(
+            given.rotors,
+            given.housing,
+            speeds=given.speeds,
+            bearings=given.bearings,
+            meshes=[changed],
+            torques=given.torques,
+        )
+        either.append(np.array([one.amplitude for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))]))
+    expected = (either[0] - either[1]) / (2.0 * step)
+    own = np.array([model._by_gap(one, 0) @ tilt for one in lines])
+    np.testing.assert_allclose(own, expected, atol=1e-3 * np.abs(expected).max())
+    assert np.abs(expected).max() > 0.0
+
+
+def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
+    """Tangent stiffness and position of a bearing at the same equilibrium, by another machine on the same modes."""
+    found = solved[2]
+    model, lines = found.model, chosen(found.lines)
+    given = model.machine
+    before = np.array([one.amplitude for one in lines])
+
+    def with_bearing(changed: MountedBearing) -> FloatArray:
+        machine = assemble_machine(
+            given.rotors,
+            given.housing,
+            speeds=given.speeds,
+            bearings=[changed, *given.bearings[1:]],
+            meshes=given.meshes,
+            torques=given.torques,
+        )
+        return np.array([one.amplitude for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))])
+
+    first = given.bearings[0]
+    name, made = first.bearing.name, first.bearing
+    np.testing.assert_allclose(with_bearing(first), before, rtol=1e-9)
+    for part in (1e-5, 0.2):
+        stiffer = replace(first, bearing=replace(made, stiffness=(1.0 + part) * made.stiffness))
+        change = with_bearing(stiffer) - before
+        stepped = [model.stepped_bearing_stiffness(one, name, part) for one in lines]
+        np.testing.assert_allclose(stepped, change, rtol=1e-5)
+        if part == 1e-5:
+            own = [part * model.by_bearing_stiffness(one, name) for one in lines]
+            np.testing.assert_allclose(own, change, rtol=2e-3)
+    slopes = [model.by_bearing_position(one, name) for one in lines]
+    # The part by the bearing's own deflection is another test's.
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sensor_lines, "deflection_slope", lambda *_: np.zeros(5))
+        own = np.array([model.by_bearing_position(one, name) for one in lines])
+        stepped = [model.stepped_bearing_position(one, name, 1e-7) for one in lines]
+    either = [with_bearing(replace(first, bearing=replace(made, at=made.at + way * 1e-5))) for way in (1.0, -1.0)]
+    expected = (either[0] - either[1]) / 2e-5
+    np.testing.assert_allclose(own, expected, atol=1e-3 * np.abs(expected).max())
+    np.testing.assert_allclose(stepped, 1e-7 * own, atol=1e-3 * np.abs(1e-7 * own).max())
+    assert not np.allclose(slopes, own, rtol=1e-6)
+
+
+def test_the_damping_follows_the_modes() -> None:
+    """DC against C = Rᵀ g(A) R of a stiffness and a mass that change, by differences; degenerate modes too."""
+    generator = np.random.default_rng(3)
+    omega = np.array([0.0, 1.0, 1.0, 2.0, 3.5])
+    ratios = np.full(5, 0.03)
+    stiffness, mass = generator.normal(size=(2, 5, 5))
+    stiffness, mass = stiffness + stiffness.T, mass + mass.T
+    stiffness[0] = stiffness[:, 0] = 0.0  # a rigid motion stays one
+    mass[0] = mass[:, 0] = 0.0
+    rates = HousingRates(omega, ratios, stiffness[None], mass[None], [{}], [{}], [{}])
+
+    def damping(size: float) -> FloatArray:
+        inertia = np.linalg.cholesky(np.eye(5) + size * mass)
+        inner = np.linalg.solve(inertia, np.linalg.solve(inertia, np.diag(omega**2) + size * stiffness).T)
+        values, vectors = np.linalg.eigh(0.5 * (inner + inner.T))
+        modal = inertia @ vectors
+        return np.asarray(2.0 * 0.03 * (modal * np.sqrt(np.maximum(values, 0.0))) @ modal.T)
+
+    expected = (damping(1e-5) - damping(-1e-5)) / 2e-5
+    np.testing.assert_allclose(rates.damping[0], expected, atol=1e-8)
+
+
+def test_material_on_a_face_by_its_density(case: Case, solved: Solved) -> None:
+    """The density over the bottom's inner face, against the derivative by its layer of elements."""
+    housing, point, found = solved
+    line = chosen(found.lines)[0]
+    fields = housing_fields(case, housing, point, [adjoint(point, found.model.by_static(line))])
+    motion, against = found.field(line.motion), found.field(line.adjoint)
+    density = harmonic_surface_density(housing.mesh, fields.constants, motion, against, line.frequency)
+    # Of linear fields it is exact.
+    gradient, other = np.random.default_rng(2).normal(size=(2, 3, 3))
+    points = housing.mesh.points
+    lam, mu, rho = fields.constants[:, 0]
+    strain, twin = 0.5 * (gradient + gradient.T), 0.5 * (other + other.T)
+    stress = lam * np.trace(strain) * np.eye(3) + 2.0 * mu * strain
+    linear = harmonic_surface_density(
+        housing.mesh, fields.constants, points @ gradient.T + 0j, 1j * points @ other.T + points @ other.T, 5e3
+    )
+    expected = 25e6 * rho * np.sum(points @ gradient.T * (points @ other.T), axis=1) - np.sum(stress * twin)
+    np.testing.assert_allclose(linear, expected, rtol=1e-9)
+    changes = face_changes(case, housing.mesh)
+    rates = found.rates(fields.constants, changes.rates, changes.bearings, changes.sensors, fields.displacement)
+    largest = np.abs(found.model.by_housing(line, rates)).max()
+    assert largest > 0.0
+    assert np.isfinite(density).all()
+
+
+def test_the_document_ranks_by_a_line() -> None:
+    study = gw.load("small-gearbox", {"housing.box.mesh_size": "60 mm"})
+    result = study.operating_point(line="right wall")
+    lines = result.document["sensor_lines"]
+    assert [line["sensor"] for line in lines if line["ranked"]] == ["right wall"]
+    assert [line["amplitude_m_per_s2"] for line in lines] == sorted(
+        (line["amplitude_m_per_s2"] for line in lines), reverse=True
+    )
+    assert lines[0]["excitation"] == "1× pinion -> wheel"
+    number = next(n for n, line in enumerate(lines) if line["ranked"])
+    levels = {}
+    for row in result.document["sensitivity"]:
+        change = row["lines"][number]
+        levels[row["parameter"], row["kind"]] = abs(change["level_db"])
+        relative = change["amplitude_m_per_s2"] / lines[number]["amplitude_m_per_s2"]
+        assert change["level_db"] == pytest.approx(20.0 * np.log10(1.0 + relative))
+        first = change["first_order_m_per_s2"] / lines[number]["amplitude_m_per_s2"]
+        assert change["first_order_db"] == pytest.approx(20.0 / np.log(10.0) * first)
+    (section,) = sections(result.document)
+    tables = [one for one in section.tables if one.caption.startswith("Change of the line of right wall at 2567 Hz")]
+    assert len(tables) == 2
+    for table in tables:
+        shown = [levels[row["parameter"], row["kind"]] for row in table.rows]
+        assert shown == sorted(shown, reverse=True)
+    # Typed misalignment does not follow the walls.
+    assert "misalignment" in result.document["lines_without"]
+    data = result.dataset["line_amplitude_change"]
+    assert (data.dims, data.attrs["units"]) == (("influence", "sensor_line"), "m/s2")
+    with pytest.raises(CaseError, match="'top@2567'"):
+        study.operating_point(line="roof")
