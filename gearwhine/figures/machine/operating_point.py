@@ -296,9 +296,19 @@ def _draw_moments(
 
 
 def _add_arrow(axes: Axes, tail: tuple[float, float], tip: tuple[float, float], color: str, label: str) -> None:
-    style = "-|>,head_width=1.5,head_length=2.8"
-    look = {"arrowstyle": style, "mutation_scale": 1.0, "shrinkA": 0.0, "shrinkB": 0.0, "lw": 1.1, "zorder": 6}
-    axes.add_patch(FancyArrowPatch(tail, tip, color=color, label=label, **look))
+    arrow = FancyArrowPatch(
+        tail,
+        tip,
+        arrowstyle="-|>,head_width=1.5,head_length=2.8",
+        mutation_scale=1.0,
+        shrinkA=0.0,
+        shrinkB=0.0,
+        color=color,
+        lw=1.1,
+        zorder=6,
+        label=label,
+    )
+    axes.add_patch(arrow)
 
 
 def _name_row(axes: Axes, view: ShaftView, named: Sequence[tuple[DrawnForce, str]], y: float, level: float) -> None:
