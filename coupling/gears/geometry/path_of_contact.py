@@ -145,11 +145,18 @@ def corner_contact_range(geometry: GearPairGeometry, largest_gap: float = LARGES
     """
     widest = largest_gap * geometry.driver.module
 
-    def beyond(reach: float, end: float, outward: float) -> float:
-        return float(flank_contact_points(geometry, end + outward * reach).gap[0]) - widest
+    rolls = (geometry.driver_roll_angle, geometry.driven_roll_angle)
+    radii = geometry.driver.base_radius, geometry.driven.base_radius
+    tips = geometry.driver.tip_radius, geometry.driven.tip_radius
+
+    def beyond(reach: float, end: float, outward: int) -> float:
+        flank, corner = (0, 1)[::-outward]
+        at = np.float64(end + outward * reach)
+        own, mating = rolls[flank](at), rolls[corner](at)
+        return float(_corner(own, mating, radii[flank], radii[corner], tips[corner])[1]) - widest
 
     reaches = []
-    for ends in ((0.0, -1.0), (geometry.contact_ratio, 1.0)):
+    for ends in ((0.0, -1), (geometry.contact_ratio, 1)):
         if beyond(LONGEST_REACH, *ends) <= 0.0:
             reaches.append(LONGEST_REACH)
         else:
