@@ -21,7 +21,6 @@ from coupling.time.settings import Method
 from gearwhine.cli import run_command
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 
-
 MASS = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
 
 
