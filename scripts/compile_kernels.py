@@ -21,14 +21,15 @@ from coupling.time.settings import Method
 from gearwhine.cli import run_command
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 
+MASS = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
+
 
 def small_machine() -> CoupledSystem:
     """A mass that a tooth of varying stiffness holds."""
-    mass = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
     stiffness = piecewise.tabulated(lambda s: 1.0 + 0.1 * np.cos(2.0 * np.pi * s), 1.0, tolerance=1e-3)
     contact = ToothContact(1.0, stiffness, piecewise.constant(0.0, 1.0))
     tooth = ContactConnector("contact", np.ones(1), contact, 0.0, 0.1, np.empty((0, 3)))
-    return CoupledSystem((mass,), (0.0,), contacts=(tooth,), load=np.ones(1))
+    return CoupledSystem((MASS,), (0.0,), contacts=(tooth,), load=np.ones(1))
 
 
 def turn_in_uneven_bearings() -> None:
@@ -44,19 +45,22 @@ def rotors_and_gears() -> None:
     turn_in_uneven_bearings()
     tell("rotors")
     tell("gears")
+    short = ("transient.revolutions=1", "transient.discard=0", "gear_pair.0.friction=0.05")
+    tell("run", "--no-pictures", *(part for change in short for part in ("--set", change)))
 
 
 def motions() -> None:
     for method in METHODS:
         settings = TransientSettings(20.0, 0.0, 0.1, 0.1, method=method)
-        simulate(small_machine(), settings, TransientOutputs(*[np.ones((1, 1))] * 3))
+        for machine in (small_machine(), CoupledSystem((MASS,), (0.0,))):
+            simulate(machine, settings, TransientOutputs(*[np.ones((1, 1))] * 3))
     periodic_response(small_machine())
 
 
-def tell(command: str) -> None:
+def tell(command: str, *options: str) -> None:
     """Have a command work on a small case, and leave nothing."""
     with tempfile.TemporaryDirectory() as folder:
-        code = run_command([command, "spur-pair", "--quiet", "--output", str(Path(folder) / "out")])
+        code = run_command([command, "spur-pair", "--quiet", "--output", str(Path(folder) / "out"), *options])
     if code:
         sys.exit(code)
 

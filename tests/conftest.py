@@ -1,5 +1,6 @@
 """Shared by all tests: blocks of all elements, published values beside ours with their page, what runs first."""
 
+import gc
 from collections import defaultdict
 from collections.abc import Callable
 from functools import cache
@@ -78,6 +79,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return _LONG.index(folder) if folder in _LONG else len(_LONG)
 
     items.sort(key=turn)
+
+
+def pytest_collection_finish() -> None:
+    # Modules and thousands of items stay to the end: the garbage collector need not look at them again and again.
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture

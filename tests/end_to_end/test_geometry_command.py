@@ -23,7 +23,7 @@ CAD = (
 [housing]
 material = "steel"
 modes = 4
-cad = { file = "case.step", mesh_size = "30 mm" }
+cad = { file = "case.step", mesh_size = "45 mm" }
 [[housing.seat]]
 name = "input"
 center = ["-40 mm", "75 mm", "-55 mm"]

@@ -5,6 +5,8 @@ import json
 import numpy as np
 import pytest
 
+COARSE = ("--set", "housing.box.mesh_size=45 mm")
+
 
 @pytest.fixture(scope="module")
 def gearbox_modes(tmp_path_factory: pytest.TempPathFactory) -> dict:
@@ -12,7 +14,7 @@ def gearbox_modes(tmp_path_factory: pytest.TempPathFactory) -> dict:
     from gearwhine.cli import run_command
 
     folder = tmp_path_factory.mktemp("modes") / "out"
-    assert run_command(["modes", "small-gearbox", "-q", "--detail", "-o", str(folder), "--json"]) == 0
+    assert run_command(["modes", "small-gearbox", "-q", "--detail", "-o", str(folder), "--json", *COARSE]) == 0
     document: dict = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     return document
 
@@ -65,7 +67,7 @@ def test_the_modes_that_matter(gearbox_modes: dict) -> None:
 
 
 def test_a_free_housing_is_held_by_nothing_and_its_rigid_modes_carry_it(gearwhine) -> None:
-    document = gearwhine("modes", "steel-box", "--json", "-q", "--set", "housing.support=[]").document
+    document = gearwhine("modes", "steel-box", "--json", "-q", *COARSE, "--set", "housing.support=[]").document
     health = document["health"]
     assert health["ok"] is True
     assert (health["free_motions"], health["supports"]) == (6, [])
@@ -77,14 +79,14 @@ def test_a_free_housing_is_held_by_nothing_and_its_rigid_modes_carry_it(gearwhin
 
 def test_a_housing_that_can_still_slide_is_told(gearwhine) -> None:
     foot = '{name="slide", surface="foot-1", fixed=["y"]}'
-    outcome = gearwhine("modes", "steel-box", "-q", "--set", f"housing.support=[{foot}]")
+    outcome = gearwhine("modes", "steel-box", "-q", *COARSE, "--set", f"housing.support=[{foot}]")
     assert outcome.code == 0
     assert "the housing can still move: x, z, rotation y" in " ".join(outcome.out.split())
     assert "look" in outcome.out
 
 
 def test_the_coupled_system_uses_the_attachments(answer) -> None:
-    document = answer("system", "small-gearbox", "--json", "-q").document
+    document = answer("system", "small-gearbox", "--json", "-q", *COARSE).document
     assert document["static_error"]["with_attachments"] <= 1e-10
     kinds = [mode["kind"] for mode in document["modes"]]
     assert set(kinds) <= {"rigid", "rotor", "torsion", "mesh", "housing", "residual"}
@@ -96,8 +98,10 @@ def test_the_coupled_system_uses_the_attachments(answer) -> None:
 
 def test_few_modes_with_attachments_stand_for_many(gearwhine, answer) -> None:
     """Coupled modes below half the limit are those of a housing with all its modes up to three times the limit."""
-    few = answer("system", "small-gearbox", "--json", "-q").document
-    many = gearwhine("system", "small-gearbox", "--json", "-q", "--set", "housing.frequency_limit=9 kHz").document
+    few = answer("system", "small-gearbox", "--json", "-q", *COARSE).document
+    many = gearwhine(
+        "system", "small-gearbox", "--json", "-q", *COARSE, "--set", "housing.frequency_limit=9 kHz"
+    ).document
     below = [mode["frequency_hz"] for mode in few["modes"] if mode["frequency_hz"] < 0.5 * few["trusted_below_hz"]]
     assert len(below) > 4
     assert many["static_error"]["without_attachments"] < few["static_error"]["without_attachments"]
@@ -107,7 +111,9 @@ def test_few_modes_with_attachments_stand_for_many(gearwhine, answer) -> None:
 def test_a_bearing_off_its_seat_loads_the_seats_rotation(gearwhine, gearbox_modes: dict) -> None:
     """4 mm outward the seat's rotations join in: another port, other compliance, exact as well."""
     centred = gearbox_modes["static_error"]
-    moved = gearwhine("modes", "small-gearbox", "--json", "-q", "--set", "bearing.0.at=16 mm").document["static_error"]
+    moved = gearwhine("modes", "small-gearbox", "--json", "-q", *COARSE, "--set", "bearing.0.at=16 mm").document[
+        "static_error"
+    ]
     assert moved["with_attachments"] <= 1e-10
     where, others = "input-back", ("input-front", "output-back", "output-front")
     before, after = centred["without_attachments_along"], moved["without_attachments_along"]
@@ -119,10 +125,10 @@ def test_a_bearing_off_its_seat_loads_the_seats_rotation(gearwhine, gearbox_mode
 
 
 def test_detail_on_the_screen(gearwhine) -> None:
-    outcome = gearwhine("modes", "small-gearbox", "-q", "--detail", "-o", "out")
+    outcome = gearwhine("modes", "small-gearbox", "-q", "--detail", "-o", "out", *COARSE)
     for text in ("rigid-body strain", "Effective modal mass", "higher modes", "foot 1", "carry the receptance"):
         assert text in outcome.out
-    brief = gearwhine("modes", "small-gearbox", "-q", "-o", "out").out
+    brief = gearwhine("modes", "small-gearbox", "-q", "-o", "out", *COARSE).out
     assert "checks keep their bounds" in brief
     assert "rigid-body strain" not in brief
     assert "Effective modal mass" not in brief

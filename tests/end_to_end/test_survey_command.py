@@ -9,7 +9,7 @@ from gearwhine.case import bundled_case
 from housing import read_modes
 from housing.measured import MeasuredModes, SurveyData, map_survey, read_survey, write_universal
 
-COARSE = ("--set", 'housing.box.mesh_size="30 mm"')
+COARSE = ("--set", 'housing.box.mesh_size="45 mm"')
 
 
 @pytest.fixture

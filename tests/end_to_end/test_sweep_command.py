@@ -168,7 +168,8 @@ def cluster(folder: Path) -> Iterator[str]:
         for arguments in (scheduler, worker):
             command = [*module[:2], *arguments, "--scheduler-file", str(file)]
             processes.append(subprocess.Popen(command, **quiet))
-            wait_for(file.exists, processes[0])
+            # Not only there, but written to its end.
+            wait_for(lambda: file.exists() and file.read_bytes().endswith(b"}"), processes[0])
         yield json.loads(file.read_text(encoding="utf-8"))["address"]
     finally:
         for process in reversed(processes):

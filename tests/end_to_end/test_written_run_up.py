@@ -23,13 +23,13 @@ def run(folder: Path, case: str, *changes: str) -> tuple[xr.Dataset, dict[str, A
 def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
     case = tmp_path / "lopsided.toml"
     case.write_text(lopsided(housing=False), encoding="utf-8")
-    transient = "run = { from = '600 rpm', to = '3600 rpm', time = '2 s' }, points_per_revolution = 200"
+    transient = "run = { from = '600 rpm', to = '3600 rpm', time = '1 s' }, points_per_revolution = 200"
     data, summary = run(tmp_path, str(case), f"transient={{ {transient}, tolerance = 5e-3 }}")
     assert summary["run"] == {
         "from_rpm": pytest.approx(600.0),
         "to_rpm": pytest.approx(3600.0),
-        "seconds": pytest.approx(2.0),
-        "revolutions": pytest.approx(70.0, rel=1e-6),
+        "seconds": pytest.approx(1.0),
+        "revolutions": pytest.approx(35.0, rel=1e-6),
     }
     units = {
         "run_speed": "rpm", "run_frequency": "Hz", "order_speed": "rpm", "order": "1", "run_order_number": "1",

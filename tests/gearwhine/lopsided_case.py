@@ -166,7 +166,7 @@ def lopsided(*, housing: bool = True, spatial: bool = False, limit: float = 2500
             "[housing.box]",
             'size = ["235 mm", "150 mm", "160 mm"]',
             'wall = "10 mm"',
-            'mesh_size = "32 mm"',
+            'mesh_size = "50 mm"',
         ]
         lines += [
             line

@@ -273,7 +273,7 @@ class Common:
 
 def test_the_null_test_tells_a_model_that_fits_anything_from_one_that_does_not() -> None:
     target = target_at([100.0, 200.0, 300.0], noise=0.005)
-    few = Effort(starts=8)
+    few = Effort(starts=4)
     anything = null_fits(Procedure(solve, FREE, solve(np.zeros(3), None), few, 2), target, 3)
 
     def common(coordinates: FloatArray, near: Design | None) -> Common:

@@ -165,9 +165,9 @@ def test_a_search_on_the_coarse_mesh_ends_where_the_fine_one_would() -> None:
     assert np.abs(np.log(fine(blind.design.coordinates).frequencies / target.frequencies)).max() > 0.02
 
 
-def run_race(target: Target, count: int, each: Any = serial_map, solves: int = 15, seed: int = 1) -> MultistartResult:
+def run_race(target: Target, count: int, each: Any = serial_map, solves: int = 8, seed: int = 1) -> MultistartResult:
     begin = np.zeros(N)
-    effort = Effort(solves=solves, starts=10, seed=seed)
+    effort = Effort(solves=solves, starts=4, seed=seed)
     return multistart_search(Meshes(coarse, finely), target, FREE, Oscillators(begin), fine(begin), effort, count, each)
 
 
@@ -182,7 +182,7 @@ def test_a_race_ends_with_what_the_fine_mesh_calls_met_and_says_so() -> None:
         FREE,
         Oscillators(begin),
         fine(begin),
-        Effort(solves=60, starts=10),
+        Effort(solves=60, starts=5),
         4,
         progress=said.append,
     )
@@ -237,7 +237,7 @@ def test_a_race_outlives_starts_that_are_no_housing() -> None:
     begin = np.zeros(N)
     target = target_at(np.array([0.5, -0.4, 0.45, 0.2]))
     raced = multistart_search(
-        Meshes(fragile, finely), target, FREE, Oscillators(begin), fine(begin), Effort(solves=60, starts=10), 4
+        Meshes(fragile, finely), target, FREE, Oscillators(begin), fine(begin), Effort(solves=60, starts=5), 4
     )
     assert raced.is_met
 

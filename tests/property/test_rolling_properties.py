@@ -89,7 +89,7 @@ def loads(draw: st.DrawFn, bearing: RollingBearing) -> FloatArray:
     return force
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_equilibrium_is_found_or_it_is_said_why_not(data: st.DataObject) -> None:
     """For every load, clearance, preload, tilt and speed: the elements' forces, summed here, balance the load."""
