@@ -89,7 +89,9 @@ def misfits(faults: list[Fault], tests: dict[str, list[str]]) -> list[str]:
             continue
         text = texts.setdefault(fault.file, (ROOT / fault.file).read_text(encoding="utf-8"))
         try:
-            ast.parse(fault.changed(text), fault.file)
+            changed = fault.changed(text)
+            if fault.file.endswith(".py"):
+                ast.parse(changed, fault.file)
         except (SyntaxError, ValueError) as error:
             wrong.append(str(error) if isinstance(error, ValueError) else f"fault {fault.number}: {error}")
     return wrong

@@ -64,7 +64,7 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
                 console.print(f"{' ' * indent}{one.caption}")
             console.print(Padding(_grid(one), (0, 0, 1, indent), expand=False))
         else:
-            console.print(f"{' ' * indent}{_hanging(console, one, indent)}")
+            console.print(f"{' ' * indent}{_hanging(console, str(one), indent)}")
     for inner in section.inner:
         show_section(console, inner, indent)
 

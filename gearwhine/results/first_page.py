@@ -1,7 +1,7 @@
 """First page of the report: the machine, whether its results are sound, the highest lines, and measured modes."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from gearwhine.case import Case, applied_torques
@@ -199,9 +199,9 @@ def _told(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[Findi
         yield Finding(sentence, passed=False)
     for document in documents:
         for warning in document.get("warnings", ()):
-            if (text := str(warning["message"])) not in told:
+            if isinstance(warning, Mapping) and (text := str(warning.get("message", warning))) not in told:
                 told.add(text)
-                yield Finding(_sentence(text), passed=None, link=(*_chapter(warning["name"]), "section Warnings"))
+                yield Finding(_sentence(text), passed=None, link=(*_chapter(warning.get("name")), "section Warnings"))
 
 
 def _chapter(name: object) -> tuple[str, ...]:

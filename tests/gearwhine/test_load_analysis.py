@@ -205,7 +205,10 @@ def test_tables_of_long_names_fit_a_hundred_columns() -> None:
 
 def test_nothing_that_loads_the_machine_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["load", "spur-pair", "-q", "--set", "operation.torque=0 N*m"]) == 2
-    expected = "operation.torque: expected a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
+    expected = (
+        "operation.torque: expected a torque, a force or gravity, which load the shafts, "
+        "or a preload of rolling bearings"
+    )
     assert f"{expected}, got 0.0" in capsys.readouterr().err
     assert run_command(["load", "overhung-fan", "-q"]) == 2
     assert expected in capsys.readouterr().err

@@ -273,6 +273,10 @@ def test_curves_are_drawn_and_zoom(browser: Browser, pages: dict[str, Path]) -> 
     browser.value("document.querySelector('.plot').scrollIntoView({block: 'start'})")
     browser.wait_for("document.querySelector('.plot .scatterlayer path')")
     browser.wait_for("document.querySelectorAll('.plot .heatmaplayer image').length === 1")
+    # No button sends the data away.
+    titles = browser.value("[...document.querySelectorAll('.modebar-btn')].map((one) => one.dataset.title)")
+    assert "Zoom" in titles
+    assert not [title for title in titles if re.search("share|cloud|edit|link", title, re.IGNORECASE)]
     reach = "document.querySelector('.plot').layout.xaxis.range"
     assert browser.value(reach)[1] == pytest.approx(2000.0)  # the model is complete up to there
     box = browser.value(

@@ -162,7 +162,10 @@
         hovertemplate: "%{x:.5g}, %{y:.5g}: %{customdata:.4g}<extra></extra>",
       }];
     }
-    Plotly.react(frame, traces, layout, { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] });
+    Plotly.react(frame, traces, layout, {
+      responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"],
+      showSendToCloud: false, plotlyServerURL: "", // data stay in the page
+    });
   }
   // Names of axes on lines of some thirty letters.
   const lines = (text) => escaped(text).replace(/(.{18,30}) /g, "$1<br>");
