@@ -169,6 +169,19 @@ def test_pictures_of_another_command_are_found_from_a_line(tmp_path: Path) -> No
     assert linked(tmp_path, "housing mode 19 (2664 Hz)") == "render-picture-line-2566-7hz"
 
 
+def test_a_link_leads_to_the_own_results_first(tmp_path: Path) -> None:
+    write(tmp_path, {"command": "run", "made_at": "2026-01-01T10:00:00+00:00"} | RUN, 'title = "x"')
+    newer = {"command": "modes", "made_at": "2026-02-01T10:00:00+00:00"} | RUN["housing"]  # type: ignore[operator]
+    write(tmp_path / "modes", newer, 'title = "x"')
+    for place in (tmp_path, tmp_path / "modes"):
+        (place / "mode-01-658Hz.png").write_bytes(PIXEL)
+    page = report_page(tmp_path, Contents(chapters_of, first_page))
+    run = page[page.index('<h2 id="run-') :]
+    modes = page[page.index('<h2 id="modes-') : page.index('<h2 id="run-')]
+    assert set(re.findall(r'<a href="#([\w-]+)">1</a>', run)) == {"run-picture-mode-01-658hz"}
+    assert set(re.findall(r'<a href="#([\w-]+)">1</a>', modes)) == {"modes-picture-mode-01-658hz"}
+
+
 def test_a_sheet_of_modes_is_left_out_where_each_has_a_picture(tmp_path: Path) -> None:
     write(tmp_path, {"command": "modes"} | RUN["housing"], 'title = "x"')  # type: ignore[operator]
     (tmp_path / "modes.png").write_bytes(PIXEL)

@@ -57,7 +57,7 @@ from coupling.gears.errors import GearError
 from coupling.gears.geometry.pair import GearPairGeometry, IntArray
 from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
 from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
+from coupling.gears.stiffness.models import StiffnessModel, shared_compliance, shared_over_face
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -466,7 +466,7 @@ def tooth_contact(
         variants=curves[1:],
         pair_variants=variants.of_pair if len(curves) > 1 else none.astype(np.int64),
         back_pair_variants=variants.of_back_pair if len(curves) > 1 else none.astype(np.int64),
-        faces=faces,
+        faces=None if faces is None else replace(faces, shared=shared_over_face(model, geometry)),
         module=geometry.driver.module,
         shared_compliance=shared_compliance(model, geometry),
     )

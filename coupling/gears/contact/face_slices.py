@@ -32,7 +32,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -118,6 +119,8 @@ class FaceSlices:
         k_h, load per width over the flattening of the contact [N/m per m].
     coupling : float
         T, shear force over slope [N].
+    shared : ndarray, shape (m, m)
+        Compliance that pairs in contact at once share, of loads and deflections like `shapes` [m/N]; (0, 0) for none.
     """
 
     z: FloatArray
@@ -126,11 +129,23 @@ class FaceSlices:
     gap: FloatArray
     flattening: float
     coupling: float
+    shared: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def face_width(self) -> float:
         """Of all slices [m]."""
         return self.width * self.z.size
+
+    @cached_property
+    def shapes(self) -> FloatArray:
+        """Polynomials of degree 1 to m over the slices, of mean 0 and mean square 1 and without mean products, (n, m).
+
+        Fewer than m where the slices are fewer.
+        """
+        n = self.z.size
+        degrees = min(len(self.shared), n - 1)
+        found, triangle = np.linalg.qr(np.polynomial.legendre.legvander(2.0 * self.z / self.face_width, degrees))
+        return np.asarray(math.sqrt(n) * (found * np.sign(np.diagonal(triangle)))[:, 1:])
 
     @property
     def half_span(self) -> float:
@@ -149,12 +164,15 @@ class FaceLoads:
         Load per width [N/m], transverse, and its derivative by compression [N/m per m].
     force, tangent : ndarray, shape (p,)
         Of each pair [N], and its derivative by compression [N/m].
+    touching : ndarray of bool, shape (p, n)
+        Slices in contact.
     """
 
     line_load: FloatArray
     line_tangent: FloatArray
     force: FloatArray
     tangent: FloatArray
+    touching: BoolArray
 
 
 def face_stations(width: float) -> FloatArray:
@@ -258,7 +276,7 @@ def face_loads(
         Where the set of touching slices does not converge.
     """
     touching = meeting & (compression[:, None] > gap)
-    fixed, rising = _fields(slices, base, gap, touching)
+    fixed, rising = _even(slices, base, gap, touching)
     unsettled = np.arange(compression.size)
     for _ in range(_MOST_ROUNDS):
         deep = compression[unsettled, None]
@@ -269,7 +287,7 @@ def face_loads(
         if not unsettled.size:
             return _loads(slices, gap, touching, compression[:, None], fixed, rising)
         touching[unsettled] = touches
-        fixed[unsettled], rising[unsettled] = _fields(slices, base[unsettled], gap[unsettled], touches)
+        fixed[unsettled], rising[unsettled] = _even(slices, base[unsettled], gap[unsettled], touches)
     raise ContactAccuracyError("the iteration for the touching slices of the face does not converge; take fewer slices")
 
 
@@ -301,27 +319,41 @@ def face_equilibrium(
     nearest = np.full(meshes, np.inf)
     np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
     touching = _touching_alone(slices, base, gap, meeting, owner, force)
-    touched: FloatArray = np.zeros(meshes)
-    stiffness: FloatArray = np.zeros(meshes)
-    fixed, rising = _fields(slices, base, gap, touching)
-    constant, slope = np.zeros(owner.size), np.zeros(owner.size)
+    # Motions y of a mesh over its face: its compression, and minus its bodies' shared deflections in `shapes`.
+    motions = np.column_stack([np.ones(slices.z.size), slices.shapes])
+    size = motions.shape[1]
+    shared = slices.shared[: size - 1, : size - 1]
+    loaded = np.zeros((meshes, size))
+    loaded[:, 0] = force
+    # Loads by each motion and at none, of each pair: Bᵀ k_h (B - W) and Bᵀ k_h (gap + w).
+    slopes, constants = np.zeros((owner.size, size, size)), np.zeros((owner.size, size))
+    moved = np.zeros((owner.size, slices.z.size, size))
+    fixed = np.zeros(gap.shape)
     every = np.arange(owner.size)
     changed: IntArray | slice = slice(None)
     unsettled: IntArray | slice = slice(None)
-    scale = slices.flattening * slices.width
+    first = np.searchsorted(owner, np.arange(meshes))
     for _ in range(_MOST_ROUNDS):
-        carrying = touching[changed]
-        constant[changed] = -((gap[changed] + fixed[changed]) * carrying).sum(axis=1)
-        slope[changed] = ((1.0 - rising[changed]) * carrying).sum(axis=1)
-        stiffness = np.asarray(scale * np.bincount(owner, slope, meshes), dtype=np.float64)
-        offset = scale * np.bincount(owner, constant, meshes)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            touched = np.where(stiffness > 0.0, (force - offset) / stiffness, nearest)
+        flat = np.where(touching[changed], slices.flattening * slices.width, 0.0)
+        fixed[changed], moved[changed] = _fields(slices, base[changed], gap[changed], touching[changed], motions)
+        slopes[changed] = np.einsum("pn,nk,pnm->pkm", flat, motions, motions - moved[changed])
+        constants[changed] = (flat * (gap[changed] + fixed[changed])) @ motions
+        stiffness = np.add.reduceat(slopes, first, axis=0)
+        resisting, apart = stiffness.copy(), stiffness[:, 0, 0] <= 0.0
+        right = loaded + np.add.reduceat(constants, first, axis=0)
+        # The shared deflections are the shared compliance times the loads on them.
+        resisting[:, 1:] = shared @ stiffness[:, 1:]
+        resisting[:, 1:, 1:] += np.eye(size - 1)
+        right[:, 1:] = right[:, 1:] @ shared
+        resisting[apart] = np.eye(size)
+        motion = np.linalg.solve(resisting, right[..., None])[..., 0]
+        motion[apart] = 0.0
+        motion[apart, 0] = nearest[apart]
         # Pairs of meshes in which nothing changed stay as they are.
         whose = owner[unsettled]
-        deep = touched[whose, None]
-        excess = deep - gap[unsettled] - (fixed[unsettled] + deep * rising[unsettled])
-        touches = meeting[unsettled] & (excess > 0.0)
+        deep = motion[whose] @ motions.T
+        yielding = fixed[unsettled] + np.einsum("pnm,pm->pn", moved[unsettled], motion[whose])
+        touches = meeting[unsettled] & (deep - gap[unsettled] - yielding > 0.0)
         # At least the nearest slice carries.
         none = np.bincount(whose, touches.any(axis=1), meshes) == 0
         if none[whose].any():
@@ -331,20 +363,28 @@ def face_equilibrium(
             break
         changed = every[unsettled][different]
         touching[changed] = touches[different]
-        fixed[changed], rising[changed] = _fields(slices, base[changed], gap[changed], touches[different])
-        moved = np.zeros(meshes, dtype=np.bool_)
-        moved[owner[changed]] = True
-        unsettled = np.nonzero(moved[owner])[0]
+        affected = np.zeros(meshes, dtype=np.bool_)
+        affected[owner[changed]] = True
+        unsettled = np.nonzero(affected[owner])[0]
     else:
         raise ContactAccuracyError(
             "the iteration for the touching slices of the face does not converge; take fewer slices"
         )
-    loads = _loads(slices, gap, touching, touched[owner, None], fixed, rising)
+    unit = np.zeros((meshes, size, 1))
+    unit[:, 0] = 1.0
+    rate = np.linalg.solve(resisting, unit)[..., 0]
+    rate = rate / rate[:, :1]
+    flat = np.where(touching, slices.flattening, 0.0)
+    deep = motion[owner] @ motions.T
+    load = flat * (deep - gap - fixed - np.einsum("pnm,pm->pn", moved, motion[owner]))
+    tangent = flat * np.einsum("pnm,pm->pn", motions - moved, rate[owner])
+    width = slices.width
+    loads = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touching)
     carried = np.bincount(owner, loads.force, meshes)
-    rounding = 1e-9 * (force + stiffness * np.abs(touched)) + 1e-300
+    rounding = 1e-9 * (force + stiffness[:, 0, 0] * np.abs(motion[:, 0])) + 1e-300
     if np.any(np.abs(carried - force) > rounding) or np.any(loads.line_load < -rounding.max()):
         raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
-    return touched, loads
+    return motion[:, 0], loads
 
 
 def _touching_alone(
@@ -373,16 +413,25 @@ def _loads(
     """Evaluate the face loads from known deflections, ``w = fixed + deep * rising``, at compressions `deep` (p, 1)."""
     load = np.where(touching, slices.flattening * (deep - gap - (fixed + deep * rising)), 0.0)
     tangent = np.where(touching, slices.flattening * (1.0 - rising), 0.0)
-    return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1))
+    return FaceLoads(load, tangent, slices.width * load.sum(axis=1), slices.width * tangent.sum(axis=1), touching)
+
+
+def _even(slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Solve the deflection ``w = fixed + compression * rising`` of each pair, (p, n) both."""
+    fixed, moved = _fields(slices, base, gap, touching, np.ones((slices.z.size, 1)))
+    return fixed, moved[:, :, 0]
 
 
 def _fields(
-    slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray
+    slices: FaceSlices, base: FloatArray, gap: FloatArray, touching: BoolArray, motions: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Solve the deflection ``w = fixed + compression * rising`` of each pair for given touching slices, (p, n) both."""
+    """Solve the deflection ``w = fixed + moved y`` of each pair under motions y of its flanks like `motions` (n, m).
+
+    Shapes (p, n) and (p, n, m), for given touching slices.
+    """
     flat = np.where(touching, slices.flattening, 0.0)
-    fields = face_yield(slices, base, touching, np.stack([-(flat * gap), flat], axis=2))
-    return fields[:, :, 0], fields[:, :, 1]
+    fields = face_yield(slices, base, touching, np.dstack([-(flat * gap), flat[:, :, None] * motions]))
+    return fields[:, :, 0], fields[:, :, 1:]
 
 
 def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads: FloatArray) -> FloatArray:

@@ -214,8 +214,8 @@ class FaceContact:
         compression, loads = face_equilibrium(
             self._faces, prepared.base, gap, prepared.meeting, prepared.owner, np.full(n, force)
         )
-        touching = loads.line_tangent > 0.0
-        deformation = np.where(touching, compression[prepared.owner, None] - gap, 0.0)
+        # The work of the loads on slices and shared deflection of the bodies is that on their sum.
+        deformation = np.where(loads.touching, compression[prepared.owner, None] - gap, 0.0)
         width, shared = self._faces.width, self._contact.shared_compliance
         energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
         each = width * np.einsum("pnm,pn->pm", prepared.basis, loads.line_load)
@@ -226,7 +226,7 @@ class FaceContact:
             phases=prepared.phases,
             deflection=compression + shared * force,
             loads=np.add.reduceat(each, prepared.first, axis=0),
-            tangents=self._tangents(prepared, touching),
+            tangents=self._tangents(prepared, loads.touching),
             energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
             positions=prepared.positions,
             pair_line_loads=line_loads,
@@ -308,12 +308,24 @@ class FaceContact:
         return np.asarray(load.tangents @ self.uniform @ self.uniform)
 
     def _tangents(self, prepared: _Prepared, touching: npt.NDArray[np.bool_]) -> FloatArray:
-        """Sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m)."""
-        flat = np.where(touching, self._faces.flattening, 0.0)
-        pushed = flat[:, :, None] * prepared.basis
-        yielding = face_yield(self._faces, prepared.base, touching, pushed)
-        each = self._faces.width * np.einsum("pnk,pnm->pkm", pushed, prepared.basis - yielding)
-        return np.add.reduceat(each, prepared.first, axis=0)
+        """Sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m).
+
+        The shapes of the shared deflection are approaches too, and are condensed.
+        """
+        faces, size = self._faces, self.size
+        shapes = np.broadcast_to(faces.shapes, (len(touching), *faces.shapes.shape))
+        motions = np.concatenate([prepared.basis, shapes], axis=2)
+        flat = np.where(touching, faces.flattening, 0.0)
+        pushed = flat[:, :, None] * motions
+        yielding = face_yield(faces, prepared.base, touching, pushed)
+        each = faces.width * np.einsum("pnk,pnm->pkm", pushed, motions - yielding)
+        whole = np.add.reduceat(each, prepared.first, axis=0)
+        by_shapes = whole[:, size:, :size]
+        shared = faces.shared[: faces.shapes.shape[1], : faces.shapes.shape[1]]
+        resisting = np.eye(len(shared)) + shared @ whole[:, size:, size:]
+        return np.asarray(
+            whole[:, :size, :size] - by_shapes.swapaxes(1, 2) @ np.linalg.solve(resisting, shared @ by_shapes)
+        )
 
     @cached_property
     def _mean_phases(self) -> _Prepared:

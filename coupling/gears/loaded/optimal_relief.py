@@ -30,7 +30,7 @@ from coupling.gears.loaded.transmission_error import (
     transmission_error_phasors,
 )
 from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
+from coupling.gears.stiffness.models import StiffnessModel, shared_compliance, shared_over_face
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -204,6 +204,10 @@ class _Known:
 
     stiffness: PiecewiseCubic
     shared: float
+    over_face: FloatArray
+
+    def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
+        return self.over_face
 
     def shared_compliance(self, geometry: GearPairGeometry) -> float:
         return self.shared
@@ -252,7 +256,11 @@ def optimal_tip_relief(
         raise GearError("optimal relief: at least one load is needed")
     for force in forces:
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
-    stiffness = _Known(model.pair_stiffness(geometry), shared_compliance(model, geometry))
+    stiffness = _Known(
+        model.pair_stiffness(geometry),
+        shared_compliance(model, geometry),
+        np.zeros((0, 0)) if faces is None else shared_over_face(model, geometry),
+    )
 
     target: ReliefAim = PeakToPeak() if aim is None else aim
 

@@ -13,7 +13,7 @@ Neighbouring pairs stand on the same two bodies.  A load on one moves the other'
 c_k and c_i the cross compliances of two neighbouring teeth of each gear (:mod:`coupling.gears.stiffness.ring_body`):
 the twist of the body about its bore, which both teeth feel in full, and the dent around the root.  As one load moves
 up its tooth the other moves down, so that C varies by less than 1 % while both pairs touch; the law takes its mean for
-all pairs.
+all pairs. Under a load that varies over the face the bodies yield less (`CompliantTeeth.shared_over_face`).
 
 A new tooth model is one subclass of `CompliantTeeth`: it gives the compliance of one tooth (`solve_tooth`) and, where
 neighbouring teeth share a body, that body (`shared_body`).  Its name in cases comes from the list in
@@ -49,6 +49,7 @@ from coupling.gears.geometry.gear import Gear
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.piecewise_cubic import PiecewiseCubic, chebyshev_interpolant
 from coupling.gears.stiffness.beam import PlaneState
+from coupling.gears.stiffness.body_over_face import FACE_SHAPES, uneven_shares
 from coupling.gears.stiffness.hertz import hertz_compliance, line_contact
 from coupling.gears.stiffness.ring_body import neighbour_compliance
 
@@ -249,17 +250,49 @@ class CompliantTeeth(ABC):
         The mean over the positions at which two neighbouring pairs touch. Zero where the model has no body, or where
         the path of contact never holds two pairs.
         """
+        return sum(self._shared_by_gear(geometry))
+
+    def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
+        """Compliance that pairs share under loads that vary over the face like Legendre's polynomials p_m [m/N].
+
+        A force F spread like p_l over the face, mean p_l² = 1, moves all flanks by ``F C_ml p_m`` of both gears
+        (:mod:`coupling.gears.stiffness.body_over_face`).
+
+        Returns
+        -------
+        ndarray, shape (m, m)
+            From m = 1 on; that under an even load is `shared_compliance`.
+        """
+        total = np.zeros((FACE_SHAPES, FACE_SHAPES))
+        middle = 0.5 * geometry.contact_ratio
+        radii = geometry.driver_radius(middle), geometry.driven_radius(middle)
+        for gear, radius, shared in zip(
+            (geometry.driver, geometry.driven), radii, self._shared_by_gear(geometry), strict=True
+        ):
+            body = self.shared_body(gear)
+            if body is None or shared == 0.0:
+                continue
+            at, spur = np.asarray(radius, dtype=np.float64), gear
+            if gear.helix_angle != 0.0:
+                spur = max(normal_section_gears(gear), key=lambda section: section[1])[0]
+                at = _spur_radius(gear, spur)(at)
+            width = geometry.face_width / gear.root_circle_radius
+            total += shared * uneven_shares(spur, float(at), width, twists=body.twists)
+        return total
+
+    def _shared_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
+        """Parts of the driver's and the driven gear's body in the shared compliance [m/N]."""
         both = geometry.contact_ratio - 1.0
         driver, driven = self._neighbours(geometry.driver), self._neighbours(geometry.driven)
         if driver is None or driven is None or both <= 0.0:
-            return 0.0
+            return 0.0, 0.0
         nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
         behind = 0.5 * both * (1.0 + nodes)
         ahead = behind + 1.0
         # The driver pushes against its own rotation, so that its next tooth in the sense of the load entered later.
-        moved = driver(geometry.driver_radius(ahead), geometry.driver_radius(behind))
-        moved = moved + driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))
-        return float(0.5 * weights @ moved)
+        of_driver = driver(geometry.driver_radius(ahead), geometry.driver_radius(behind))
+        of_driven = driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))
+        return float(0.5 * weights @ of_driver), float(0.5 * weights @ of_driven)
 
     def _neighbours(self, gear: Gear) -> Compliance | None:
         body = self.shared_body(gear)

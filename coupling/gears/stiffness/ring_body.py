@@ -100,7 +100,7 @@ class RootFlexibility:
 
 
 @dataclass(frozen=True, eq=False)
-class _Stamp:
+class RootStamp:
     """The tractions under a rigid root arc, for unit resultants (across, torque, along).
 
     Attributes
@@ -141,7 +141,7 @@ def root_flexibility(
     -------
     RootFlexibility
     """
-    return _stamp(rings, half_angle, poisson_ratio, kappa).own
+    return root_stamp(rings, half_angle, poisson_ratio, kappa).own
 
 
 def neighbour_flexibility(
@@ -162,7 +162,7 @@ def neighbour_flexibility(
         Row: motion of the first arc in the sense of (force across the tooth's axis, torque about the gear's centre over
         root radius, force outward along the axis); column: these loads on the second arc.
     """
-    stamp = _stamp(rings, half_angle, poisson_ratio, kappa)
+    stamp = root_stamp(rings, half_angle, poisson_ratio, kappa)
     numbers = np.arange(1, stamp.waves.shape[1] + 1)
     hermitian = stamp.flexibility.astype(np.complex128)
     hermitian[:, 0, 1] *= 1j
@@ -174,7 +174,7 @@ def neighbour_flexibility(
 
 
 @lru_cache(maxsize=16)
-def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float) -> _Stamp:
+def root_stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, kappa: float) -> RootStamp:
     """Solve the rigid stamp on a ring."""
     last = math.ceil(_WAVES_ACROSS / half_angle)
     waves = np.arange(1, last + 1)
@@ -222,7 +222,7 @@ def _stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: float, 
     )
     uniform = np.zeros((3, 2))
     uniform[:2, 1], uniform[2, 0] = sideways[:, odd.size :] @ whole, upright[0, : even.size] @ whole
-    return _Stamp(
+    return RootStamp(
         waves=np.ascontiguousarray(waves.swapaxes(1, 2), dtype=np.complex128),
         uniform=uniform,
         flexibility=flexibility,
@@ -379,7 +379,7 @@ def rim_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompli
     """
     if gear.rim_inner_radius is None or gear.web_thickness is None:
         return lambda radius: np.zeros(np.shape(radius))
-    rings = _rings(gear)
+    rings = body_rings(gear)
     plain = (Annulus(_hold(gear), 1.0, gear.face_width),)
     with_rim, without = (_solved(gear, body, state, twists=True) for body in (rings, plain))
     return lambda radius: with_rim(radius) - without(radius)
@@ -406,8 +406,8 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twis
         From radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
         the compliance.
     """
-    rings = _rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
-    nu, kappa = gear.poisson_ratio, _kolosov(gear, state)
+    rings = body_rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
+    nu, kappa = gear.poisson_ratio, kolosov(gear, state)
     cross = neighbour_flexibility(rings, root_half_angle(gear), nu, kappa, 2.0 * math.pi / gear.teeth)
     if not (twists and held_radius(gear) is not None):
         cross = cross.copy()
@@ -428,7 +428,7 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twis
 def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, twists: bool) -> BodyCompliance:
     """Work of a unit load on the root arc; `twists` keeps the twist of the whole body."""
     nu = gear.poisson_ratio
-    arc = root_flexibility(rings, root_half_angle(gear), nu, _kolosov(gear, state))
+    arc = root_flexibility(rings, root_half_angle(gear), nu, kolosov(gear, state))
     torque = gear.base_radius / gear.root_circle_radius
     twist = 0.0 if twists else _whole_twist(rings, nu)
 
@@ -447,13 +447,14 @@ def _whole_twist(rings: tuple[Annulus, ...], nu: float) -> float:
     return (1.0 + nu) / (2.0 * math.pi) * twist_flexibility(rings)
 
 
-def _kolosov(gear: Gear, state: PlaneState) -> float:
+def kolosov(gear: Gear, state: PlaneState) -> float:
+    """Kolosov's constant of a gear's material in a plane state."""
     plane_modulus(gear, state)  # refuses an unknown state
     nu = gear.poisson_ratio
     return (3.0 - nu) / (1.0 + nu) if state == "plane-stress" else 3.0 - 4.0 * nu
 
 
-def _rings(gear: Gear) -> tuple[Annulus, ...]:
+def body_rings(gear: Gear) -> tuple[Annulus, ...]:
     """Divide the gear body into annuli, from the radius where it is held to the root circle.
 
     Raises

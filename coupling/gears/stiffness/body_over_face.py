@@ -1,0 +1,166 @@
+r"""Deflection of a gear body that neighbouring teeth share, under a load that varies over the face: an elastic ring.
+
+:mod:`coupling.gears.stiffness.ring_body` is plane: the same load all over the face. Under a load that varies over the
+face the body yields less, the more so the narrower the face is against its radius: the sections of the ring hold each
+other by shear. The ring from the circle where it is held to the root circle is a solid here, of the face's width and
+with free ends. Its displacements are
+
+    u_r = U(r, z) cos n t,    u_t = V(r, z) sin n t,    u_z = W(r, z) cos n t
+
+in each wave n around it, zero at the held circle, and U, V, W are polynomials in ln r and z of the least elastic energy
+(Ritz) under tractions on the root circle that are Legendre's polynomials p_m over the face,
+
+    p_m(z) = sqrt(2 m + 1) P_m(2 z / b),        mean p_m p_l = 1 where m = l, else 0.
+
+Even loads move U and V by even polynomials and W by odd ones, and the reverse. Between the teeth the waves add up as in
+the plane ring, with the tractions of the plane stamp in every section. The moved root arc, along the line of action,
+then has the compliances C_ml: the part p_m of its motion by a load p_l on the next tooth. C_00 is that of an even load;
+the ratios C_ml / C_00 are independent of how the plane ring is scaled, and the module gives these.
+
+Short waves, ``n > _WAVES``, do not reach the next tooth and count in plane strain.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.profile import load_angle, root_half_angle
+from coupling.gears.stiffness.foundation import held_radius
+from coupling.gears.stiffness.ring_body import SOLID_HOLD, Annulus, body_rings, kolosov, root_stamp
+
+FloatArray = npt.NDArray[np.float64]
+
+FACE_SHAPES = 3
+"""Shapes p_1, p_2, p_3 of the load over the face besides the even one; a fourth has 2 % of the even compliance."""
+
+_WAVES = 48
+_OVER_FACE = 7
+_OVER_RADIUS = 14
+
+
+def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = True) -> FloatArray:
+    """Compliance that neighbouring teeth share under uneven loads over the face, relative to that under an even load.
+
+    Parameters
+    ----------
+    gear : Gear
+        A spur gear. A rim on a web counts as a body of the full width, which is stiffer in tilt.
+    radius : float
+        Of the loaded points [m].
+    width : float
+        Face width over the root radius.
+    twists : bool
+        Whether the twist of the whole body about its bore is shared, as for
+        `coupling.gears.stiffness.ring_body.neighbour_compliance`.
+
+    Returns
+    -------
+    ndarray, shape (m, m)
+        ``C_ml / C_00`` over `FACE_SHAPES`; symmetric, no eigenvalue below 0.
+    """
+    nu = gear.poisson_ratio
+    twists = twists and held_radius(gear) is not None
+    rings = body_rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
+    stamp = root_stamp(rings, root_half_angle(gear), nu, kolosov(gear, "plane-strain"))
+    over_face = wave_flexibility_over_face(rings[0].inner, width, nu)
+    beta = float(load_angle(gear, np.array(radius)))
+    load = np.array([math.cos(beta), gear.base_radius / gear.root_circle_radius, -math.sin(beta)])
+    waves, uniform = np.einsum("j,jna->na", load, stamp.waves), load @ stamp.uniform
+    phase = np.exp(-2j * math.pi / gear.teeth * np.arange(1, waves.shape[0] + 1))
+    # Hermitian, as the tangential traction of the plane ring is a quarter wave behind the radial one.
+    work = np.einsum("na,nb,ab,n->nab", waves.conj(), waves, np.array([[1.0, 1j], [-1j, 1.0]]), phase).real / math.pi
+    long = work[:_WAVES]
+    found = np.einsum("nab,nmlab->ml", long, over_face[1 : long.shape[0] + 1])
+    found += np.eye(len(found)) * np.sum(work[_WAVES:] * stamp.flexibility[_WAVES:])
+    even = over_face[0].copy()
+    if not twists:
+        even[..., 1, 1] = 0.0
+    found += np.einsum("a,mlab,b->ml", uniform, even, uniform) / (2.0 * math.pi)
+    values, vectors = np.linalg.eigh(found[1:, 1:] / found[0, 0])
+    return np.asarray(vectors * np.maximum(values, 0.0) @ vectors.T)
+
+
+@lru_cache(maxsize=32)
+def wave_flexibility_over_face(inner: float, width: float, poisson_ratio: float) -> FloatArray:
+    """Displacement (u_r, u_t) of the root circle, times 2 mu, by waves around the ring and polynomials over the face.
+
+    Parameters
+    ----------
+    inner, width : float
+        Radius where the ring is held, and its width, in root circle radii.
+    poisson_ratio : float
+
+    Returns
+    -------
+    ndarray, shape (waves + 1, m + 1, m + 1, 2, 2)
+        Part p_m of the displacement under tractions ``p_l (cos n t, sin n t)``, from n = 0.
+    """
+    count = FACE_SHAPES + 1
+    found = np.zeros((_WAVES + 1, count, count, 2, 2))
+    n = np.arange(_WAVES + 1.0)[:, None, None]
+    for parity in (0, 1):
+        # Quadratic in n, so that three waves give the energy of all.
+        none, one, two = (_elastic_energy(inner, width, poisson_ratio, parity, wave) for wave in (0.0, 1.0, 2.0))
+        second = 0.5 * (two - 2.0 * one + none)
+        energy = none + n * (one - none - second) + n**2 * second
+        shapes = np.arange(parity, count, 2)
+        across = len(range(parity, _OVER_FACE, 2))
+        load = np.zeros((energy.shape[1] // _OVER_RADIUS, 2, shapes.size))
+        for component in (0, 1):
+            load[component * across + np.arange(shapes.size), component, np.arange(shapes.size)] = 1.0
+        # Every polynomial over the radius is 1 at the root circle.
+        load = np.repeat(load.reshape(len(load), -1), _OVER_RADIUS, axis=0)
+        moved = load.T @ np.linalg.solve(energy, load[None])
+        moved = moved.reshape(-1, 2, shapes.size, 2, shapes.size).transpose(0, 2, 4, 1, 3)
+        found[:, shapes[:, None], shapes] = moved
+    found.setflags(write=False)
+    return found
+
+
+def _elastic_energy(inner: float, width: float, poisson_ratio: float, parity: int, n: float) -> FloatArray:
+    """Elastic energy by the coefficients of U, V and W, times 2, with 2 mu = 1; U and V even over the face or odd."""
+    x, weight, value, slope = _legendre(_OVER_RADIUS + 10, _OVER_RADIUS)
+    depth = math.log(1.0 / inner)
+    radius = np.exp(-0.5 * depth * (1.0 - x))
+    per_x = 0.5 * depth * radius
+    held = 0.5 * value * (1.0 + x)[:, None]
+    rise = 0.5 * (slope * (1.0 + x)[:, None] + value) / per_x[:, None]
+    over = held / radius[:, None]
+    _, z_weight, face, face_slope = _legendre(_OVER_FACE + 2, _OVER_FACE + 1)
+    scale = np.sqrt(2.0 * np.arange(_OVER_FACE + 1) + 1.0)
+    face, face_slope = face * scale, face_slope * scale * 2.0 / width
+    measure = np.outer(0.5 * z_weight, weight * per_x * radius).ravel()
+    across, along = slice(parity, _OVER_FACE, 2), slice(1 - parity, None, 2)
+    p, q, p_slope, q_slope = face[:, across], face[:, along], face_slope[:, across], face_slope[:, along]
+    p_over, p_rise = _products(p, over), _products(p, rise)
+    none, none_along = np.zeros_like(p_over), np.zeros((measure.size, q.shape[1] * _OVER_RADIUS))
+    radial = np.hstack([p_rise, none, none_along])
+    around = np.hstack([p_over, n * p_over, none_along])
+    axial = np.hstack([none, none, _products(q_slope, held)])
+    shears = (
+        np.hstack([-n * p_over, p_rise - p_over, none_along]),
+        np.hstack([_products(p_slope, held), none, _products(q, rise)]),
+        np.hstack([none, _products(p_slope, held), -n * _products(q, over)]),
+    )
+    lame = poisson_ratio / (1.0 - 2.0 * poisson_ratio)
+    strains = [(lame, radial + around + axial), (1.0, radial), (1.0, around), (1.0, axial)]
+    strains += [(0.5, shear) for shear in shears]
+    return np.asarray(sum(modulus * (strain.T * measure) @ strain for modulus, strain in strains), dtype=np.float64)
+
+
+def _legendre(points: int, count: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Points and weights of Gauss's quadrature with Legendre's polynomials and their slopes there, (points, count)."""
+    x, weight = np.polynomial.legendre.leggauss(points)
+    slopes = [np.polynomial.Legendre.basis(degree).deriv()(x) for degree in range(count)]
+    return x, weight, np.polynomial.legendre.legvander(x, count - 1), np.column_stack(slopes)
+
+
+def _products(over_face: FloatArray, over_radius: FloatArray) -> FloatArray:
+    """Products of functions at all pairs of points, (points, functions)."""
+    points = over_face.shape[0] * over_radius.shape[0]
+    return np.asarray(np.einsum("za,rb->zrab", over_face, over_radius).reshape(points, -1))
