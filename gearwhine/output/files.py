@@ -275,8 +275,13 @@ def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """Return a document as JSON, refusing values that JSON has no word for."""
-    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+    """Return a document as JSON, lists of numbers on one line, refusing values that JSON has no word for."""
+    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+    return _NUMBERS.sub(lambda found: f"[{' '.join(found[1].split())}]", text)
+
+
+# Texts hold no line end as it stands, so that none of them is taken for a list.
+_NUMBERS = re.compile(r"\[\n\s+([^\[\]{}\"]*?)\n\s*\]")
 
 
 def finite(value: Any) -> Any:

@@ -5,10 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import gearwhine as gw
 from gearwhine.case import Case
-from gearwhine.output import store
+from gearwhine.output import json_text, store
 from gearwhine.output.store import store_results, stored_results
 
 
@@ -54,3 +56,19 @@ def test_the_summary_is_the_document_with_what_it_was_made_of(case: Case, tmp_pa
     assert kept == document
     assert (kept["command"], kept["content"], kept["folder"]) == ("gears", "first", str(tmp_path / "out"))
     assert all((tmp_path / "out" / name).is_file() for name in kept["files"])
+
+
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
+        lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+    )
+)
+def test_json_is_the_document_whatever_its_texts(document: object) -> None:
+    assert json.loads(json_text({"document": document})) == {"document": document}
+
+
+def test_lists_of_numbers_stand_on_one_line() -> None:
+    text = json_text({"speeds": [1.5, 2, None], "name": "[\n 1,\n 2\n]", "rows": [{"n": 1}]})
+    assert '"speeds": [1.5, 2, null]' in text
+    assert json.loads(text)["name"] == "[\n 1,\n 2\n]"
