@@ -443,7 +443,7 @@ LOAD = (
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
     Quantity(
         "lines_without",
-        lambda solved: ABSENT if not _sensor_lines(solved) else solved.sensitivity.lines.held,
+        lambda solved: ABSENT if _sensor_lines(solved) is ABSENT else solved.sensitivity.lines.held,
     ),
     Rows(
         "sensitivity",
