@@ -301,8 +301,9 @@ def draw_sensitivity(
         )
         quantity = "Change [µrad/(mm·dm²)]"
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
-    shapes += _line_shapes(solved.sensitivity, surface.nodes)
-    return draw_in_process(surface, shapes, place, "png", view, progress) if shapes else []
+    # One process has one scale and one quantity.
+    groups = [group for group in (shapes, _line_shapes(solved.sensitivity, surface.nodes)) if group]
+    return [name for group in groups for name in draw_in_process(surface, group, place, "png", view, progress)]
 
 
 def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -> "list[DrawnShape]":

@@ -138,7 +138,7 @@ class HousingRates:
 
     @cached_property
     def damping(self) -> FloatArray:
-        """DC of the modal damping [1/s], shape (p, h, h)."""
+        """Derivatives of the modal damping matrix [1/s], shape (p, h, h)."""
         omega, ratios = self.frequencies, self.ratios
         values, gains = omega**2, 2.0 * ratios * omega
         apart = values[:, None] - values[None, :]

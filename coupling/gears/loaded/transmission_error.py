@@ -248,7 +248,8 @@ def transmission_error_phasors(mesh: LoadedMesh, count: int, periods: int = 1) -
     """
     phases, values = mesh.phases, mesh.transmission_error
     if phases[-1] - phases[0] >= periods or np.any(np.diff(phases) <= 0.0):
-        raise GearError(f"harmonics: phases of {periods} mesh periods are needed, ascending and without their end")
+        span = "one mesh period" if periods == 1 else f"{periods} mesh periods"
+        raise GearError(f"harmonics: phases of {span} are needed, ascending and without its end")
     x = np.append(phases, phases[0] + periods)
     y = np.append(values, values[0])
     w = 2.0 * np.pi * np.arange(1, count + 1)[:, None]
