@@ -130,14 +130,14 @@ def test_moments_stand_beside_the_forces() -> None:
     result = gw.load("helical-pair", opposed(axial_offset="5 um")).operating_point()
     forces, rolling, *_ = sections(result.document)[0].tables
     columns, texts = forces.filled()
-    headings = [column.heading for column in columns]
+    headings = [column.heading.replace("\n", " ") for column in columns]
     assert headings == ["bearing", "x [N]", "y [N]", "z [N]", "about x [N m]", "about y [N m]", "tilt [µrad]"]
     for one, row in zip(result.solved.point.bearings, texts, strict=True):
         shown = np.array([float(text) for text in row[1:6]])
         np.testing.assert_allclose(shown, one.force, atol=0.51)
         np.testing.assert_allclose(shown[3:], one.force[3:], atol=0.051)
     columns, texts = rolling.filled()
-    headings = [column.heading for column in columns]
+    headings = [column.heading.replace("\n", " ") for column in columns]
     assert headings == ["bearing", "pressure [GPa]", "preload [N]", "L10 [h]", "L10r [h]", "x, y, z [N/µm]"]
     stiffness = np.diag(result.solved.point.bearings[0].stiffness)[:3]
     assert [float(part) for part in texts[0][-1].split(",")] == pytest.approx(1e-6 * stiffness, rel=1e-3)
