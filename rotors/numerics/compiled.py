@@ -50,7 +50,7 @@ _KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
 _IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
 
 
-class _Log(event.Listener):  # type: ignore[misc]  # numba has no types
+class _Log(event.Listener):
     """Logs each kernel of this program that is compiled, not one that is read from the cache."""
 
     def on_start(self, event: Any) -> None:
@@ -62,7 +62,7 @@ class _Log(event.Listener):  # type: ignore[misc]  # numba has no types
         pass
 
 
-event.register("numba:compile", _Log())
+event.register("numba:compile", _Log())  # type: ignore[no-untyped-call]
 
 
 def counted(**options: Any) -> Callable[[Kernel], Kernel]:
