@@ -157,7 +157,8 @@ def solve_modes(
     residual_modes = None
     if ports is not None:
         start = time.perf_counter()
-        progress("attaching the static response at the ports")
+        work = "attaching the static response at the ports"
+        progress(work)
         residual_modes, vectors = residual_attachment_modes(
             system.stiffness,
             system.mass,
@@ -170,6 +171,7 @@ def solve_modes(
             free=system.free,
             n_nodes=system.n_nodes,
             orders=port_orders,
+            progress=lambda step: progress(f"{work}: {step}"),
         )
         search.seconds["reduction"] = time.perf_counter() - start
     return ModeSet(

@@ -169,6 +169,7 @@ def residual_attachment_modes(
     free: IntArray,
     n_nodes: int,
     orders: int = 1,
+    progress: Callable[[str], None] = lambda message: None,
 ) -> tuple[ResidualModes, FloatArray]:
     """Compute residual attachment modes, and prove that they make the static compliance at the ports exact.
 
@@ -195,6 +196,8 @@ def residual_attachment_modes(
     orders : int
         Responses for each port motion: 1, the static one; 2, that at ω² = shift beside it; more, its derivatives by ω²
         there too, see Eq. (5).
+    progress : callable
+        Called with a line of text before each step after the static response.
 
     Returns
     -------
@@ -226,10 +229,12 @@ def residual_attachment_modes(
     residual, sweeps = _static_response(stiffness, solve, loads, vectors, inertia, _SETTLED, modal.diagonal())
     span = _independent(stiffness, residual, modal.diagonal())
     response = loads
-    for _ in range(orders - 1):
+    for order in range(1, orders):
+        progress(f"response {order} of {orders - 1} at the limit")
         response = _complement_solve(solve, response, vectors, inertia)
         span = _extended(stiffness, span, response)
         response = np.asarray(mass @ response)
+    progress("orthonormal shapes")
     squared, shapes = _orthonormal(stiffness, mass, span, vectors, inertia)
     turn = _turn(stiffness, squared, shapes, values, vectors)
     inertia += np.asarray(mass @ shapes) @ turn
@@ -241,6 +246,7 @@ def residual_attachment_modes(
     # Each load without the part that accelerates rigid modes, and the displacements found for it.
     balanced = loads - inertia[:, ~elastic] @ motions[~elastic]
     claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (found / squared[:, None])
+    progress("proof")
     slack = 1.0 + max(-shift, 0.0) / max(float(values.max(initial=0.0)), floor)
     proof = StaticProof(
         compliance=modal + missing,

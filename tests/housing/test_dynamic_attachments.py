@@ -46,6 +46,16 @@ def solved(beam: tuple[Mesh, Matrices], clamped: npt.NDArray[np.int64], port: sp
     }
 
 
+def test_progress_names_the_steps_of_the_reduction(
+    beam: tuple[Mesh, Matrices], clamped: npt.NDArray[np.int64], port: sparse.csr_array
+) -> None:
+    said: list[str] = []
+    solve_modes(beam[1].held(clamped), frequency_limit=LIMIT, ports=port, port_orders=3, progress=said.append)
+    work = "attaching the static response at the ports"
+    steps = ["response 1 of 2 at the limit", "response 2 of 2 at the limit", "orthonormal shapes", "proof"]
+    assert said[-5:] == [work, *(f"{work}: {step}" for step in steps)]
+
+
 def dense(beam: tuple[Mesh, Matrices], fixed: npt.NDArray[np.int64], port: sparse.csr_array, w: float) -> FloatArray:
     """Motions of all nodes by unit loads on the port at a circular frequency, shape (3 n_nodes, 5)."""
     matrices = beam[1]
