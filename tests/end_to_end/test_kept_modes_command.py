@@ -13,7 +13,7 @@ from gearwhine.cli import run_command
 from housing import read_modes
 from housing.pictures import scene as renderer
 
-COARSE = ("--set", 'housing.box.mesh_size="60 mm"')
+COARSE = ("--set", 'housing.box.mesh_size="45 mm"')
 CLOCK = ("seconds", "seconds_when_solved")
 ORIGIN = ("reused", "modes_read_from", "warnings", "folder", "files", "made_at", "command", "input_files")
 

@@ -49,7 +49,9 @@ def test_check_refuses_what_no_command_can_use(gearwhine: Any, case: str, change
 
 
 def test_a_rib_of_ten_metres_ends(gearwhine: Any) -> None:
-    outcome = gearwhine("mesh", "ribbed-box", "-q", "--set", "housing.box.ribs.0.height=10 m")
+    outcome = gearwhine(
+        "mesh", "ribbed-box", "-q", "--set", "housing.box.ribs.0.height=10 m", "--set", "housing.box.mesh_size=80 mm"
+    )
     assert outcome.code in (0, 2), outcome.err
 
 
