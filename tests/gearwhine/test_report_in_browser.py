@@ -216,8 +216,9 @@ def test_a_click_on_a_heading_sorts_and_another_turns_the_order(browser: Browser
         browser.value(f"{heading}.querySelector('button').click()")
         assert browser.value(f"{heading}.getAttribute('aria-sort')") == order
         assert column(browser, 0) == expected
-    browser.value("document.querySelector('#run-section-housing-modes th button').click()")
-    assert column(browser, 0) == ["1", "2", "3"]
+    # By their numbers, not by their letters: 900 comes before 1007.3.
+    browser.value("document.querySelectorAll('#run-section-housing-modes th button')[1].click()")
+    assert column(browser, 1) == ["900.00", "1007.30", "2500.00"]
     assert browser.value(f"{heading}.getAttribute('aria-sort')") is None
 
 
@@ -251,12 +252,10 @@ def test_shapes_move_pause_and_are_chosen(browser: Browser, pages: dict[str, Pat
     browser.wait_for("!document.querySelector('model-viewer').paused")
     told = "document.querySelector('.told').textContent"
     assert browser.value(told).startswith(f"Operating shape {HOSTILE}")
-    deadline = time.monotonic() + 10.0
-    while moved(browser) == 0.0:
-        assert time.monotonic() < deadline, "the shape stands still"
+    in_sight(browser)  # the first picture waits for the shaders, which a busy processor compiles for long
+    assert any(moved(browser) > 0.0 for _ in range(20)), "the shape stands still"
     browser.value("document.querySelector('.pause').click()")
-    time.sleep(0.3)
-    assert moved(browser) == 0.0
+    assert any(moved(browser) == 0.0 for _ in range(20)), "the shape moves on"
     # The button at the picture of a mode, and a link to a shape that has no picture.
     browser.value("document.querySelector('figure[data-picture=mode-02-1007Hz] .move').click()")
     browser.wait_for(f"{told} === 'Mode 2   1007 Hz'")
