@@ -33,7 +33,7 @@ from scipy import linalg
 
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears.loaded.contact_pressure import mesh_pressure
-from coupling.gears.loaded.face_load import FaceLoad
+from coupling.gears.loaded.face_load import FaceLoad, face_load_factor
 from coupling.gears.loaded.transmission_error import LoadedMesh
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing, RollingLaw
@@ -211,14 +211,18 @@ class PairLoad:
         """Load per width over the face, all tooth pairs together, mean over the mesh period [N/m], shape (s,)."""
         return np.asarray(self.fine.line_load.mean(axis=0))
 
-    @property
+    @cached_property
+    def even(self) -> FaceLoad:
+        """Load of the same flanks, if they approached evenly and had no helix modifications, at ``fine.phases``."""
+        return self.pair.contact.evenly(self.fine.force, self.fine.phases)
+
+    @cached_property
     def k_h_beta(self) -> float:
-        """Face load factor K_Hβ (ISO 6336-1): the largest mean load per width over its mean over the face.
+        """Face load factor K_Hβ (ISO 6336-1): the largest mean load per width over that of an even approach.
 
         At the mean torque, without application and dynamic factor, tolerances and running-in.
         """
-        load = self.line_load
-        return float(load.max() / load.mean())
+        return face_load_factor(self.fine, self.even)
 
     @property
     def transmission_error(self) -> FloatArray:

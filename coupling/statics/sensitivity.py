@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from coupling.gears.loaded.face_load import face_load_factor
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 
 FloatArray = npt.NDArray[np.float64]
@@ -115,8 +116,7 @@ def _face_gradients(pair: PairLoad) -> FloatArray:
     def outcomes(approach: FloatArray) -> FloatArray:
         shape = approach - contact.uniform * float(contact.face_mean @ approach)
         fine = contact.under_force(contact.at(approach).force, shape, pair.fine.phases)
-        load = fine.line_load.mean(axis=0)
-        return np.array([load.max() / load.mean(), np.ptp(fine.deflection)])
+        return np.array([face_load_factor(fine, pair.even), np.ptp(fine.deflection)])
 
     step = _STEP * pair.force / pair.mean_stiffness
     steps = step * np.eye(contact.size)

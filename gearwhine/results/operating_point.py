@@ -261,8 +261,8 @@ PAIR = (
             _line_load(
                 "maximum",
                 "maximum_line_load",
-                lambda one: one.line_load.max(),
-                "maximum line load: largest over the face of the mean over the mesh period, K_Hbeta times the mean",
+                lambda one: one.k_h_beta * one.line_load.mean(),
+                "maximum line load K_Hbeta F / b",
             ),
             _line_load(
                 "peak",

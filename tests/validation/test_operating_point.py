@@ -20,12 +20,13 @@ from own_statics import (
     one_stage,
     toothed,
 )
+from scipy.linalg import block_diag
 from scipy.optimize import nnls
 from scipy.sparse.linalg import splu
 
 from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
 from coupling.gears import ConstantStiffness, HelixDeviation, TipRelief, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.statics.operating_point import OperatingPoint
@@ -426,15 +427,20 @@ def central_differences(function: Callable[[FloatArray], float], at: FloatArray,
     return np.array([(function(at + step) - function(at - step)) / (2.0 * step.max()) for step in np.diag(steps)])
 
 
-def line_loads(base: FloatArray, flat: float, coupling: float, width: float, depth: FloatArray) -> FloatArray:
-    """Load per width on the slices of a tooth pair pressed in by a depth, 0 or more, by quadratic programming."""
-    count = base.size
+def line_loads(faces: FaceSlices, base: FloatArray, depth: FloatArray) -> FloatArray:
+    """Load per width on the slices of p tooth pairs pressed in by a depth (p, n), 0 or more, by quadratic programming.
+
+    All pairs stand on the same bodies, which tilt and bend over the face.
+    """
+    pairs, count = base.shape
     chain = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
     chain[0, 0] = chain[-1, -1] = 1.0
-    compliance = np.linalg.inv(np.diag(base) + coupling / width**2 * chain) + np.eye(count) / flat
+    each = [np.linalg.inv(np.diag(one) + faces.coupling / faces.width**2 * chain) for one in base]
+    bodies = faces.width * faces.shapes @ faces.shared @ faces.shapes.T
+    compliance = block_diag(*each) + np.eye(base.size) / faces.flattening + np.tile(bodies, (pairs, pairs))
     lower = np.linalg.cholesky(compliance)
-    found, _ = nnls(lower.T, np.linalg.solve(lower, depth))
-    return np.asarray(found)
+    found, _ = nnls(lower.T, np.linalg.solve(lower, depth.ravel()))
+    return np.asarray(found).reshape(base.shape)
 
 
 def tooth_forces(point: OperatingPoint, own: OwnStatics, x: FloatArray) -> FloatArray:
@@ -448,25 +454,28 @@ def tooth_forces(point: OperatingPoint, own: OwnStatics, x: FloatArray) -> Float
     geometry, (push, axial) = pair.pair.geometry, (own.plane(given)[0], own.plane(given)[1])
     assert push == pytest.approx(pair.pair.push)
     sense = 1 if own.machine.speeds["in"] > 0 else -1
-    faces = face_slices(geometry, sense=sense)
     model = stiffness_under_load("potential-energy", geometry, abs(torque) / geometry.driver.base_radius)
-    contact = tooth_contact(geometry, model, corner_contact=True, faces=faces)
+    contact = tooth_contact(geometry, model, corner_contact=True, faces=face_slices(geometry, sense=sense))
+    faces = contact.faces
+    assert faces is not None
     over, tilt = own.approach(given, faces.z)
     found, phases = np.zeros(own.size), pair.mean.phases
     states = contact.pairs(phases)
     assert states.faces is not None
     rows = np.argwhere(states.present)
     shape = over @ x - float((over @ x).mean())
-    # The load does not move the mean approach, which has the shared compliance in it.
+    # The load does not move the mean approach, which has the shared compliance of an even load in it.
     shared = contact.shared_compliance * pair.force
     carried = np.zeros(phases.size)
-    for number, (phase, slot) in enumerate(rows):
-        xi = (states.position[phase, slot] + faces.shift - geometry.pitch_point_position) * geometry.base_pitch
-        depth = pair.mean.deflection[phase] - shared + shape - axial * xi * (tilt @ x) - states.faces.gap[number]
-        depth = np.where(states.faces.meeting[number], depth, -1.0)
-        load = line_loads(states.faces.base[number], faces.flattening, faces.coupling, faces.width, depth)
-        carried[phase] += faces.width * load.sum()
-        found += faces.width * load @ (over - axial * xi[:, None] * tilt) / phases.size
+    for phase in range(phases.size):
+        these = np.flatnonzero(rows[:, 0] == phase)
+        places = states.position[phase, rows[these, 1]][:, None] + faces.shift
+        xi = (places - geometry.pitch_point_position) * geometry.base_pitch
+        depth = pair.mean.deflection[phase] - shared + shape - axial * xi * (tilt @ x) - states.faces.gap[these]
+        depth = np.where(states.faces.meeting[these], depth, -1.0)
+        load = line_loads(faces, states.faces.base[these], depth)
+        carried[phase] = faces.width * load.sum()
+        found += faces.width * np.einsum("pn,pnx->x", load, over - axial * xi[:, :, None] * tilt) / phases.size
     np.testing.assert_allclose(carried, pair.force, rtol=1e-6)
     return found
 

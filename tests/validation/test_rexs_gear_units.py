@@ -26,7 +26,11 @@ import pytest
 
 from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
 from coupling.gears import Gear
+from coupling.gears.contact.contact_law import tooth_contact
+from coupling.gears.contact.face_slices import face_slices
+from coupling.gears.loaded.face_load import FaceContact, face_load_factor
 from coupling.gears.loaded.gear_pair import GearPair
+from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.statics.operating_point import OperatingPoint, PairLoad
 from rotors import Bearing, Rotor, Segment, ShaftMaterial
 from rotors.rolling_bearings import RollingBearing, catalogue_bearing, catalogue_row
@@ -381,6 +385,46 @@ def assert_in_balance(unit: Unit, machine: Machine, point: OperatingPoint) -> No
         # The middle of the load on slices is known to some micrometres.
         np.testing.assert_allclose(moment[:2], 0.0, atol=5e-6 * largest)
         assert moment[2] == pytest.approx(-ends.get(shaft, 0.0), abs=1e-6)
+
+
+def test_fva_face_load_factor_converges_with_slices() -> None:
+    """K_Hβ under the approach found, with 31, 61 and 121 slices of the face."""
+    _, point = equilibrium(0)
+    for pair in point.pairs:
+        geometry, contact, found = pair.pair.geometry, pair.pair.contact, []
+        model = stiffness_under_load("elastic-ring", geometry, pair.force)
+        shape = pair.approach - contact.uniform * float(contact.face_mean @ pair.approach)
+        for count in (31, 61, 121):
+            faces = face_slices(geometry, count=count)
+            law = contact.tooth_contact
+            assert law.faces is not None
+            if (faces.shift[-1] > 0.0) != (law.faces.shift[-1] > 0.0):
+                faces = replace(faces, shift=-faces.shift)
+            law = tooth_contact(geometry, model, corner_contact=law.has_corner_contact, faces=faces)
+            sliced = FaceContact(law, geometry, contact.stations, pair.pair.axial)
+            phases = pair.fine.phases
+            load = sliced.under_force(pair.force, shape, phases)
+            found.append(face_load_factor(load, sliced.evenly(pair.force, phases)))
+        assert found[1] == pytest.approx(pair.k_h_beta, rel=1e-9)
+        np.testing.assert_allclose(np.diff(found), 0.0, atol=0.005)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_fva_face_load_factor_beside_iso_6336(published: Published, number: int) -> None:
+    """ISO 6336-1, 7.5, 1 + F_βy c_γβ b / 2 F_m for a straight gap, c_γβ the mean mesh stiffness over b.
+
+    The norm's mesh is as stiff against tilt as against approach. Teeth and bodies that resist tilt make the slope of
+    the load between the ends a quarter to a third steeper, and the twisted teeth press at their ends.
+    """
+    pair = equilibrium(0)[1].pairs[number]
+    width = pair.pair.geometry.face_width
+    iso = 1.0 + 0.5 * abs(pair.misalignment) * width * pair.mean_stiffness / pair.force
+    published(HAND, f"K_Hβ of stage {number + 1}, load case 1, by ISO 6336-1", iso, pair.k_h_beta, rel=0.25)
+    inner = np.abs(pair.z) < 0.4 * width
+    slope = float(np.polyfit(pair.z[inner], pair.line_load[inner] / pair.line_load.mean(), 1)[0])
+    line = 1.0 + 0.5 * abs(slope) * width
+    assert iso < line < pair.k_h_beta
+    assert (line - 1.0) / (iso - 1.0) == pytest.approx(1.28, abs=0.05)
 
 
 # Type, bore, outside diameter, width [mm], C and C0 [kN], shaft and place [mm].

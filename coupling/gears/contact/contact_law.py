@@ -57,7 +57,8 @@ from coupling.gears.errors import GearError
 from coupling.gears.geometry.pair import GearPairGeometry, IntArray
 from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
 from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.models import StiffnessModel, shared_compliance, shared_over_face
+from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -417,6 +418,20 @@ class ToothContact:
         return np.asarray(states.stiffness * np.maximum(0.0, own[:, None] - states.deviation), dtype=np.float64)
 
 
+def slices_of_teeth(faces: FaceSlices, model: StiffnessModel, geometry: GearPairGeometry) -> FaceSlices:
+    """Give slices what a model knows of its teeth: the flattening of their contact and the body that they share.
+
+    Of other models the slices stay as they are, with the flattening of Yang and Sun's constant.
+    """
+    if not isinstance(model, CompliantTeeth):
+        return faces
+    return replace(
+        faces,
+        flattening=1.0 / (model.mean_flattening(geometry) * geometry.face_width),
+        shared=model.shared_over_face(geometry),
+    )
+
+
 def tooth_contact(
     geometry: GearPairGeometry,
     model: StiffnessModel,
@@ -466,7 +481,7 @@ def tooth_contact(
         variants=curves[1:],
         pair_variants=variants.of_pair if len(curves) > 1 else none.astype(np.int64),
         back_pair_variants=variants.of_back_pair if len(curves) > 1 else none.astype(np.int64),
-        faces=None if faces is None else replace(faces, shared=shared_over_face(model, geometry)),
+        faces=None if faces is None else slices_of_teeth(faces, model, geometry),
         module=geometry.driver.module,
         shared_compliance=shared_compliance(model, geometry),
     )

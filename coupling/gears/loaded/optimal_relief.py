@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
 
-from coupling.gears.contact.contact_law import ToothContact, tooth_contact
+from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact
 from coupling.gears.contact.face_slices import FaceSlices
 from coupling.gears.errors import GearError, require_finite
 from coupling.gears.geometry.modifications import ReliefShape, TipRelief
@@ -30,7 +30,7 @@ from coupling.gears.loaded.transmission_error import (
     transmission_error_phasors,
 )
 from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.models import StiffnessModel, shared_compliance, shared_over_face
+from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -204,10 +204,6 @@ class _Known:
 
     stiffness: PiecewiseCubic
     shared: float
-    over_face: FloatArray
-
-    def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
-        return self.over_face
 
     def shared_compliance(self, geometry: GearPairGeometry) -> float:
         return self.shared
@@ -256,10 +252,9 @@ def optimal_tip_relief(
         raise GearError("optimal relief: at least one load is needed")
     for force in forces:
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
-    stiffness = _Known(
-        model.pair_stiffness(geometry),
-        shared_compliance(model, geometry),
-        np.zeros((0, 0)) if faces is None else shared_over_face(model, geometry),
+    stiffness = _Known(model.pair_stiffness(geometry), shared_compliance(model, geometry))
+    faces, searched_faces = (
+        None if one is None else slices_of_teeth(one, model, geometry) for one in (faces, searched_faces)
     )
 
     target: ReliefAim = PeakToPeak() if aim is None else aim

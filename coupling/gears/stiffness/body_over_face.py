@@ -15,7 +15,7 @@ in each wave n around it, zero at the held circle, and U, V, W are polynomials i
 Even loads move U and V by even polynomials and W by odd ones, and the reverse. Between the teeth the waves add up as in
 the plane ring, with the tractions of the plane stamp in every section. The moved root arc, along the line of action,
 then has the compliances C_ml: the part p_m of its motion by a load p_l on the next tooth. C_00 is that of an even load;
-the ratios C_ml / C_00 are independent of how the plane ring is scaled, and the module gives these.
+this module gives the ratios C_ml / C_00, which multiply the compliance of the plane ring.
 
 Short waves, ``n > _WAVES``, do not reach the next tooth and count in plane strain.
 """
@@ -81,7 +81,8 @@ def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = Tru
     if not twists:
         even[..., 1, 1] = 0.0
     found += np.einsum("a,mlab,b->ml", uniform, even, uniform) / (2.0 * math.pi)
-    values, vectors = np.linalg.eigh(found[1:, 1:] / found[0, 0])
+    # By reciprocity the transpose is the motion of the next tooth by a load on this one.
+    values, vectors = np.linalg.eigh(0.5 * (found + found.T)[1:, 1:] / found[0, 0])
     return np.asarray(vectors * np.maximum(values, 0.0) @ vectors.T)
 
 

@@ -324,6 +324,12 @@ class CompliantTeeth(ABC):
         approach = line_contact(geometry, at.ravel()).secant_compliance(load).reshape(at.shape)
         return np.asarray(approach / math.cos(geometry.driver.base_helix_angle), dtype=np.float64)
 
+    def mean_flattening(self, geometry: GearPairGeometry) -> float:
+        """Mean of `contact_compliance` over the path of contact, under the model's own load [m/N]."""
+        nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
+        along = 0.5 * geometry.contact_ratio * (1.0 + nodes)
+        return float(0.5 * weights @ self.contact_compliance(geometry, along))
+
     def pair_compliance(
         self, geometry: GearPairGeometry, position: npt.ArrayLike, force: float | None = None
     ) -> FloatArray:

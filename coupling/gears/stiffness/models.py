@@ -64,19 +64,10 @@ class SharingModel(StiffnessModel, Protocol):
         """Compliance that pairs of teeth in contact at once share [m/N]."""
         ...
 
-    def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
-        """Compliance that they share under loads that vary over the face [m/N], (m, m)."""
-        ...
-
 
 def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> float:
     """Compliance that pairs of teeth in contact at once share [m/N]; 0 for a model that states stiffnesses alone."""
     return model.shared_compliance(geometry) if isinstance(model, SharingModel) else 0.0
-
-
-def shared_over_face(model: StiffnessModel, geometry: GearPairGeometry) -> FloatArray:
-    """Compliance that pairs share under loads that vary over the face [m/N], (m, m); (0, 0) without a shared body."""
-    return model.shared_over_face(geometry) if isinstance(model, SharingModel) else np.zeros((0, 0))
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 from scipy.optimize import nnls
 
 from coupling.gears import (
@@ -14,11 +15,19 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     Spall,
     TipRelief,
+    ToothContact,
     loaded_transmission_error,
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import FaceSlices, face_loads, face_slices, slice_stiffness, tooth_coupling
+from coupling.gears.contact.face_slices import (
+    FaceSlices,
+    face_equilibrium,
+    face_loads,
+    face_slices,
+    slice_stiffness,
+    tooth_coupling,
+)
 from coupling.gears.contact.tooth_force_kernels import tooth_force
 
 ALPHA = math.radians(20.0)
@@ -86,6 +95,57 @@ def test_slices_against_a_dense_solution_of_the_unilateral_problem(seed: int) ->
     step = 1e-10
     ahead = face_loads(slices, base[None], gap[None], np.ones((1, n), dtype=np.bool_), np.array([compression + step]))
     assert (ahead.force[0] - found.force[0]) / step == pytest.approx(found.tangent[0], rel=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_pairs_on_bodies_that_tilt_against_a_dense_solution(seed: int) -> None:
+    """Two pairs with one body, whose deflection is that of all their loads, by quadratic programming."""
+    (slices, base, gap, _), (_, other_base, other_gap, _) = random_face(seed), random_face(seed + 10)
+    random = np.random.default_rng(seed)
+    n = base.size
+    bases, gaps = np.stack([base, other_base]), np.stack([gap, other_gap])
+    factor = 4e-10 * random.uniform(-1.0, 1.0, (3, 3)) ** 2
+    slices = replace(slices, shared=factor + factor.T + 4e-9 * np.diag([1.0, 0.4, 0.3]))
+    z = slices.z / slices.z.max()
+    shapes = np.linalg.qr(np.column_stack([np.ones(n), z, z**2, z**3]))[0][:, 1:] * math.sqrt(n)
+    np.testing.assert_allclose(np.abs(slices.shapes.T @ shapes / n), np.eye(3), atol=1e-12)
+    link = slices.coupling / slices.width**2
+    chain = link * (np.diag(np.r_[1.0, np.full(n - 2, 2.0), 1.0]) - np.eye(n, k=1) - np.eye(n, k=-1))
+    own = block_diag(*(np.linalg.inv(np.diag(one) + chain) for one in bases)) + np.eye(2 * n) / slices.flattening
+    body = slices.width * slices.shapes @ slices.shared @ slices.shapes.T
+    lower = np.linalg.cholesky(own + np.tile(body, (2, 2)))
+    meeting, owner = np.ones((2, n), dtype=np.bool_), np.zeros(2, dtype=np.intp)
+
+    def program(compression: float) -> np.ndarray:
+        return nnls(lower.T, np.linalg.solve(lower, compression - gaps.ravel()), maxiter=2000)[0]
+
+    compression, loads = face_equilibrium(slices, bases, gaps, meeting, owner, np.array([2000.0]))
+    expected = program(float(compression[0]))
+    assert expected.sum() * slices.width == pytest.approx(2000.0, rel=1e-6)
+    np.testing.assert_allclose(loads.line_load.ravel(), expected, atol=1e-6 * expected.max())
+    assert (expected == 0.0).any()
+    step = 1e-10
+    slope = (program(float(compression[0]) + step) - expected).sum() * slices.width / step
+    assert loads.tangent.sum() == pytest.approx(slope, rel=1e-3)
+    # Bodies that do not tilt carry otherwise.
+    rigid = face_equilibrium(replace(slices, shared=np.zeros((0, 0))), bases, gaps, meeting, owner, np.array([2000.0]))
+    assert np.abs(rigid[1].line_load - loads.line_load).max() > 0.02 * expected.max()
+
+
+def test_an_even_load_does_not_see_how_bodies_tilt() -> None:
+    contact = tooth_contact(SPUR, MODEL, corner_contact=True, faces=face_slices(SPUR))
+    assert contact.faces is not None
+    assert contact.faces.shared.shape == (3, 3)
+    assert np.all(np.linalg.eigvalsh(contact.faces.shared) > 0.0)
+    one, other = (loaded_transmission_error(law, FORCE, PHASES) for law in (contact, rigid_bodies(contact)))
+    np.testing.assert_allclose(one.transmission_error, other.transmission_error, rtol=1e-13)
+    np.testing.assert_allclose(one.pair_forces, other.pair_forces, atol=1e-11 * FORCE)
+
+
+def rigid_bodies(contact: ToothContact) -> ToothContact:
+    """The same contact on bodies that do not tilt, as the table for the motion has it."""
+    assert contact.faces is not None
+    return replace(contact, faces=replace(contact.faces, shared=np.zeros((0, 0))))
 
 
 def test_a_point_load_spreads_by_the_foundations_own_length() -> None:
@@ -183,8 +243,11 @@ def test_the_table_carries_what_the_slices_carry(uneven) -> None:  # type: ignor
     random = np.random.default_rng(8)
     law = uneven.with_damping(0.0).kernel_arguments
     for phase, force in zip(random.uniform(0.0, 1.0, 40), random.uniform(100.0, 2.0 * FORCE, 40), strict=True):
-        compression = loaded_transmission_error(uneven, force, [phase]).transmission_error[0]
+        compression = loaded_transmission_error(rigid_bodies(uneven), force, [phase]).transmission_error[0]
         assert tooth_force(phase, compression, 0.0, *law)[0] == pytest.approx(force, abs=3e-3 * FORCE)
+        # On bodies that tilt the slices are a little softer.
+        tilted = loaded_transmission_error(uneven, force, [phase]).transmission_error[0]
+        assert force - 3e-3 * FORCE < tooth_force(phase, tilted, 0.0, *law)[0] < 1.02 * force + 3e-3 * FORCE
 
 
 @pytest.mark.parametrize(("degrees", "miss"), [(0.0, 1e-3), (0.02, 0.02), (14.0, 0.01)])
@@ -192,6 +255,7 @@ def test_the_table_carries_what_the_slices_carry_beside_a_deep_spall(degrees: fl
     middle = PINION.roll_angle(PINION.pitch_radius)
     pair = helical(degrees, faults=(Spall(3, middle - 0.02, middle + 0.03, 0.2e-3),))
     contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair, misalignment=2e-4))
+    contact = rigid_bodies(contact)
     phases = np.arange(2.0, 6.0, 0.013)
     mesh = loaded_transmission_error(contact, FORCE, phases)
     law = contact.kernel_arguments
@@ -207,6 +271,7 @@ def test_what_a_table_misses_beside_a_spall_is_what_the_slices_miss() -> None:
     meshes, misses = [], []
     for count in (61, 721):
         contact = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair, count=count))
+        contact = rigid_bodies(contact)
         mesh = loaded_transmission_error(contact, FORCE, phases)
         law = contact.kernel_arguments
         found = [tooth_force(at, deep, 0.0, *law)[0] for at, deep in zip(phases, mesh.transmission_error, strict=True)]
