@@ -158,7 +158,8 @@ def _legendre(points: int, count: int) -> tuple[FloatArray, FloatArray, FloatArr
     """Points and weights of Gauss's quadrature with Legendre's polynomials and their slopes there, (points, count)."""
     x, weight = np.polynomial.legendre.leggauss(points)
     slopes = [np.polynomial.Legendre.basis(degree).deriv()(x) for degree in range(count)]
-    return x, weight, np.polynomial.legendre.legvander(x, count - 1), np.column_stack(slopes)
+    values = np.polynomial.legendre.legvander(x, count - 1)
+    return x, weight, np.asarray(values, dtype=np.float64), np.asarray(np.column_stack(slopes), dtype=np.float64)
 
 
 def _products(over_face: FloatArray, over_radius: FloatArray) -> FloatArray:
