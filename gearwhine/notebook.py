@@ -16,7 +16,6 @@ from gearwhine.output.sections import Column, Finding, Section, table_of
 
 if TYPE_CHECKING:
     from coupling import Machine
-    from gearwhine.analyses.result import Result
     from gearwhine.case import Case
     from housing import HousingModes
 
@@ -64,13 +63,13 @@ def case_html(case: Case) -> str:
     return fragment([Section(case.title or found.title, found.content)])
 
 
-def result_html(result: Result[Any]) -> str:
-    """Return the warnings and chapters of a result, as its report has them; pictures are ``result.plot()``."""
+def result_html(command: str, title: str, document: dict[str, Any]) -> str:
+    """Return the warnings and chapters of a command's document, as the report has them."""
     from gearwhine.results import chapters_of
 
-    warnings = tuple(Finding(one, passed=False) for one in result.warnings)
-    head = Section("", (f"gearwhine {result.command}: {result.case.title}", *warnings))
-    return fragment([head, *chapters_of(result.document | {"command": result.command})])
+    warnings = tuple(Finding(str(one["message"]), passed=False) for one in document["warnings"])
+    head = Section("", (f"gearwhine {command}: {title}", *warnings))
+    return fragment([head, *chapters_of(document | {"command": command})])
 
 
 def machine_html(machine: Machine) -> str:

@@ -89,7 +89,7 @@ class Result(Generic[Solved]):
     def _repr_html_(self) -> str:
         from gearwhine.notebook import result_html
 
-        return result_html(self)
+        return result_html(self.command, self.case.title, self.document)
 
     @cached_property
     def dataset(self) -> xr.Dataset:

@@ -160,9 +160,13 @@ def test_the_nominal_rotation_always_heats_the_flanks(phase: float, compression:
     )
 
 
-@pytest.mark.parametrize("helix", [2.0, 15.0])
-def test_helical_faces_turn_slice_by_slice(helix: float) -> None:
-    """Force across and heat of the law against sums over the loaded slices, which no table is behind."""
+@pytest.mark.parametrize(("helix", "even", "agree"), [(2.0, True, 5e-4), (15.0, True, 5e-4), (15.0, False, 5e-3)])
+def test_helical_faces_turn_slice_by_slice(helix: float, even: bool, agree: float) -> None:
+    """Force across and heat of the law against sums over the loaded slices, which no table is behind.
+
+    Tables know a pair by its own compression alone. Where the bodies that pairs share deflect unevenly over the face,
+    the load of one pair also depends on where the other is loaded, which the tables leave out.
+    """
     from coupling.gears.contact.tooth_force_kernels import friction_shares
 
     angle = np.radians(helix)
@@ -170,6 +174,9 @@ def test_helical_faces_turn_slice_by_slice(helix: float) -> None:
     pinion = replace(PINION, helix_angle=angle, helix_deviation=crowned)
     pair = GearPairGeometry(pinion, replace(WHEEL, helix_angle=-angle))
     contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=face_slices(pair))
+    assert contact.faces is not None
+    if even:
+        contact = replace(contact, faces=replace(contact.faces, shared=face_slices(pair).shared))
     force = 4000.0
     mesh = loaded_transmission_error(contact, force, np.arange(48) / 48.0)
     expected = mesh_friction(pair, contact, mesh, COEFFICIENT)
@@ -186,7 +193,7 @@ def test_helical_faces_turn_slice_by_slice(helix: float) -> None:
     rolls = pair.driver_roll_angle([0.0, 1.0]) * pinion.base_radius
     rolls = rolls - pair.driven_roll_angle([0.0, 1.0]) * pair.driven.base_radius / pair.ratio
     lost = law.coefficient * force * (shares[:, 0] * rolls[0] + shares[:, 1] * (rolls[1] - rolls[0]))
-    assert lost.mean() == pytest.approx(expected.loss.mean(), rel=5e-4)
+    assert lost.mean() == pytest.approx(expected.loss.mean(), rel=agree)
     # The slopes, against differences.
     step = 1e-9
     phase, deep = 0.3, float(mesh.transmission_error[14])

@@ -69,7 +69,7 @@ def test_options_of_one_folder_keep_each_others_results(tmp_path: Path, capsys: 
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "Over torque" in page
     assert "Change by a step of one parameter" in page
-    assert "load over torque" in page
+    assert "Misalignment, K_Hβ, mesh stiffness and transmission error over the torque." in page
     capsys.readouterr()
     # Another equilibrium has none of it: one of other numbers, or of another case.
     summary = out / "summary.json"

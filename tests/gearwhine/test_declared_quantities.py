@@ -106,5 +106,5 @@ def test_numbers_stand_to_the_right_and_words_to_the_left(tmp_path: object) -> N
     (place / "summary.json").write_text("{}", encoding="utf-8")
     table = Table((Column("wheel", "name"), Column("mass", "mass", ".1f")), ({"name": "a", "mass": 1.0},))
     page = report_page(place, Contents(lambda _: (Section("Wheels", (table,)),)))
-    assert '<th class="text">wheel</th><th>mass</th>' in page
+    assert '<th scope="col" class="text">wheel</th><th scope="col">mass</th>' in page
     assert '<td class="text">a</td><td>1.0</td>' in page

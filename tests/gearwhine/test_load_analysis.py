@@ -197,7 +197,9 @@ def test_tables_of_long_names_fit_a_hundred_columns() -> None:
     lines = text.getvalue().splitlines()
     assert max(len(line.rstrip()) for line in lines) <= WIDEST
     assert "…" not in text.getvalue()
-    assert sum(long in line for line in lines) == len(document["bearings"]) + len(document["sensitivity"])
+    rolling = [one for one in document["bearings"] if one["peak_pressure_pa"] is not None]
+    named = [*document["bearings"], *rolling, *document["sensitivity"]]
+    assert sum(long in line for line in lines) == len(named)
     assert sum("pinion 1 → wheel 1 " in line for line in lines) == len(document["over_torque"]) + len(
         document["sensitivity"]
     )
@@ -330,7 +332,8 @@ def test_uneven_faces_are_warned_of() -> None:
 
 def test_report_has_the_tables_of_the_terminal(helical: Result[SolvedLoad]) -> None:
     (chapter,) = chapters_of(helical.document | {"command": "load"})
-    assert (chapter.title, chapter.pictures) == ("Operating point", ("load",))
+    assert chapter.title == "Operating point"
+    assert all(picture.begins.startswith("load") for picture in chapter.pictures)
     (section,) = sections(helical.document)
     assert chapter.content == section.content
     tables: Any = {table.caption: table for table in chapter.tables}
