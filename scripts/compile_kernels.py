@@ -22,6 +22,7 @@ from gearwhine.cli import run_command
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 
 MASS = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
+HELD = Component("mass", ("torsion",), np.ones((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
 
 
 def small_machine() -> CoupledSystem:
@@ -52,7 +53,7 @@ def rotors_and_gears() -> None:
 def motions() -> None:
     for method in METHODS:
         settings = TransientSettings(20.0, 0.0, 0.1, 0.1, method=method)
-        for machine in (small_machine(), CoupledSystem((MASS,), (0.0,))):
+        for machine in (small_machine(), CoupledSystem((HELD,), (0.0,))):
             simulate(machine, settings, TransientOutputs(*[np.ones((1, 1))] * 3))
     periodic_response(small_machine())
 
