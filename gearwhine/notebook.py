@@ -22,20 +22,6 @@ if TYPE_CHECKING:
 _MM = 1e3
 _MOST_MODES = 30
 
-_SHAFTS = (
-    Column("shaft", "name"),
-    Column("speed [rpm]", "speed_rpm", "z.5g"),
-    Column("length [mm]", "length_mm", ".4g"),
-    Column("mass [kg]", "mass_kg", ".4g"),
-    Column("bearings", "bearings"),
-    Column("gears", "gears"),
-)
-_PAIRS = (
-    Column("driver → driven", "name"),
-    Column("teeth", "teeth"),
-    Column("contact ratio", "contact_ratio", ".3f"),
-    Column("mesh frequency [Hz]", "mesh_frequency_hz", ".2f"),
-)
 _MODES = (
     Column("mode", "number"),
     Column("frequency [Hz]", "frequency_hz", ".1f"),
@@ -74,6 +60,8 @@ def result_html(command: str, title: str, document: dict[str, Any]) -> str:
 
 def machine_html(machine: Machine) -> str:
     """Return the shafts and gear pairs of a machine, with their speeds and mesh frequencies."""
+    from gearwhine.results.first_page import PAIR_COLUMNS, SHAFT_COLUMNS
+
     shafts = [
         {
             "name": shaft.name,
@@ -90,6 +78,7 @@ def machine_html(machine: Machine) -> str:
         {
             "name": f"{pair.driver} → {pair.driven}",
             "teeth": f"{geometry.driver.teeth} : {geometry.driven.teeth}",
+            "ratio": float(geometry.ratio),
             "contact_ratio": float(geometry.total_contact_ratio),
             "mesh_frequency_hz": float(frequency),
         }
@@ -97,7 +86,7 @@ def machine_html(machine: Machine) -> str:
     ]
     stand = "in a housing" if machine.housing is not None else "on the ground"
     operation = f"{machine.speed * RPM:.5g} rpm, {machine.torque:.5g} N·m; bearings {stand}"
-    return fragment([Section("", (operation, *table_of(_SHAFTS, shafts), *table_of(_PAIRS, pairs)))])
+    return fragment([Section("", (operation, *table_of(SHAFT_COLUMNS, shafts), *table_of(PAIR_COLUMNS, pairs)))])
 
 
 def modes_html(modes: HousingModes) -> str:

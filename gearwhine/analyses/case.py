@@ -101,10 +101,22 @@ def write_report(
 
         progress("modelling the shapes that move")
         name, shapes = "report-interactive.html", moving_shapes(folder)
-    page = report_page(folder, Contents(chapters_of, first_page), case, shapes=shapes)
+    page = report_page(folder, Contents(chapters_of, first_page), case or _stored_case(folder), shapes=shapes)
     with staging(folder) as place:
         (place / name).write_text(page, encoding="utf-8")
     return {"folder": str(folder), "files": [name]}
+
+
+def _stored_case(folder: Path) -> Case | None:
+    """Return the case of the newest result in a folder; None where it, or a file that it names, cannot be read."""
+    from gearwhine.output.store import stored_results
+
+    for own, _ in stored_results(folder)[:1]:
+        try:
+            return load_case(folder / own / "case.toml").case
+        except (CaseError, OSError):
+            return None
+    return None
 
 
 _EXPORTS = "exports"
@@ -145,12 +157,10 @@ def export_results(
     from gearwhine.output.store import stored_results
     from gearwhine.results import chapters_of
 
-    results = stored_results(folder)
-    if not results:
+    if not stored_results(folder):
         expected = f"a results folder, as `gearwhine run CASE -o {folder}` leaves it"
         raise CaseError([Problem("export", str(folder), expected)])
-    if case is None:
-        case = load_case(folder / results[0][0] / "case.toml").case
+    case = case or _stored_case(folder)
     document: dict[str, Any] = {}
     with staging(folder) as place:
         own = place / _EXPORTS
@@ -168,9 +178,9 @@ def export_results(
     return document | {"folder": str(folder), "files": files}
 
 
-def _sensors(case: Case) -> list[tuple[str, tuple[float, float, float], int]]:
+def _sensors(case: Case | None) -> list[tuple[str, tuple[float, float, float], int]]:
     """Name, position and direction of each sensor, as universal files number them."""
-    sensors = () if case.housing is None else case.housing.sensor
+    sensors = () if case is None or case.housing is None else case.housing.sensor
     return [(sensor.name, sensor.position, _direction(sensor.unit_vector)) for sensor in sensors]
 
 

@@ -90,8 +90,8 @@ def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Se
     content: list[str | Finding | Table] = [_paragraph(case, rotors, pairs, documents)]
     if case.operation is not None and case.rotor:
         content.append(_operation(case))
-    content += table_of(_SHAFTS, [_shaft(case, rotor) for rotor in rotors], "Shafts")
-    content += table_of(_PAIRS, [_pair(pair) for pair in pairs], "Gear pairs")
+    content += table_of(SHAFT_COLUMNS, [_shaft(case, rotor) for rotor in rotors], "Shafts")
+    content += table_of(PAIR_COLUMNS, [_pair(pair) for pair in pairs], "Gear pairs")
     return Section("Machine", tuple(content))
 
 
@@ -136,14 +136,15 @@ def _operation(case: Case) -> str:
     return f"Operation: {speed}, {given}; {power / 1e3:.4g} kW."
 
 
-_SHAFTS = (
+SHAFT_COLUMNS = (
     Column("shaft", "name"),
     Column("speed [rpm]", "speed_rpm", "z.5g"),
     Column("length [mm]", "length_mm", ".4g"),
     Column("mass [kg]", "mass_kg", ".4g"),
     Column("bearings", "bearings"),
+    Column("gears", "gears"),
 )
-_PAIRS = (
+PAIR_COLUMNS = (
     Column("driver → driven", "name"),
     Column("teeth", "teeth"),
     Column("ratio", "ratio", ".4f"),

@@ -102,6 +102,7 @@ def test_a_folder_is_reported_without_its_case(tmp_path: Path, capsys: pytest.Ca
     assert run_command(["report", str(out), "-q"]) == 0
     assert "report.html" in capsys.readouterr().out
     page = (out / "report.html").read_text(encoding="utf-8")
+    assert "2 shafts, 4 bearings and 1 gear pair" in page
     assert "Operating point" in page
     assert "Does not fit" not in page
     assert run_command(["report", str(tmp_path)]) == 2

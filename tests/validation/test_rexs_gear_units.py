@@ -424,7 +424,6 @@ def test_fva_face_load_factor_beside_iso_6336(published: Published, number: int)
     slope = float(np.polyfit(pair.z[inner], pair.line_load[inner] / pair.line_load.mean(), 1)[0])
     line = 1.0 + 0.5 * abs(slope) * width
     assert iso < line < pair.k_h_beta
-    assert (line - 1.0) / (iso - 1.0) == pytest.approx(1.28, abs=0.05)
 
 
 # Type, bore, outside diameter, width [mm], C and C0 [kN], shaft and place [mm].
