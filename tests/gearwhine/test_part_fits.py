@@ -18,7 +18,7 @@ def rolling(**changes: str) -> dict[str, Any]:
 def found(name: str, changes: dict[str, Any]) -> dict[tuple[str, str], dict[str, Any]]:
     """Warnings of parts that do not fit, by their kind and the part."""
     document = gw.load(name, changes).check().document
-    kinds = ("bearing seat", "bearing place", "part on shaft")
+    kinds = ("bearing seat", "bearing place", "part on shaft", "gear faces")
     return {
         (one["name"], one["message"].split('"')[1]): one for one in document.get("warnings", ()) if one["name"] in kinds
     }
@@ -93,6 +93,15 @@ def test_a_part_across_a_step_fits_either_diameter() -> None:
     assert ("part on shaft", "pinion") not in found(
         "helical-pair", {"rotor.input.segments": cone, "gear.pinion.bore": "45 mm"}
     )
+
+
+def test_gears_that_meet_on_a_part_of_the_narrower_face_are_named() -> None:
+    """Faces of 30 mm and 24 mm, the narrow one about 120 mm: the wide one hides a shift of 3 mm, and no more."""
+    wide = {"gear.pinion.face_width": "30 mm", "gear.wheel.face_width": "24 mm"}
+    assert found("helical-pair", wide | {"gear.pinion.at": "123 mm"}) == {}
+    (told,) = found("helical-pair", wide | {"gear.pinion.at": "115 mm"}).values()
+    assert (told["common_m"], told["taken_m"]) == pytest.approx((22e-3, 24e-3))
+    assert "have 22 mm in common; the model takes 24 mm" in told["message"]
 
 
 def test_a_bearing_without_a_seat_beside_a_housing_is_named() -> None:
