@@ -299,13 +299,26 @@ def _basis(document: Document) -> Iterator[Finding]:
         )
 
 
-def _lines(documents: Sequence[Document]) -> tuple[Table, ...]:
+def _lines(documents: Sequence[Document]) -> tuple[str | Table, ...]:
     """Return the highest lines of each sensor of the newest motion, with their cause."""
     for document in documents:
         for sensors, key in _of_motion(document):
             if rows := leading_lines(sensors, key, _LINES):
-                return table_of(_CAUSES, rows)
+                return (*_highest(rows), *table_of(_CAUSES, rows))
     return ()
+
+
+def _highest(rows: Sequence[Document]) -> list[str]:
+    """Return the highest line of all sensors and its cause as a sentence, which a narrow screen shows whole."""
+    row = max(rows, key=lambda line: float(line["amplitude_m_per_s2"]))
+    if not row.get("name"):
+        return []
+    near = f", near a mode of the coupled machine ({_near(row)})" if _near(row) else ""
+    by = f"; largest part by {row['by']}" if row["by"] else ""
+    return [
+        f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {row['amplitude_m_per_s2']:.3g} m/s² peak: "
+        f"{row['name']}{near}{by}."
+    ]
 
 
 def _of_motion(document: Document) -> Iterator[tuple[Iterable[Document], str]]:

@@ -159,7 +159,10 @@ def test_a_line_leads_to_its_path_and_to_the_housing_that_moves_at_it(tmp_path: 
     assert "front, cancelled in part" in page.text
     near = {"number": 21, "frequency_hz": 2560.4, "kind": "rotor", "where": "output"}
     write(tmp_path, document | {"sensors": [{"name": "top", "peaks": [TRACED | {"near_mode": near}]}]}, 'title = "x"')
-    assert "2560 Hz, rotor: output" in read(tmp_path).text
+    assert (
+        "Highest is 2566.7 Hz at top, 1.5 m/s² peak: 1× <a> -> b, near a mode of the coupled machine "
+        "(2560 Hz, rotor: output); largest part by housing mode 19 (2664 Hz)." in read(tmp_path).text
+    )
     assert "Operating shape at 2566.7 Hz, 1× <a> -> b; grey: at rest, colour: displacement." in page.text
 
 
