@@ -24,7 +24,7 @@ _PERIODIC = 1e-3  # part by which a periodic motion may miss itself, or change w
 
 _CHAPTERS = {
     "Housing modes": ("geometry", "size", "load", "modes file"),
-    "Gears": ("thin tip", "undercut", "backlash", "runout", "overload"),
+    "Gears": ("thin tip", "undercut", "backlash", "gear faces", "runout", "overload"),
     "Rotors": ("rotating damping", "ross"),
     "Coupled system": ("unstable mode",),
     "Motion": ("bearing load", "run signature"),
