@@ -18,14 +18,14 @@ def rolling(**changes: str) -> dict[str, Any]:
 def found(name: str, changes: dict[str, Any]) -> dict[tuple[str, str], dict[str, Any]]:
     """Warnings of parts that do not fit, by their kind and the part."""
     document = gw.load(name, changes).check().document
-    kinds = ("bearing seat", "bearing place", "part on shaft", "gear faces")
+    kinds = ("bearing seat", "bearing place", "part on shaft", "gear faces", "sensor place")
     return {
         (one["name"], one["message"].split('"')[1]): one for one in document.get("warnings", ()) if one["name"] in kinds
     }
 
 
 def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
-    """One check of the reducer with four slips; its bores are found in the drawing, 52 mm long about z = -98 mm."""
+    """One check of the reducer with five slips; its bores are found in the drawing, 52 mm long about z = -98 mm."""
     size = "bearing.input-back.stiffness.rolling.catalogue"
     told = found(
         "two-stage-reducer",
@@ -35,6 +35,7 @@ def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
             "bearing.output-back.at": "28 mm",
             "bearing.intermediate-back.stiffness.rolling.catalogue.bore": "35 mm",
             "gear.wheel 1.bore": "45 mm",
+            "housing.sensor.roof.position": ["80 mm", "346 mm", "0 mm"],
         },
     )
     assert set(told) == {
@@ -42,7 +43,10 @@ def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
         ("bearing place", "output-back"),
         ("part on shaft", "intermediate-back"),
         ("part on shaft", "wheel 1"),
+        ("sensor place", "roof"),
     }
+    sits = 'sensor "roof": its position is 10 mm from the surface; it sits at (80, 336, 0) mm'
+    assert told["sensor place", "roof"]["message"] == sits
     seat = told["bearing seat", "input-back"]["message"]
     assert seat == (
         'bearing "input-back": its outside diameter of 62 mm is not the 72 mm of the bore of seat "input-back"'
