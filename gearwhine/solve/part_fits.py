@@ -1,4 +1,4 @@
-"""Fits of a case's parts: bearings in their seats and on their shafts, gears on their shafts and face to face, sensors on the surface.
+"""Fits of a case's parts: bearings in seats and on shafts, gears on shafts and face to face, sensors on the surface.
 
 Only where the case gives both sizes. A part that does not fit is no error: the model takes neither diameter from the
 other, so that one of them is a slip of the pen or stands for a sleeve that the case leaves out.
@@ -25,7 +25,7 @@ _TOUCHING = 1e-6  # overlap of a part and a shaft segment that is none [m]
 
 
 def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = None) -> list[dict[str, Any]]:
-    """Warn of diameters that do not fit, of bearings beside their seats, gears beside their mates, sensors off the surface.
+    """Warn of diameters that do not fit, bearings beside seats, gears beside their mates, sensors off the surface.
 
     Parameters
     ----------
