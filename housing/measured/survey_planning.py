@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.spatial import cKDTree
 
 from housing.errors import HousingError
 from housing.fem.surface import NearestOnSurface, outer_facets, sample_surface
@@ -250,6 +249,8 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     HousingError
         Where the surface has no room for that number.
     """
+    from scipy.spatial import cKDTree
+
     facets = outer_facets(mesh)
     samples = sample_surface(mesh, facets)
     free = np.ones(len(samples.points), dtype=np.bool_)
@@ -277,6 +278,8 @@ def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbo
 
     Points are numbered from 1 in the order given.
     """
+    from scipy.spatial import cKDTree
+
     points = candidates.points[sensors]
     positions = candidates.positions[points]
     count = len(sensors)
