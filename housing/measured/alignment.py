@@ -432,8 +432,7 @@ def map_survey(
     if len(geometry.labels) > 2 and (hint := size_hint(geometry, mesh, _SMALLEST)):
         raise MeasuredDataError(f"the survey is not as large as the housing: {hint}")
     facets = outer_facets(mesh)
-    nearest = NearestOnSurface(mesh, facets)
-    found = [nearest.point(position) for position in geometry.positions]
+    found = NearestOnSurface(mesh, facets).points(geometry.positions)
     positions = np.array([point.position for point in found]).reshape(-1, 3)
     distances = np.linalg.norm(positions - geometry.positions, axis=1)
     if np.count_nonzero(distances > limit) > len(found) / 2:
