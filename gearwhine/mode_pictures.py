@@ -205,14 +205,16 @@ def draw_load_pictures(
 
     Without a renderer numbers and figures are there, and a warning says so.
     """
+    from gearwhine.drawing_process import one_process
     from housing.errors import RendererUnavailableError
 
     if housing is None or solved.point.housing is None:
         return []
     try:
-        draw_deflection(housing, solved.point.housing, "iso", place, progress)
-        if solved.sensitivity is not None:
-            draw_sensitivity(housing, solved, "iso", place, progress)
+        with one_process():
+            draw_deflection(housing, solved.point.housing, "iso", place, progress)
+            if solved.sensitivity is not None:
+                draw_sensitivity(housing, solved, "iso", place, progress)
     except RendererUnavailableError as error:
         return [warning("pictures", f"no picture of the housing: {error}")]
     return []
@@ -301,7 +303,7 @@ def draw_sensitivity(
         )
         quantity = "Change [µrad/(mm·dm²)]"
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
-    # One process has one scale and one quantity.
+    # The shapes of one call have one scale and one quantity.
     groups = [group for group in (shapes, _line_shapes(solved.sensitivity, surface.nodes)) if group]
     return [name for group in groups for name in draw_in_process(surface, group, place, "png", view, progress)]
 
