@@ -494,8 +494,8 @@ CELLS = {
             "where": "input",
             "energy": {"housing": 0.1, "rotor": 0.5, "torsion": 0.2, "axial": 0.05, "pedestal": 0.0, "residual": 0.15}
             | {"mesh": 0.3},
-            "strain_energy": {"components": {"input": 0.6}, "bearings": {"left": 0.1}, "gear_meshes": {"a -> b": 0.3}},
-            "whirl": {"input": -0.8},
+            "strained_most": {"kind": "components", "name": "input", "share": 0.6},
+            "whirl": -0.8,
         },
         {
             "frequency [Hz]": "812.35",
