@@ -30,11 +30,12 @@ from gearwhine.figures.style import (
     legend,
     name_in_legend,
     panel,
+    panel_size,
     sheet,
 )
 
 _MOST_LINES = 1 << 12
-_SEPARATE = 400  # lines of a panel that are drawn one by one
+_DENSEST = 2.5  # lines to a millimetre of paper that are drawn one by one
 _DECADES = 5.0  # of the amplitude axis, below its highest line
 FloatArray = npt.NDArray[np.float64]
 
@@ -59,8 +60,8 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) 
         axes.set_yscale("log")
         axes.set_ylim(top * 10.0**-_DECADES, top * 3.0)
         floor = top * 10.0**-_DECADES
-        if spectrum.window == "hann" and len(amplitude) > _SEPARATE:
-            # Of a window that spreads each line the spectrum is a curve; thousands of lines would be one blue area.
+        if np.count_nonzero(amplitude > floor) > _DENSEST * panel_size(axes)[0]:
+            # Lines so close are one blue area.
             heights = np.maximum(amplitude, floor)
             axes.fill_between(frequencies, floor, heights, color=color, alpha=0.22, lw=0.0)
             axes.plot(frequencies, heights, color=color, lw=0.6)

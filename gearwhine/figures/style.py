@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MultipleLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 from matplotlib.transforms import Affine2D
 from scipy.optimize import isotonic_regression
 
@@ -51,6 +51,7 @@ _LEAD, _ASIDE = 1.6, 2.2  # end of a leader and begin of its label beside a pane
 _PANEL_TITLE = 48  # letters over half a sheet
 _NEAR = 0.3  # between labels one above the other [mm]
 _RIGHT_ANGLE = 90.0  # degrees
+_FEW_DECADES = 60.0  # ratio of the ends of a logarithmic axis below which powers of ten are too few marks
 _LONGEST_LABEL = 40  # letters of a label: a line's frequency and the names of two gears
 _MEASURING_DPI = 200
 
@@ -58,7 +59,7 @@ _MEASURING_DPI = 200
 def tidy(axes: Axes, *, size: float = 9.0) -> None:
     """Two spines, a pale grid below the data, ink of one colour."""
     axes.spines[["top", "right"]].set_visible(False)
-    axes.tick_params(colors=INK, labelsize=size)
+    axes.tick_params(which="both", colors=INK, labelsize=size)
     axes.grid(visible=True, color=PALE, lw=0.6)
     axes.set_axisbelow(True)
 
@@ -122,6 +123,16 @@ def degree_axis(axes: Axes) -> None:
         first, last = (first, first + _RIGHT_ANGLE) if high >= -low else (last - _RIGHT_ANGLE, last)
     axes.set_ylim(first, last)
     axes.yaxis.set_major_locator(MultipleLocator(step))
+
+
+def log_axis(axes: Axes, low: float, high: float) -> None:
+    """Give a panel a logarithmic axis with limits; over a decade or two it has plain numbers at 1, 2 and 5."""
+    axes.set_yscale("log")
+    axes.set_ylim(low, high)
+    if high < _FEW_DECADES * low:
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
+        axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def panel_size(axes: Axes) -> tuple[float, float]:

@@ -46,8 +46,8 @@ def test_orbits_stand_where_the_shaft_rests(tmp_path: Path) -> None:
     above, _, below, _ = figure.axes
     assert np.asarray(above.lines[-1].get_xdata()).mean() == pytest.approx(30.0)
     assert np.abs(np.asarray(below.lines[0].get_xdata())).max() == pytest.approx(2.0)
-    assert (above.get_title(loc="left"), above.get_title(loc="right")) == ("pinion", "mean 30, -10")
-    assert below.get_title(loc="left") == "±2, ±1 µm"
+    assert above.get_title(loc="left") == "pinion"
+    assert below.get_title(loc="left") == "mean 30.0, -10.0 µm\n± 2, 1 µm"
     save(figure, tmp_path / "orbits.png")
 
 

@@ -15,6 +15,7 @@ from gearwhine.figures.style import (
     SERIES,
     legend_below,
     legend_height,
+    log_axis,
     name_in_legend,
     panel,
     sheet,
@@ -153,7 +154,6 @@ def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, 
     axes.set_xlim(float(speeds.min()), float(speeds.max()))
     axes.set(xlabel="speed of the first driver [rpm]", ylabel=f"amplitude [{unit}, peak]")
     if top > 0.0:
-        axes.set_yscale("log")
-        axes.set_ylim(max(0.7 * least, top * 10.0**-_DECADES), 2.0 * top)
+        log_axis(axes, max(0.7 * least, top * 10.0**-_DECADES), 2.0 * top)
     legend_below(figure, handles, _COLUMNS)
     return figure

@@ -16,6 +16,7 @@ from gearwhine.figures.style import (
     SERIES,
     legend_below,
     legend_height,
+    log_axis,
     name_in_legend,
     panel,
     panel_pair,
@@ -59,7 +60,10 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
     for number, sensor in enumerate(reversed(sensors)):
         axes = panel(figure, FOOT + below + number * (_LEVELS + _LEVELS_GAP), _LEVELS)
         _draw_lines(axes, dataset["sensor_rms"].sel(sensor=sensor), along, places)
-        axes.set_yscale("log")
+        levels = dataset["sensor_rms"].sel(sensor=sensor).values
+        levels = levels[np.isfinite(levels) & (levels > 0.0)]
+        if levels.size:
+            log_axis(axes, 0.8 * float(levels.min()), 1.25 * float(levels.max()))
         axes.set_ylabel("acceleration [m/s², rms]")
         panel_title(axes, sensor)
         if number:
@@ -75,18 +79,24 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
     contacts = [str(name) for name in dataset["contact"].values]
     below, count = _legend_height(places), len(contacts)
     height = HEAD + _FIRST + count * _FORCES + (count - 1) * _FORCES_GAP + FOOT + below
-    figure = sheet(height, f"Gear-mesh force over {_key(dataset, along)}", f"{title}; solid: largest, dashed: mean")
+    parts = float(dataset["contact_loss"].max()) > 0.0
+    note = f"{title}; solid: largest, dashed: mean" + ("" if parts else "; the teeth never part")
+    figure = sheet(height, f"Gear-mesh force over {_key(dataset, along)}", note)
     for number, contact in enumerate(reversed(contacts)):
-        left, right = panel_pair(figure, FOOT + below + number * (_FORCES + _FORCES_GAP), _FORCES)
+        bottom = FOOT + below + number * (_FORCES + _FORCES_GAP)
+        shown = list(panel_pair(figure, bottom, _FORCES) if parts else (panel(figure, bottom, _FORCES),))
+        left = shown[0]
         _draw_lines(left, dataset["mesh_force_peak"].sel(contact=contact), along, places)
         _draw_lines(left, dataset["mesh_force_mean"].sel(contact=contact), along, places, dashed=True)
         left.set_ylabel("mesh force [N]")
         left.set_ylim(0.0, 1.08 * float(dataset["mesh_force_peak"].sel(contact=contact).max()) or 1.0)
         panel_title(left, contact)
-        _draw_lines(right, 100.0 * dataset["contact_loss"].sel(contact=contact), along, places)
-        right.set_ylabel("time apart [%]")
-        right.set_ylim(0.0, max(1.08 * 100.0 * float(dataset["contact_loss"].sel(contact=contact).max()), 1.0))
-        for axes in (left, right):
+        if parts:
+            right = shown[1]
+            _draw_lines(right, 100.0 * dataset["contact_loss"].sel(contact=contact), along, places)
+            right.set_ylabel("time apart [%]")
+            right.set_ylim(0.0, max(1.08 * 100.0 * float(dataset["contact_loss"].sel(contact=contact).max()), 1.0))
+        for axes in shown:
             if number:
                 axes.tick_params(labelbottom=False)
             else:
@@ -108,15 +118,15 @@ def _waterfalls(
             pictures.append((sensor, place, data, spectra))
     pictures = pictures[:_MOST_WATERFALLS]
     names = [" ".join([sensor, *_described(dataset, place)]) for sensor, place, *_ in pictures]
-    for stem, name, (_, _, data, spectra) in zip(file_stems(names, "waterfall-"), names, pictures, strict=True):
+    for stem, (sensor, place, data, spectra) in zip(file_stems(names, "waterfall-"), pictures, strict=True):
         figure = draw_waterfall(
-            f"{name}: spectra over {_key(dataset, along)}",
+            f"{sensor}: spectra over {_key(dataset, along)}",
             _numbers(data, along),
             data["frequency"].transpose(along, "order").values,
             spectra,
             value_name=_axis_label(dataset, along),
             unit="m/s²",
-            note=title,
+            note="; ".join([title, *_described(dataset, place)]),
             mesh_names=[str(contact) for contact in data["contact"].values] if "contact" in data else (),
             mesh_frequencies=data["mesh_frequency"].transpose(along, "contact").values if "contact" in data else (),
             housing_frequencies=(
@@ -166,8 +176,13 @@ def _name_values(axis: Any, data: xr.Dataset, along: str) -> None:
 
 
 def _axis_label(dataset: xr.Dataset, along: str) -> str:
-    unit, name = dataset[along].attrs.get("units", ""), _key(dataset, along)
+    unit, name = _unit(dataset, along), _key(dataset, along)
     return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
+def _unit(dataset: xr.Dataset, along: str) -> str:
+    """Return the unit of a swept key as it is printed."""
+    return str(dataset[along].attrs.get("units", "")).replace("*", "·").replace("um", "µm")
 
 
 def _key(dataset: xr.Dataset, along: str) -> str:
@@ -179,7 +194,7 @@ def _described(dataset: xr.Dataset, place: dict[str, int]) -> list[str]:
     """Return a combination of the other keys in words."""
     texts = []
     for name, index in place.items():
-        value, unit = dataset[name].values[index], dataset[name].attrs.get("units", "")
+        value, unit = dataset[name].values[index], _unit(dataset, name)
         last = dataset[name].attrs.get("long_name", name).rpartition(".")[2]
         shown = f"{value:g}" if dataset[name].dtype.kind in "fiu" else str(value)
         texts.append(f"{last} {shown}{f' {unit}' if unit not in ('', '1') else ''}")

@@ -377,6 +377,7 @@ def draw_modal_coordinates(
     return figure
 
 
+_ORBIT_ROWS = 20.0  # between both rows, for an axis and a title of two lines [mm]
 _ORBITS_IN_ROW, _ORBIT_GAP, _LARGEST_ORBIT = 4, 11.0, 56.0  # panels beside each other, room between, largest side [mm]
 
 
@@ -401,7 +402,7 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
     columns = min(len(orbits), _ORBITS_IN_ROW)
     bands = -(-len(orbits) // columns)
     side = min((PANEL_WIDTH - (columns - 1) * _ORBIT_GAP) / columns, _LARGEST_ORBIT)
-    height = 2.0 * side + _ROW_GAP
+    height = 2.0 * side + _ORBIT_ROWS
     told = "above: from where the shaft stands without load; below: enlarged about the mean"
     figure = sheet(
         HEAD + _FIRST + bands * height + (bands - 1) * _ROW_GAP + FOOT, title, f"{note}; {told}" if note else told
@@ -409,7 +410,7 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
     reach = [1.12 * max(float(np.abs(orbit).max()) for orbit in orbits.values()) or 1.0, 0.0]
     reach[1] = 1.12 * max(float(np.abs(orbit - orbit.mean(axis=0)).max()) for orbit in orbits.values()) or 1.0
     rows: list[list[Axes]] = []
-    for up in (side + _ROW_GAP, 0.0):
+    for up in (side + _ORBIT_ROWS, 0.0):
         places = [divmod(number, columns) for number in range(len(orbits))]
         bottoms = [FOOT + (bands - 1 - band) * (height + _ROW_GAP) + up for band, _ in places]
         lefts = [LEFT + column * (side + _ORBIT_GAP) for _, column in places]
@@ -432,8 +433,11 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
                 axes.set_ylabel("y [µm]")
         above.set_title(shortened(name, 20), fontsize=LABEL, loc="left", pad=3.0, parse_math=False)
         swing = 0.5 * np.ptp(orbit, axis=0)
-        below.set_title(f"±{plain(swing[0], 2)}, ±{plain(swing[1], 2)} µm", fontsize=NOTE, loc="left", pad=3.0)
-        above.set_title(f"mean {plain(center[0], 3)}, {plain(center[1], 3)}", fontsize=NOTE, loc="right", pad=3.0)
+        # Of the mean as many digits as can be seen.
+        digits = max(0, 2 - int(np.floor(np.log10(reach[0]))))
+        mean = ", ".join(f"{part:z.{digits}f}" for part in center)
+        about = f"mean {mean} µm\n± {plain(swing[0], 2)}, {plain(swing[1], 2)} µm"
+        below.set_title(about, fontsize=NOTE, loc="left", pad=3.0)
     return figure
 
 
