@@ -31,6 +31,7 @@ from gearwhine.figures.style import (
     name_in_legend,
     panel,
     panel_size,
+    plain,
     sheet,
 )
 
@@ -139,7 +140,7 @@ def draw_waterfall(
     row = arrange(above, [label.x / limit * width for label in above], width)
     tall = min(_LOWEST_PANEL + _ROW_HEIGHT * rows.size, _HIGHEST_PANEL)
     told = [note] if note else []
-    told.append(f"each row {highest * 10.0**-_ROW_DECADES:.2g} to {highest:.2g} {unit} peak, logarithmic")
+    told.append(f"each row {plain(highest * 10.0**-_ROW_DECADES, 2)} to {plain(highest, 2)} {unit} peak, logarithmic")
     figure = sheet(HEAD + row.height + 2.0 + tall + FOOT, title, "; ".join(told))
     axes = panel(figure, FOOT, tall, width=width)
     axes.set(xlim=(0.0, limit), ylim=(at[rows[0]] - 0.35 * spacing, at[rows[-1]] + (_OVERLAP + 0.2) * spacing))

@@ -371,7 +371,7 @@ def draw_row(axes: Axes, row: LabelRow, level: float, *, above: bool = True) -> 
 
 def column_width(labels: Iterable[Label]) -> float:
     """Room that labels beside a panel take with their leaders, mm; `RIGHT` where there is none."""
-    return max([RIGHT, *(_ASIDE + 0.8 + _size(label.text)[0] for label in labels)])
+    return max([RIGHT, *(_ASIDE + 1.8 + _size(label.text)[0] for label in labels)])
 
 
 def draw_column(axes: Axes, labels: Sequence[Label]) -> None:

@@ -9,7 +9,13 @@ from coupling import SpeedProfile
 from coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import save
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_waterfall
-from gearwhine.figures.machine.transient import draw_contributions, draw_modal_coordinates, draw_orbits
+from gearwhine.figures.machine.transient import (
+    between_samples,
+    draw_contributions,
+    draw_modal_coordinates,
+    draw_orbits,
+    outlined,
+)
 from gearwhine.solve.signature import Contribution, TracedLine
 
 
@@ -35,7 +41,18 @@ def test_run_up(tmp_path: Path) -> None:
         "Run-up", spectra, speeds, unit="m/s²", limit=1200.0, mesh_orders=[28.0], housing_frequencies=np.array([600.0])
     )
     save(waterfall, tmp_path / "waterfall.png")
-    assert any(text.get_text() == "1×" for text in waterfall.axes[0].texts)
+    # Of 28 × 10 to 30 Hz the first two harmonics leave the panel at its top or right end, numbered there.
+    labels = {text.get_text(): text for text in waterfall.axes[0].texts}
+    assert {"1×", "2×", "4×"} <= set(labels)
+    axes = waterfall.axes[0]
+    (along,) = (text for text in waterfall.texts if "each row" in text.get_text())
+    for number in (2, 4):
+        # A number at the right end stands where the order passes the end of the frequencies.
+        _, height = axes.transAxes.inverted().transform(
+            labels[f"{number}×"].get_transform().transform(labels[f"{number}×"].get_position())
+        )
+        rpm = axes.get_ylim()[0] + height * (axes.get_ylim()[1] - axes.get_ylim()[0])
+        assert rpm == pytest.approx(60.0 * 1200.0 / (28.0 * number), rel=0.08), along
     assert waterfall.axes[0].get_xlim()[1] == pytest.approx(1200.0)
 
 
@@ -66,6 +83,35 @@ def test_bars_are_the_shares(tmp_path: Path) -> None:
     assert widths[1] == pytest.approx([90.0, 10.0])
     assert [text.get_text() for text in figure.axes[0].texts] == ["140", "-40"]
     save(figure, tmp_path / "contributions.png")
+
+
+def test_a_long_record_keeps_its_extremes_and_gains_no_frequency() -> None:
+    """A wave of 7 samples to a period, of which every seventh would be a line that stands still."""
+    times = np.arange(70_001) / 70_000.0
+    wave = np.sin(2.0 * np.pi * 10_000.0 * times)
+    wave[33_333] = 5.0
+    at, drawn = outlined(times, wave, 6000)
+    assert len(at) <= 6000
+    assert (np.diff(at) > 0.0).all()
+    assert drawn.max() == 5.0
+    assert np.interp(at, times, wave) == pytest.approx(drawn)
+    lows, highs = (pick(drawn[: len(drawn) // 20 * 20].reshape(-1, 20), axis=1) for pick in (np.min, np.max))
+    assert lows.max() < -0.97
+    assert highs.min() > 0.97
+    np.testing.assert_array_equal(outlined(times[:100], wave[:100], 100)[1], wave[:100])
+
+
+def test_a_curve_between_samples_is_the_signal_s_own() -> None:
+    """Five samples to a period: the peaks lie between them, and straight lines would miss them by a tenth."""
+    times = 1e-3 * np.arange(400)
+    signal = 3.0 + np.cos(2.0 * np.pi * 199.0 * times) + 0.3 * np.sin(2.0 * np.pi * 97.0 * times)
+    at, values = between_samples(times, signal, 0.03, 1.0 / 199.0)
+    assert at[-1] == pytest.approx(0.03)
+    assert np.diff(at).max() <= 1.0 / 199.0 / 40.0
+    exact = 3.0 + np.cos(2.0 * np.pi * 199.0 * at) + 0.3 * np.sin(2.0 * np.pi * 97.0 * at)
+    # Nothing is known before the first sample: the first period is less exact.
+    assert values[at > 0.01] == pytest.approx(exact[at > 0.01], abs=0.02)
+    assert np.interp(times[:31], at, values) == pytest.approx(signal[:31], abs=1e-9)
 
 
 def test_modal_coordinates_are_told_with_their_fixed_part(tmp_path: Path) -> None:

@@ -51,6 +51,7 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
+from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.signature import Contribution, SolvedSignature, TracedLine
 from gearwhine.solve.transient import SolvedTransient
@@ -175,7 +176,7 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
     up = height - HEAD
     for (name, line, modes, bearings), tall in zip(groups, heights, strict=True):
         up -= _BARS_GAP - 5.0 + tall
-        heading = f"{name}: {line.frequency:.0f} Hz, {abs(line.value):.3g} m/s² peak, {line.named.name}"
+        heading = f"{name}: {line.frequency:.0f} Hz, {abs(line.value):.3g} m/s² peak, {arrowed(line.named.name)}"
         figure.text(
             _MARGIN / SHEET_WIDTH,
             (up + tall + 1.2) / sheet_height(figure),
@@ -273,7 +274,10 @@ def _refined(values: FloatArray, factor: int) -> FloatArray:
     begin, after = values[1 : reach + 1][::-1], values[-reach - 1 : -1][::-1]
     whole = np.concatenate([2.0 * values[:1] - begin, values, 2.0 * values[-1:] - after])
     fine = resample_poly(whole, factor, 1, axis=0, window=("kaiser", 8.0))
-    return np.asarray(fine[factor * reach : factor * (reach + len(values) - 1) + 1])
+    found = np.array(fine[factor * reach : factor * (reach + len(values) - 1) + 1])
+    # The filter's gain is one to five digits; the samples stand as they are.
+    found[::factor] = values
+    return found
 
 
 def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, float], *, note: str = "") -> Figure:
@@ -316,6 +320,29 @@ _LONGEST = 6000  # points of a curve
 _LEGEND_BAND = 3.4  # of the legend's line for a mode above a panel [mm of paper]
 
 
+def outlined(times: FloatArray, values: FloatArray, most: int) -> tuple[FloatArray, FloatArray]:
+    """Return a signal in at most so many points: of each stretch the least and the largest sample, in their order.
+
+    A picture of these is that of all samples; every tenth of them would show frequencies that the signal has not.
+
+    Parameters
+    ----------
+    times, values
+        (s,) each.
+    most
+        Points, 2 or more.
+    """
+    if times.size <= most:
+        return times, values
+    stretch = -(-2 * times.size // most)
+    whole = times.size // stretch * stretch
+    starts = np.arange(0, whole, stretch)
+    groups = values[:whole].reshape(-1, stretch)
+    ends = np.sort(np.stack([groups.argmin(axis=1), groups.argmax(axis=1)], axis=1), axis=1)
+    chosen = (starts[:, None] + ends).ravel()
+    return times[chosen], values[chosen]
+
+
 def draw_modal_coordinates(
     title: str,
     times: FloatArray,
@@ -349,13 +376,14 @@ def draw_modal_coordinates(
         groups.setdefault(f"{head}, {axis}" if axis else head, {})[number] = values
     unit = "m √kg; of torsion rad √(kg m²)"
     figure, rows = _rows_of_pairs(len(groups), title, f"{note}; {unit}" if note else unit)
-    interval, every = float(times[1] - times[0]), max(1, times.size // _LONGEST)
+    interval = float(times[1] - times[0])
     for (left, right), (name, group) in zip(rows, groups.items(), strict=True):
         top = 0.0
         for color, (number, values) in zip(SERIES, list(group.items())[:_MODES], strict=False):
             parts = signal_parts(values)
             label = f"mode {number}: d.c. {float(parts.mean):.2e}, a.c. {float(parts.rms):.1e} rms"
-            left.plot(1e3 * (times - times[0])[::every], values[::every], color=color, lw=0.7, label=label)
+            at, outline = outlined(times - times[0], values, _LONGEST)
+            left.plot(MILLI * at, outline, color=color, lw=0.7, label=label)
             spectrum = amplitude_spectrum(values, interval, window)
             shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
             right.plot(spectrum.frequencies[shown], spectrum.amplitude[shown], color=color, lw=0.8)
@@ -364,7 +392,7 @@ def draw_modal_coordinates(
             right.set_yscale("log")
             right.set_ylim(1e-5 * top, 3.0 * top)
         right.set_xlim(0.0, limit)
-        left.set_xlim(0.0, 1e3 * float(times[-1] - times[0]))
+        left.set_xlim(0.0, MILLI * float(times[-1] - times[0]))
         left.legend(fontsize=NOTE, frameon=False, loc="upper left", borderaxespad=0.2, handlelength=1.6)
         # Room for the legend above the curves.
         low, high = left.get_ylim()
