@@ -51,6 +51,7 @@ _LEAD, _ASIDE = 1.6, 2.2  # end of a leader and begin of its label beside a pane
 _PANEL_TITLE = 48  # letters over half a sheet
 _NEAR = 0.3  # between labels one above the other [mm]
 _RIGHT_ANGLE = 90.0  # degrees
+_MILLION = 1e6
 _FEW_DECADES = 60.0  # ratio of the ends of a logarithmic axis below which powers of ten are too few marks
 _LONGEST_LABEL = 40  # letters of a label: a line's frequency and the names of two gears
 _MEASURING_DPI = 200
@@ -201,11 +202,9 @@ def legend_height(entries: int, columns: int = 4) -> float:
 
 
 def plain(value: float, digits: int = 3) -> str:
-    """Return a number of so many digits, without powers of ten from a thousandth to a million."""
-    if value == 0.0 or not 1e-3 <= abs(value) < 1e6:
-        return f"{value:.{digits}g}"
-    whole = int(np.floor(np.log10(abs(value)))) + 1
-    return f"{value:.{digits}g}" if whole <= digits else f"{round(value, digits - whole):.0f}"
+    """Return a number of so many digits, without powers of ten up to a million."""
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < _MILLION else text
 
 
 def name_in_legend(text: str, most: int = 16) -> str:

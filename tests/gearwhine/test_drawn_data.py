@@ -61,9 +61,13 @@ def panels(figure: Figure) -> list[Axes]:
 
 
 def heights(axes: Axes) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies and amplitudes of the lines of a spectrum, which is one path broken between them."""
-    (path,) = (line for line in axes.get_lines() if np.isnan(np.asarray(line.get_ydata(), dtype=float)).any())
-    return np.asarray(path.get_xdata())[1::3], np.asarray(path.get_ydata())[1::3]
+    """Frequencies and amplitudes of the lines of a spectrum: one path broken between them, or a curve where many."""
+    lines = [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata(), dtype=float)) for line in axes.get_lines()]
+    broken = [line for line in lines if np.isnan(line[1]).any()]
+    if not broken:
+        return max(lines, key=lambda line: line[0].size)
+    ((frequencies, amplitudes),) = broken
+    return frequencies[1::3], amplitudes[1::3]
 
 
 def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:

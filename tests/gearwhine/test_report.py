@@ -141,7 +141,7 @@ TRACED = {
 
 def linked(folder: Path, text: str) -> str:
     """Return the identifier that the text of a link leads to; empty where the text is no link."""
-    page = report_page(folder, Contents(chapters_of, first_page))
+    page = report_page(folder, Contents(chapters_of, first_page)).replace("\N{NO-BREAK SPACE}", " ")
     found = re.search(f'<a href="#([^"]+)">{re.escape(text)}</a>', page)
     return "" if found is None else found[1]
 
@@ -157,7 +157,7 @@ def test_a_line_leads_to_its_path_and_to_the_housing_that_moves_at_it(tmp_path: 
     assert linked(tmp_path, "housing mode 19 (2664 Hz)") == "run-picture-line-2566-7hz"
     page = read(tmp_path)
     assert "front, cancelled in part" in page.text
-    assert "Operating shape at 2566.7 Hz, 1× <a> -> b; grey: at rest, colour: displacement." in page.text
+    assert "Operating shape at 2566.7 Hz, 1× <a> → b; grey: at rest, colour: displacement." in page.text
 
 
 def test_pictures_of_another_command_are_found_from_a_line(tmp_path: Path) -> None:
