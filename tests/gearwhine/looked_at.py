@@ -118,7 +118,7 @@ def look_at(browser: Browser, page: Path, *, interactive: bool) -> None:
 
 
 def _look_at_shapes(browser: Browser) -> None:
-    """The first shape moves, stands when it is paused, and the last one of the list can be chosen."""
+    """The shape moves, stands when it is paused, and another one of the list can be chosen."""
     browser.resize(400, 500)  # small, since it is drawn without a graphics card
     browser.value("document.querySelector('model-viewer').scrollIntoView()")
     browser.wait_for("document.querySelector('model-viewer').loaded")
@@ -128,7 +128,7 @@ def _look_at_shapes(browser: Browser) -> None:
     browser.value("document.querySelector('.pause').click()")
     assert any(moved(browser) == 0.0 for _ in range(20)), "the shape moves on"
     told = browser.value("document.querySelector('.told').textContent")
-    browser.value("[...document.querySelectorAll('[data-shape]')].at(-1).click()")
+    browser.value("[...document.querySelectorAll('[data-shape]')].find((one) => one.ariaPressed !== 'true').click()")
     browser.wait_for(f"document.querySelector('.told').textContent !== {json.dumps(told)}")
     browser.resize(1280)
 
