@@ -35,7 +35,7 @@ _DB = 20.0 / np.log(10.0)  # of a level, in one relative change of an amplitude
 _MOST_MODES = 5000
 _DOMINANT = 8
 _MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
-_BYTES, _BYTES_OF_TRIANGLE = 5e6, 20.0  # of all their models, compressed and in base64
+_BYTES, _BYTES_OF_TRIANGLE = 4e6, 20.0  # of all their models, compressed and in base64
 _TRIANGLES = 1500, 10000  # of each, at least and at most
 
 

@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING
 
 from gearwhine.case import Case, applied_torques
 from gearwhine.output.quantity import RPM
-from gearwhine.output.sections import Column, Document, Finding, Picture, Section, Table, counted, percent, table_of
+from gearwhine.output.sections import (
+    Column,
+    Document,
+    Finding,
+    Picture,
+    Section,
+    Table,
+    arrowed,
+    counted,
+    percent,
+    table_of,
+)
 from gearwhine.results.comparison import LINKED_PAIR
 from gearwhine.results.motion import leading_lines, path_place, shape_column
 from gearwhine.results.run import SPECTRUM
@@ -317,7 +328,7 @@ def _highest(rows: Sequence[Document]) -> list[str]:
     by = f"; largest part by {row['by']}" if row["by"] else ""
     return [
         f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {row['amplitude_m_per_s2']:.3g} m/s² peak: "
-        f"{row['name']}{near}{by}."
+        f"{arrowed(str(row['name']))}{near}{by}."
     ]
 
 

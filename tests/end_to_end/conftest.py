@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import xarray as xr
 
+import gearwhine as gw
 from gearwhine.cli import run_command
 
 
@@ -62,6 +64,16 @@ def solved_rotor(gearwhine: Command) -> Callable[..., dict[str, Any]]:
         assert outcome.code == 0, outcome.err
         (rotor,) = outcome.document["rotors"]
         return rotor
+
+    return solve
+
+
+@pytest.fixture
+def rotor_curves() -> Callable[..., xr.Dataset]:
+    """``rotor_curves(case, *settings)``: the arrays of the same, where its curves stand."""
+
+    def solve(case: str, *settings: str) -> xr.Dataset:
+        return gw.load(case, list(settings)).rotors().dataset
 
     return solve
 

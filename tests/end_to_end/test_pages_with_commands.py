@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from chromium import Browser, find_chromium
+from looked_at import HOSTILE, is_clean, look_at, with_hostile_names
 
 from gearwhine.case import bundled_case
 from gearwhine.cli.command_line import app
@@ -36,6 +38,8 @@ COARSE = 0.05
 """Least size of the elements of a box [m]."""
 FEWER_POINTS = {"rpm:19": "rpm:2", "N*m:10": "N*m:2"}
 """Ranges of a sweep that are cut."""
+REPORTED = {"rig": "rig", "reducer": "reducer"}
+"""Folders of pages whose reports are looked at in a browser, by the pages' names."""
 _WITHOUT_A_CASE = ("examples",)
 
 
@@ -62,6 +66,22 @@ def with_less_effort(words: list[str]) -> list[str]:
     if words[0] == "sweep":
         words = [*words, "--workers", "1"]  # each takes seconds to start
     return [*words, *changes]
+
+
+def _look_at_reports(gearwhine: Any, folder: Path, place: Path) -> None:
+    """Both forms of the report of a folder in a browser, and the interactive one where all names are hostile."""
+    if (program := find_chromium()) is None:
+        return
+    with_hostile_names(folder, place / "hostile")
+    for one in (folder, place / "hostile"):
+        outcome = gearwhine("report", str(one), "--interactive", "-q")
+        assert outcome.code == 0, outcome.err
+    with Browser(program, place / "profile") as browser:
+        look_at(browser, folder / "report.html", interactive=False)
+        look_at(browser, folder / "report-interactive.html", interactive=True)
+        browser.open(place / "hostile" / "report-interactive.html")
+        assert browser.value("document.body.textContent").count(HOSTILE) > 20
+        is_clean(browser)
 
 
 @pytest.mark.slow
@@ -98,6 +118,8 @@ def test_a_page_runs_from_its_first_line_to_its_last(
 
         modulus = gw.load("fit/updated.toml").case.material["steel"].youngs_modulus
         assert modulus == pytest.approx(196e9, rel=2e-3)
+    if page.stem in REPORTED:
+        _look_at_reports(gearwhine, tmp_path / REPORTED[page.stem], tmp_path)
     for named in re.findall(r"`((?:rig|reducer|plan|fit|small-gearbox-results)/[\w.-]+)`", page.read_text("utf-8")):
         assert (tmp_path / named).exists(), named
 
