@@ -1,0 +1,380 @@
+"""Wrapping of a housing's mesh in a closed radiating surface of even triangles.
+
+The skin is marked in cells of a grid. Air that a ball as wide as the largest hole to be closed can reach from outside
+is outside; what remains is a cavity with its holes where little of its border is open, and else a concave corner or a
+gap between ribs, which stays outside. The border of the cells is turned into a mesh with one vertex for each corner of
+cells that sees both sides (surface nets). Its vertices are then moved onto the skin: each face takes the plane of the
+skin's point that is nearest in place and direction, and each vertex minimises the sum of squared distances from the
+planes of its faces, so that edges and corners of the housing are kept; what the planes leave free is smoothed.
+
+Sources: S. F. F. Gibson, "Constrained elastic surface nets: generating smooth surfaces from binary segmented data",
+MICCAI 1998, Lecture Notes in Computer Science 1496, 888-898 (the mesh); T. Ju, F. Losasso, S. Schaefer and J. Warren,
+"Dual contouring of Hermite data", ACM Transactions on Graphics 21 (2002), 339-346 (the squared distances from planes).
+"""
+
+from functools import cache
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage, sparse
+from scipy.spatial import cKDTree
+
+from housing.acoustics.radiating_surface import RadiatingSurface
+from housing.acoustics.skin import Skin, skin_of
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+_FINE = 3  # fine cells along a cell of the wrap
+_FILLED = 0.3  # least part of a cell's fine cells that makes it solid: a plate of one layer is a third
+_GAP = 0.6  # gaps narrower than twice this many cells are closed
+_OPEN = 0.12  # largest open part of the border of a cavity: a cube without its lid has a sixth
+_ROUNDS = 14  # of moving the vertices onto the skin
+_TURN = 0.7  # cells that a right angle between face and skin counts as distance, over sqrt(2)
+_AGREE = 0.3  # least cosine between a face and the skin that it is moved to
+_LEAST = 0.2  # square cells added to each face's area in the means that smooth
+_RANK = 0.05  # part of the largest eigenvalue below which the planes of a vertex leave a direction free
+
+_MENDINGS = 3  # rounds of mending badly shaped triangles
+_POOR = 0.55  # shape below which a triangle is mended: 1 of an equilateral one
+_SHORT = 0.6  # cells below which an edge may collapse
+_FLAT = 0.1  # cells that the four points of a flipped edge may lie from a plane
+
+
+def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
+    """Wrap a housing in a closed surface of triangles of about the same size.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The housing's finite elements.
+    edge : float
+        Mean edge of the triangles [m].
+    close_holes : float
+        Diameter of the largest bore or opening of the cavity that is capped [m].
+
+    Returns
+    -------
+    RadiatingSurface
+        Closed.
+
+    Raises
+    ------
+    HousingError
+        Where an opening wider than `close_holes` lets the air inside, or the surface does not close.
+    """
+    cell = edge / 1.05  # two edges of a triangle are a cell long, and one is a diagonal
+    fine = cell / _FINE
+    skin = skin_of(mesh, mesh.boundary)
+    low = mesh.bounds[0] - 0.5 * (np.ceil(np.ptp(mesh.bounds, axis=0) / cell) * cell - np.ptp(mesh.bounds, axis=0))
+    around = _FINE * (2 + int(np.ceil(0.5 * close_holes / cell)))
+    shape = np.ceil(np.ptp(mesh.bounds, axis=0) / cell - 1e-9).astype(np.int64) * _FINE + 2 * around
+    origin = low - around * fine
+    hit = np.zeros(shape, dtype=bool)
+    hit[tuple(np.floor((skin.samples(0.6 * fine)[0] - origin) / fine).astype(np.int64).T)] = True
+    solid = _closed(hit, _GAP * _FINE)
+    solid = _filled(solid, 0.5 * close_holes / fine + 1.0)
+    blocks = solid.reshape(shape[0] // _FINE, _FINE, shape[1] // _FINE, _FINE, shape[2] // _FINE, _FINE)
+    coarse = ~_outside(blocks.mean(axis=(1, 3, 5)) < _FILLED)
+    coarse = _manifold(coarse)
+    points, faces = _surface_net(coarse)
+    points = origin + cell * points
+    points, faces = _on_skin(points, faces, skin, ~solid, origin, fine, cell)
+    surface = RadiatingSurface(points, faces)
+    surface.require_closed()
+    return surface
+
+
+def _outside(free: BoolArray) -> BoolArray:
+    """Free cells that are connected through faces with the corner of the grid."""
+    labels, _ = ndimage.label(free)
+    return np.asarray(labels == labels[0, 0, 0])
+
+
+def _closed(cells: BoolArray, radius: float) -> BoolArray:
+    """Morphological closing of cells by a ball [cells]."""
+    grown = ndimage.distance_transform_edt(~cells) <= radius
+    return np.asarray(cells | (ndimage.distance_transform_edt(grown) > radius))
+
+
+def _filled(solid: BoolArray, radius: float) -> BoolArray:
+    """Fill the cavities that a ball of a radius [cells] cannot enter, with their holes."""
+    free = ~solid
+    ball = _outside(ndimage.distance_transform_edt(free) >= radius)
+    air = ndimage.distance_transform_edt(~ball) < radius
+    rest = free & ~air
+    # A gap of one cell between a hole's rim and the ball would join the cavity with corners outside.
+    depth = ndimage.distance_transform_edt(rest)
+    cores, count = ndimage.label(depth > 1.01)
+    away, nearest = ndimage.distance_transform_edt(cores == 0, return_indices=True)
+    regions = np.where(rest & (away < 1.8), cores[tuple(nearest)], 0)
+    open_faces, all_faces = np.zeros(count + 1), np.zeros(count + 1)
+    for axis in range(3):
+        for here, there in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            own = regions[(slice(None),) * axis + (here,)]
+            other = tuple([slice(None)] * axis + [there])
+            border = (own > 0) & (regions[other] != own)
+            all_faces += np.bincount(own[border], minlength=count + 1)
+            open_faces += np.bincount(own[border & free[other]], minlength=count + 1)
+    kept = open_faces < _OPEN * all_faces
+    kept[0] = False
+    return np.asarray(~_outside(free & ~kept[regions]))
+
+
+_BLOCK = np.array(list(product((0, 1), repeat=3)))  # places of the cells of a block of 2 x 2 x 2
+
+
+@cache
+def _repairs() -> IntArray:
+    """For each pattern of solid cells in a block of eight, those with which the surface is manifold there.
+
+    Solid cells and others then each hang together through faces: the surface passes once.
+    """
+    near = np.abs(_BLOCK[:, None] - _BLOCK[None]).sum(axis=2) == 1
+
+    def joined(pattern: int) -> bool:
+        members = [cell for cell in range(8) if pattern >> cell & 1]
+        reached = members[:1]
+        for cell in reached:
+            reached += [other for other in members if near[cell, other] and other not in reached]
+        return len(reached) == len(members)
+
+    sound = np.array([joined(pattern) and joined(255 - pattern) for pattern in range(256)])
+    patterns = np.arange(256)
+    sizes = np.array([bin(pattern).count("1") for pattern in range(256)])
+    repaired = []
+    for pattern in range(256):
+        possible = patterns[sound & ((patterns & pattern) == pattern)]
+        repaired.append(possible[np.argmin(sizes[possible])])
+    return np.array(repaired)
+
+
+def _patterns(solid: BoolArray) -> IntArray:
+    """Pattern of the solid cells in each block of eight, as bits."""
+    nx, ny, nz = (length - 1 for length in solid.shape)
+    total = np.zeros((nx, ny, nz), dtype=np.int64)
+    for bit, (i, j, k) in enumerate(_BLOCK.tolist()):
+        total += solid[i : i + nx, j : j + ny, k : k + nz].astype(np.int64) << bit
+    return total
+
+
+def _manifold(solid: BoolArray) -> BoolArray:
+    """Fill cells until the border of the solid passes each corner of cells once."""
+    solid = solid.copy()
+    repairs = _repairs()
+    while True:
+        patterns = _patterns(solid)
+        wrong = np.argwhere(repairs[patterns] != patterns)
+        if len(wrong) == 0:
+            return ~_outside(~solid) if (~solid & ~_outside(~solid)).any() else solid
+        wanted = repairs[patterns[tuple(wrong.T)]]
+        for bit, offset in enumerate(_BLOCK):
+            solid[tuple((wrong[(wanted >> bit & 1) == 1] + offset).T)] = True
+
+
+def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
+    """Vertices [cells] and quadrilaterals of the border of solid cells, outward."""
+    patterns = _patterns(solid)
+    mixed = (patterns > 0) & (patterns < 255)
+    number = np.full(mixed.shape, -1, dtype=np.int64)
+    number[mixed] = np.arange(np.count_nonzero(mixed))
+    faces = []
+    for axis in range(3):
+        one, other = (axis + 1) % 3, (axis + 2) % 3
+        below = np.moveaxis(solid, axis, 0)[:-1]
+        above = np.moveaxis(solid, axis, 0)[1:]
+        for looks_up in (True, False):
+            cells = np.argwhere(below & ~above if looks_up else ~below & above)
+            place = np.empty_like(cells)
+            rest = [direction for direction in range(3) if direction != axis]
+            place[:, axis], place[:, rest[0]], place[:, rest[1]] = cells.T
+            ring = []
+            for step in ((-1, -1), (0, -1), (0, 0), (-1, 0)):
+                corner = place.copy()
+                corner[:, one] += step[0]
+                corner[:, other] += step[1]
+                ring.append(number[tuple(corner.T)])
+            faces.append(np.stack(ring if looks_up else ring[::-1], axis=1))
+    return np.argwhere(mixed) + 1.0, np.concatenate(faces)
+
+
+def _on_skin(
+    points: FloatArray,
+    quads: IntArray,
+    skin: Skin,
+    free: BoolArray,
+    origin: FloatArray,
+    fine: float,
+    cell: float,
+) -> tuple[FloatArray, IntArray]:
+    """Move the vertices of a net onto the skin and split its quadrilaterals."""
+    places, owners = skin.samples(cell / 3.0)
+    normals = skin.normals[owners]
+    # Outer are the samples before which there is air.
+    ahead = np.floor((places + 1.5 * fine * normals - origin) / fine).astype(np.int64)
+    outer = free[tuple(ahead.T)]
+    places, normals = places[outer], normals[outer]
+    tree = cKDTree(np.hstack([places, _TURN * cell * normals]))
+    for number in range(_ROUNDS):
+        points = _moved(points, quads, tree, places, normals, cell, (1.5 if number < 5 else 0.8) * cell)
+    triangles = _split(points, quads)
+    for _ in range(_MENDINGS):
+        points, triangles = _mended(points, triangles, cell)
+        for _ in range(3):
+            points = _moved(points, triangles, tree, places, normals, cell, 0.8 * cell)
+    return _mended(points, triangles, cell)
+
+
+def _moved(
+    points: FloatArray,
+    faces: IntArray,
+    tree: cKDTree,
+    places: FloatArray,
+    normals: FloatArray,
+    cell: float,
+    reach: float,
+) -> FloatArray:
+    """Move each vertex onto the planes of its faces, and along them to the centroid of its faces."""
+    corners = points[faces]
+    center = corners.mean(axis=1)
+    last = corners[:, 3] - corners[:, 1] if faces.shape[1] == 4 else corners[:, 2] - corners[:, 1]
+    normal = np.cross(corners[:, 2] - corners[:, 0], last)
+    area = np.linalg.norm(normal, axis=1)
+    normal /= np.maximum(area, 1e-300)[:, None]
+    _, found = tree.query(np.hstack([center, _TURN * cell * normal]))
+    plane, direction = places[found], normals[found]
+    agree = (np.linalg.norm(plane - center, axis=1) < reach) & ((direction * normal).sum(axis=1) > _AGREE)
+    weight = np.where(agree, area / cell**2, 0.0)
+    rows = np.repeat(np.arange(len(faces)), faces.shape[1])
+    incident = sparse.csr_array((np.ones(faces.size), (faces.ravel(), rows)), shape=(len(points), len(faces)))
+    matrix = (incident @ (weight[:, None, None] * direction[:, :, None] * direction[:, None]).reshape(-1, 9)).reshape(
+        -1, 3, 3
+    )
+    side = incident @ ((weight * (plane * direction).sum(axis=1))[:, None] * direction)
+    share = area + _LEAST * cell**2  # a face without area keeps its say, so that it opens again
+    mean = (incident @ (share[:, None] * center)) / (incident @ share)[:, None]
+    values, vectors = np.linalg.eigh(matrix)
+    kept = values > _RANK * np.maximum(values[:, -1:], 1e-6)
+    inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
+    gap = side - np.einsum("vij,vj->vi", matrix, mean)
+    target = mean + np.einsum("vij,vj,vkj,vk->vi", vectors, inverse, vectors, gap, optimize=True)
+    step = target - points
+    length = np.linalg.norm(step, axis=1, keepdims=True)
+    return np.asarray(points + step * np.minimum(1.0, cell / np.maximum(length, 1e-300)))
+
+
+def _split(points: FloatArray, quads: IntArray) -> IntArray:
+    """Split quadrilaterals along the diagonal that leaves the larger least angle."""
+    first = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 2, 3)
+    second = quads[:, [0, 1, 3, 1, 2, 3]].reshape(-1, 2, 3)
+    better = least_angles(points[first]).min(axis=1) >= least_angles(points[second]).min(axis=1)
+    return np.where(better[:, None, None], first, second).reshape(-1, 3)
+
+
+def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[FloatArray, IntArray]:
+    """Collapse short edges and flip the long edges of flat triangles.
+
+    Only the surroundings of badly shaped triangles change: an edge collapses where it is short, and is flipped where
+    its four points nearly lie in a plane; both only where the worst shape around becomes better and no triangle turns
+    over.
+    """
+    points, corners = points.copy(), [tuple(row) for row in triangles.tolist()]
+    around: list[set[int]] = [set() for _ in points]
+    for number, triangle in enumerate(corners):
+        for vertex in triangle:
+            around[vertex].add(number)
+    alive = np.ones(len(corners), dtype=bool)
+    waiting = np.flatnonzero(_shapes(points[triangles])[0] < _POOR).tolist()
+    for number in waiting:
+        if not alive[number] or _shapes(points[list(corners[number])])[0] >= _POOR:
+            continue
+        triangle = corners[number]
+        lengths = [float(np.linalg.norm(points[triangle[i]] - points[triangle[(i + 1) % 3]])) for i in range(3)]
+        longest, shortest = int(np.argmax(lengths)), int(np.argmin(lengths))
+        a, b = triangle[longest], triangle[(longest + 1) % 3]
+        if _flip(points, corners, around, number, a, b, cell):
+            continue
+        a, b = triangle[shortest], triangle[(shortest + 1) % 3]
+        if lengths[shortest] < _SHORT * cell:
+            for gone in _collapse(points, corners, around, a, b):
+                alive[gone] = False
+    kept = np.array(corners)[alive]
+    used, renumbered = np.unique(kept, return_inverse=True)
+    return points[used], renumbered.reshape(-1, 3)
+
+
+def _flip(
+    points: FloatArray, corners: list[tuple[int, ...]], around: list[set[int]], number: int, a: int, b: int, cell: float
+) -> bool:
+    """Flip the edge from a to b of a triangle, where that helps."""
+    (other,) = (around[a] & around[b]) - {number}
+    c = next(vertex for vertex in corners[number] if vertex not in (a, b))
+    d = next(vertex for vertex in corners[other] if vertex not in (a, b))
+    if around[c] & around[d]:
+        return False
+    old = points[[list(corners[number]), list(corners[other])]]
+    new = points[[[a, d, c], [d, b, c]]]
+    before, normal = _shapes(old)
+    after, turned = _shapes(new)
+    total = normal.sum(axis=0)
+    offset = abs(float(np.dot(points[d] - points[a], np.cross(points[b] - points[a], points[c] - points[a]))))
+    area = float(np.linalg.norm(total))
+    if after.min() <= before.min() or (turned @ total).min() <= 0.0 or offset > _FLAT * cell * area:
+        return False
+    corners[number], corners[other] = (a, d, c), (d, b, c)
+    around[a].discard(other)
+    around[b].discard(number)
+    around[c].add(other)
+    around[d].add(number)
+    return True
+
+
+def _collapse(
+    points: FloatArray, corners: list[tuple[int, ...]], around: list[set[int]], a: int, b: int
+) -> tuple[int, ...]:
+    """Collapse the edge from a to b into the best of its ends and its middle, where that helps; the triangles lost."""
+    gone = around[a] & around[b]
+    ring_a = {vertex for number in around[a] for vertex in corners[number]} - {a, b}
+    ring_b = {vertex for number in around[b] for vertex in corners[number]} - {a, b}
+    if len(ring_a & ring_b) != 2:  # the surface would touch itself
+        return ()
+    moved = sorted((around[a] | around[b]) - gone)
+    old = np.array([corners[number] for number in moved])
+    before, normal = _shapes(points[old])
+    lost, _ = _shapes(points[[list(corners[number]) for number in sorted(gone)]])
+    found: tuple[float, FloatArray] | None = None
+    for place in (points[a], points[b], 0.5 * (points[a] + points[b])):
+        trial = points[old]
+        trial[(old == a) | (old == b)] = place
+        after, turned = _shapes(trial)
+        cosine = (turned * normal).sum(axis=1) / np.linalg.norm(turned, axis=1) / np.linalg.norm(normal, axis=1)
+        sound = (cosine > 0.5) | (before < 0.5 * _POOR)
+        if sound.all() and (found is None or after.min() > found[0]):
+            found = float(after.min()), place.copy()
+    if found is None or found[0] <= min(before.min(), lost.min()):
+        return ()
+    points[a] = found[1]
+    for number in moved:
+        corners[number] = tuple(a if vertex == b else vertex for vertex in corners[number])
+    around[a] = set(moved)
+    around[b] = set()
+    for vertex in ring_a | ring_b:
+        around[vertex] -= gone
+    return tuple(gone)
+
+
+def _shapes(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shape of triangles, 1 of an equilateral one and 0 of a flat one, and their normals of twice the area."""
+    normal = np.cross(corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :])
+    squares = ((corners - np.roll(corners, 1, axis=-2)) ** 2).sum(axis=(-1, -2))
+    return np.asarray(np.sqrt(12.0) * np.linalg.norm(normal, axis=-1) / squares), normal
+
+
+def least_angles(corners: FloatArray) -> FloatArray:
+    """Smallest angle of triangles [rad], corners of shape (..., 3, 3)."""
+    to, back = np.roll(corners, -1, axis=-2) - corners, np.roll(corners, 1, axis=-2) - corners
+    sine = np.linalg.norm(np.cross(to, back), axis=-1)
+    return np.asarray(np.arctan2(sine, (to * back).sum(axis=-1)).min(axis=-1))
