@@ -4,7 +4,7 @@ For the time factor exp(+i ω t) the pressure p and the outward normal velocity 
 
 ``c(x) p(x) = ∫ (p(y) ∂G/∂n(x, y) + i ω ρ v(y) G(x, y)) dS``, ``c(x) = 1 + ∫ ∂G₀/∂n(x, y) dS``
 
-at a point x of S, where c is the part of the directions that leads into the air. G₀ is the Green's function of Laplace's
+at a point x of S, where c is the part of the directions that leads into the air. G₀ is Green's function of Laplace's
 equation; both integrals over G and G₀ use the same points, so that a constant pressure is represented exactly. The
 pressure is linear on each triangle and continuous, the velocity linear on each triangle and discontinuous at edges.
 
@@ -80,20 +80,23 @@ class SoundField:
     @cached_property
     def mean_square_velocity(self) -> ComplexArray:
         """∫ v̄ᵢ vⱼ dS [m⁴/s²], shape (n, n)."""
-        return _surface_product(self.surface, self.velocity, self.velocity)
+        return surface_product(self.surface, self.velocity, self.velocity)
+
+    @property
+    def pressure_at_corners(self) -> ComplexArray:
+        """Pressure at the corners of each triangle [Pa], shape (3 n_triangles, n)."""
+        return self.pressure[self.surface.triangles].reshape(len(self.velocity), -1)
 
     @cached_property
     def surface_resistance(self) -> FloatArray:
         """Radiation resistance from the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n) [W s²/m² per unit velocity]."""
-        at_corners = self.pressure[self.surface.triangles].reshape(len(self.velocity), -1)
-        product = _surface_product(self.surface, self.velocity, at_corners)
+        product = surface_product(self.surface, self.velocity, self.pressure_at_corners)
         return np.asarray(0.5 * (product + product.conj().T).real)
 
     @cached_property
     def reciprocity_error(self) -> float:
         """Largest difference of ∫ vᵢ pⱼ dS and ∫ vⱼ pᵢ dS relative to √(∫vᵢpᵢ ∫vⱼpⱼ) in size, of two distributions."""
-        at_corners = self.pressure[self.surface.triangles].reshape(len(self.velocity), -1)
-        product = _surface_product(self.surface, self.velocity.conj(), at_corners)
+        product = surface_product(self.surface, self.velocity.conj(), self.pressure_at_corners)
         size = np.sqrt(np.abs(np.diag(product)))
         return float(np.max(np.abs(product - product.T) / np.outer(size, size)))
 
@@ -322,7 +325,7 @@ def _represent(
     return field
 
 
-def _surface_product(surface: RadiatingSurface, one: ComplexArray, other: ComplexArray) -> ComplexArray:
+def surface_product(surface: RadiatingSurface, one: ComplexArray, other: ComplexArray) -> ComplexArray:
     """∫ ūᵢ wⱼ dS of fields that are linear on each triangle, given at its corners."""
     weighted = np.einsum("e,ab,ebn->ean", surface.areas, _MASS, other.reshape(len(surface.areas), 3, -1))
     return np.asarray(one.conj().T @ weighted.reshape(len(one), -1))

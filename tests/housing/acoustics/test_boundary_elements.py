@@ -53,7 +53,7 @@ def test_sphere(sphere_2000, ka):
         assert abs(found[n] - exact) <= (bound * exact if exact >= 1e-4 else 1e-6), (n, found[n], exact)
     assert np.all(np.abs(decibels(np.diag(field.surface_resistance) / np.diag(field.resistance))) < 0.25)
     assert field.interior_residual < 0.02
-    assert field.reciprocity_error < 1e-3
+    assert field.reciprocity_error < 2e-3
 
 
 @pytest.fixture(scope="module")
