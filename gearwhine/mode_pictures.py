@@ -334,8 +334,8 @@ def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -
 def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) -> list[dict[str, Any]]:
     """Draw where the housing radiates; return warnings.
 
-    They are ``sound-faces-all.png`` over all lines and ``sound-faces-123.4Hz.png`` at each of the loudest, all on one
-    scale: blue places take sound in, red ones send it out. Without a renderer a warning says so.
+    They are ``sound-faces-all.png`` over all lines and ``sound-faces-123.4Hz.png`` at each of the loudest, each on
+    a scale of its own: red places send sound out, blue ones take it in. Without a renderer a warning says so.
 
     Parameters
     ----------
@@ -390,24 +390,23 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
     for line in lines[:_LOUDEST]:
         name, title = f"sound-faces-{line.frequency_hz:.1f}Hz", f"Sound intensity at {line.frequency_hz:.0f} Hz"
         drawn.append((name, title, at_points(line.sound.intensity), line.sound.power))
-    largest = max(float(np.quantile(np.abs(values), _SHOWN_PART)) for *_, values, _ in drawn)
-    if largest == 0.0:
+    ends = [float(np.quantile(np.abs(values), _SHOWN_PART)) for *_, values, _ in drawn]
+    if min(ends) == 0.0:
         return []
     units = ((1.0, "W"), (1e3, "mW"), (1e6, "µW"), (1e9, "nW"))
-    factor, unit = next((one for one in units if one[0] * largest >= 1.0), units[-1])
-    rest = np.zeros_like(surface.rest)
+    factor, unit = next((one for one in units if one[0] * ends[0] >= 1.0), units[-1])
+    beyond = f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
     return [
         DrawnShape(
             name,
             title,
-            f"{power_level(power):.1f} dB re 1 pW; red radiates, blue absorbs. "
-            f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale.",
-            rest,
+            f"{power_level(power):.1f} dB re 1 pW; red radiates, blue absorbs. {beyond}",
+            np.zeros_like(surface.rest),
             f"Intensity [{unit}/m²]",
-            factor * largest,
+            factor * end,
             factor * values,
         )
-        for name, title, values, power in drawn
+        for (name, title, values, power), end in zip(drawn, ends, strict=True)
     ]
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from housing.acoustics.sound_levels import power_level, pressure_level
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ _METHODS = {
 }
 _TOLD = 3  # parts of a line that are named
 _SHOWN = 12  # lines on the terminal
+_ON_BOX = 9  # microphones of the box, the last ones
 _FAINT = 0.02  # part of a power that is worth its place
 
 SURFACE = (
@@ -120,14 +121,16 @@ def _largest(group: str) -> Column:
 
     def text(row: Document) -> str:
         parts = row["contributions"][group]
-        return f"{parts[0]['name']} ({100.0 * parts[0]['share']:.0f} %)".removeprefix("housing mode ") if parts else ""
+        # What stays together does not break in a narrow terminal.
+        share = f"\N{NO-BREAK SPACE}{100.0 * parts[0]['share']:.0f}\N{NO-BREAK SPACE}%" if parts else ""
+        return parts[0]["name"].removeprefix("housing mode ") + share if parts else ""
 
     return Column({"housing_modes": "by mode", "bearings": "by bearing", "faces": "by face"}[group], text)
 
 
 _LINE = Column("line [Hz]", "frequency_hz", ".1f", link=_picture_of)
 _ORDER = Column("order", "order", ".4g")
-_LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB(A)]", "sound_power_db_a", ".1f"))
+_LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB]", "sound_power_db_a", ".1f"))
 _NAME = Column("what it is", "name")
 _CAUSES = (_largest("housing_modes"), _largest("bearings"), _largest("faces"))
 
@@ -149,7 +152,7 @@ MICROPHONE = (
     Quantity("name", lambda row: row[0], heading="microphone"),
     Quantity("position_m", lambda row: row[1]),
     Quantity("level_db", lambda row: row[2], heading="sound pressure [dB re 20 µPa]", shown=".1f"),
-    Quantity("level_db_a", lambda row: row[3], heading="A-weighted [dB(A)]", shown=".1f"),
+    Quantity("level_db_a", lambda row: row[3], heading="A-weighted [dB]", shown=".1f"),
 )
 """Of a microphone: name, position, level of all lines and the same A-weighted."""
 
@@ -237,7 +240,7 @@ def total_sentence(document: Document) -> str:
         return ""
     return (
         f"Sound power level L_W of {counted(len(document['lines']), 'line')} together: {document['total_db']:.1f} dB "
-        f"re 1 pW, A-weighted L_WA {document['total_db_a']:.1f} dB(A)"
+        f"re 1 pW, A-weighted L_WA {document['total_db_a']:.1f} dB"
     )
 
 
@@ -248,19 +251,26 @@ def _content(document: Document) -> Iterator[str | Table]:
         f"of which {surface['caps_m2']:.2g} m² close holes; up to {document['highest_frequency_hz']:.0f} Hz"
     )
     if total := total_sentence(document):
-        yield f"{total}; they hold {100.0 * document['covered']:.3g} % of the housing's vibration by ERP"
+        yield f"{total}; by an estimate {percent(document['covered'])} of the whole"
         power = sum(document["faces_w"].values())
         if power > 0.0:
             yield f"Radiating faces: {_parts({face: part / power for face, part in document['faces_w'].items()})}"
     if document["box_power_db"] is not None:
-        yield f"By the mean pressure on the box of microphones (ISO 3744): {document['box_power_db']:.1f} dB re 1 pW"
+        levels = [one["level_db"] for one in document["microphones"][-_ON_BOX:]]
+        yield (
+            f"By the mean pressure on the box of microphones (ISO 3744): L_W {document['box_power_db']:.1f} dB; "
+            f"pressure {min(levels):.1f} to {max(levels):.1f} dB re 20 µPa"
+        )
 
 
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the levels, the lines, the microphones and the modes for the terminal."""
+    microphones = document["microphones"]
+    if document["box_power_db"] is not None:
+        microphones = microphones[:-_ON_BOX]
     tables = (
         *table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_SHOWN], "Loudest lines, and the largest part of each"),
-        *table_of(columns_of(MICROPHONE), document["microphones"], "All lines at the microphones"),
+        *table_of(columns_of(MICROPHONE), microphones, "All lines at the microphones"),
         *table_of(MODE_COLUMNS, document["modes"], "Modes; a radiation efficiency of 1 is that of a plane wave"),
     )
     return (Section("", (*_content(document), *tables)),)

@@ -141,7 +141,7 @@ def _draw_bands(axes: Axes, solved: "SolvedSound") -> None:
 
 
 def _nominal(hertz: float) -> str:
-    return f"{hertz / 1e3:g}k" if hertz >= 1e3 else f"{hertz:g}"
+    return f"{hertz / 1e3:g} k" if hertz >= 1e3 else f"{hertz:g}"
 
 
 def _level_limits(*levels: FloatArray) -> tuple[float, float]:
@@ -176,7 +176,7 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
     everything = np.concatenate([values, [value for _, value in of_lines], [1.0]])
     axes.set(
         xlim=(0.0, 1.02 * max(solved.limit_hz, float(frequencies.max()))),
-        ylim=(10.0 ** np.floor(np.log10(0.7 * everything.min())), 1.6 * everything.max()),
+        ylim=(10.0 ** np.floor(np.log10(everything.min())), 1.6 * everything.max()),
         xlabel="frequency [Hz]",
         ylabel="radiation efficiency σ",
     )
