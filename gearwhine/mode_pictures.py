@@ -33,7 +33,7 @@ _MICRO = 1e6
 _PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
 _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
 _DB = 20.0 / np.log(10.0)  # of a level, in one relative change of an amplitude
-_LOUDEST = 3  # lines whose intensity is drawn
+_LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least part of the loudest one's power
 _MOST_MODES = 5000
 _DOMINANT = 8
 _MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
@@ -375,6 +375,7 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
     lines = sorted((line for line in solved.lines if line.sound.power > 0.0), key=lambda line: -line.sound.power)
     if not lines:
         return []
+    loudest = [line for line in lines[:_LOUDEST] if line.sound.power >= _HEARD * lines[0].sound.power]
     surface = _radiating_surface(solved)
     areas = np.concatenate([elements.surface.areas for elements in solved.radiation.elements])
     corners, weights = surface.triangles.ravel(), np.repeat(areas, 3)
@@ -387,7 +388,7 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
     every = at_points(np.sum([line.sound.intensity for line in lines], axis=0))
     power = sum(line.sound.power for line in lines)
     drawn = [("sound-faces-all", "Sound intensity, all lines", every, power)]
-    for line in lines[:_LOUDEST]:
+    for line in loudest:
         name, title = f"sound-faces-{line.frequency_hz:.1f}Hz", f"Sound intensity at {line.frequency_hz:.0f} Hz"
         drawn.append((name, title, at_points(line.sound.intensity), line.sound.power))
     ends = [float(np.quantile(np.abs(values), _SHOWN_PART)) for *_, values, _ in drawn]

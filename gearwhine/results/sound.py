@@ -116,25 +116,26 @@ def _picture_of(row: Document) -> tuple[str, ...]:
     return (f"picture sound-faces-{row['frequency_hz']:.1f}Hz",)
 
 
-def _largest(group: str) -> Column:
-    """Return the column that names the largest part of a line's power and its share."""
+def _largest(heading: str, group: str, *, share: bool = True) -> Column:
+    """Return the column that names the largest part of a line's power, with its share."""
 
     def text(row: Document) -> str:
         parts = row["contributions"][group]
-        # What stays together does not break in a narrow terminal.
-        share = f"\N{NO-BREAK SPACE}{100.0 * parts[0]['share']:.0f}\N{NO-BREAK SPACE}%" if parts else ""
-        return parts[0]["name"].removeprefix("housing mode ") + share if parts else ""
+        if not parts:
+            return ""
+        name = str(parts[0]["name"]).removeprefix("housing mode ").replace("local compliance", "local")
+        return f"{name}, {100.0 * parts[0]['share']:.0f} %" if share else name
 
-    return Column({"housing_modes": "by mode", "bearings": "by bearing", "faces": "by face"}[group], text)
+    return Column(heading, text)
 
 
 _LINE = Column("line [Hz]", "frequency_hz", ".1f", link=_picture_of)
 _ORDER = Column("order", "order", ".4g")
 _LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB]", "sound_power_db_a", ".1f"))
-_NAME = Column("what it is", "name")
-_CAUSES = (_largest("housing_modes"), _largest("bearings"), _largest("faces"))
+_NAME = Column("what it is", lambda row: str(row["name"]).replace(" -> ", " → "))
+_MODE, _FACE = _largest("by mode", "housing_modes"), _largest("by face", "faces")
 
-LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, *_CAUSES)
+LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _largest("by bearing", "bearings", share=False), _FACE)
 """Of a line, on the terminal and the first page."""
 
 LINE_COLUMNS = (
@@ -144,7 +145,9 @@ LINE_COLUMNS = (
     *_LEVELS,
     Column("estimate ERP [dB]", "equivalent_power_db", ".1f"),
     Column("radiation efficiency", "radiation_efficiency", ".2f"),
-    *_CAUSES,
+    _MODE,
+    _largest("by bearing", "bearings"),
+    _FACE,
 )
 """Of a line, in the report."""
 
@@ -290,7 +293,8 @@ def report(document: Document) -> Section:
 _READ = (
     "L_W is the sound power level re 1 pW, L_WA the same A-weighted; the estimate ERP, the equivalent radiated power, "
     "takes a radiation efficiency of 1. The order is the frequency over that of the first driver's rotation. Parts are "
-    "signed: those that work against the others make the largest one exceed 100 %."
+    "signed: others that work against the largest one make it exceed 100 %. Mode local is the compliance around the "
+    "bearings beyond the housing's modes."
 )
 
 _PICTURES = (

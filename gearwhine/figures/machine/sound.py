@@ -48,6 +48,7 @@ _POWER, _BANDS, _BETWEEN = 48.0, 34.0, 13.0  # heights of the panels of sound po
 _ABOVE = 2.0  # the panel, for the leaders of the names [mm]
 _NAMED = 6  # lines
 _RANGE = 60.0  # of levels below the highest that are drawn [dB]
+_HEARD = 30.0  # below the loudest line down to which lines have names and directivities [dB]
 _STEP = 10.0  # of levels [dB]
 _EFFICIENCY = 62.0  # height [mm]
 _NUMBERED = 12  # modes
@@ -62,9 +63,10 @@ _PLANES = (  # heading, axes of the plane to the right and upwards as seen, and 
 )
 
 
-def loudest_lines(solved: "SolvedSound") -> "list[SoundLine]":
-    """Return the lines with a sound power, the loudest first."""
-    return sorted((line for line in solved.lines if line.sound.power > 0.0), key=lambda line: -line.level_db)
+def loudest_lines(solved: "SolvedSound", below: float = np.inf) -> "list[SoundLine]":
+    """Return the lines with a sound power, the loudest first, down to a level `below` that of the loudest [dB]."""
+    lines = sorted((line for line in solved.lines if line.sound.power > 0.0), key=lambda line: -line.level_db)
+    return [line for line in lines if line.level_db >= lines[0].level_db - below]
 
 
 def draw_sound_power(title: str, solved: "SolvedSound") -> Figure:
@@ -76,9 +78,10 @@ def draw_sound_power(title: str, solved: "SolvedSound") -> Figure:
     solved : SolvedSound
         With a line that sounds.
     """
-    lines = loudest_lines(solved)
-    limit = 1.02 * max(solved.limit_hz, lines[-1].frequency_hz)
-    named = [Label(_text(line), line.frequency_hz, line.level_db) for line in lines[:_NAMED]]
+    lines = loudest_lines(solved, _RANGE)
+    limit = 1.02 * max(solved.limit_hz, *(line.frequency_hz for line in lines))
+    loudest = loudest_lines(solved, _HEARD)[:_NAMED]
+    named = [Label(_text(line), line.frequency_hz, line.level_db) for line in loudest]
     row = arrange(named, [label.x / limit * PANEL_WIDTH for label in named], PANEL_WIDTH)
     note = (
         f"{shortened(title, 60)}; sound power levels re 1 pW, together {solved.total_db:.1f} dB or "
@@ -119,10 +122,10 @@ def _draw_power(axes: Axes, solved: "SolvedSound", lines: "Sequence[SoundLine]",
 def _draw_bands(axes: Axes, solved: "SolvedSound") -> None:
     """Draw the levels of third octaves as bars, and A-weighted as lines across them."""
     nominal, levels = solved.bands
-    weighted = levels + a_weighting(nominal)
     low, high = _level_limits(levels)
-    places = np.arange(len(nominal))
-    shown = levels > low
+    first = int(np.argmax(levels > low))
+    nominal, levels = nominal[first:], levels[first:]
+    weighted, places, shown = levels + a_weighting(nominal), np.arange(len(nominal)), levels > low
     axes.bar(places[shown], levels[shown] - low, bottom=low, width=0.8, color=BLUE, alpha=0.85, lw=0.0, zorder=3)
     axes.hlines(weighted[shown], places[shown] - 0.4, places[shown] + 0.4, color="#c77d1e", lw=1.6, zorder=4)
     every = -(-len(nominal) // 20)
@@ -217,7 +220,7 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
         directions = np.outer(np.cos(_ANGLES), right) + np.outer(np.sin(_ANGLES), up)
         curves.append([_directed(line, directions) for line in lines])
     top = 5.0 * np.ceil(max(float(np.nanmax(curve)) for plane in curves for curve in plane) / 5.0)
-    note = f"{shortened(title, 60)}; far field, referred to 1 m from the centre; sound pressure level [dB re 20 µPa]"
+    note = f"{shortened(title, 60)}; far field, referred to 1 m from the middle; level [dB re 20 µPa]"
     height = HEAD + 6.0 + _ROSE + 8.0
     figure = sheet(height, "Directivity at the loudest lines", note)
     for place, ((heading, _, _, names), plane) in enumerate(zip(_PLANES, curves, strict=True)):
@@ -267,10 +270,9 @@ def draw_sound(case: Case, solved: "SolvedSound") -> Iterator[tuple[str, Figure]
         Name of the figure: ``sound-power``, ``sound-directivity`` and ``sound-efficiency``.
     matplotlib.figure.Figure
     """
-    lines = loudest_lines(solved)
-    if lines:
+    if loudest_lines(solved):
         yield "sound-power", draw_sound_power(case.title, solved)
-    directed = [line for line in lines[:_LOUDEST] if sound_field(line) is not None]
+    directed = [line for line in loudest_lines(solved, _HEARD)[:_LOUDEST] if sound_field(line) is not None]
     if directed:
         yield "sound-directivity", draw_directivity(case.title, directed)
     if any(mode.radiation_efficiency > 0.0 for mode in solved.modes) and solved.radiation.method != "erp":
