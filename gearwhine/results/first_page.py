@@ -276,7 +276,7 @@ def _balance(sound: Document) -> Iterator[Finding]:
         loudest = loudest_lines(sound)[0]
         difference = abs(loudest["surface_power_db"] - loudest["sound_power_db"])
         yield Finding(
-            f"Sound: the power of the loudest line through the surface and into the far field differ by "
+            f"Sound: the powers of the loudest line through the surface and into the far field differ by "
             f"{difference:.2f} dB.",
             passed=difference < _SAME_POWER,
             link=("section Sound",),

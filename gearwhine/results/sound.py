@@ -143,8 +143,8 @@ LINE_COLUMNS = (
     _ORDER,
     _NAME,
     *_LEVELS,
-    Column("estimate ERP [dB]", "equivalent_power_db", ".1f"),
-    Column("radiation efficiency", "radiation_efficiency", ".2f"),
+    Column("ERP [dB]", "equivalent_power_db", ".1f"),
+    Column("efficiency", "radiation_efficiency", ".2g"),
     _MODE,
     _largest("by bearing", "bearings"),
     _FACE,
@@ -291,10 +291,10 @@ def report(document: Document) -> Section:
 
 
 _READ = (
-    "L_W is the sound power level re 1 pW, L_WA the same A-weighted; the estimate ERP, the equivalent radiated power, "
-    "takes a radiation efficiency of 1. The order is the frequency over that of the first driver's rotation. Parts are "
-    "signed: others that work against the largest one make it exceed 100 %. Mode local is the compliance around the "
-    "bearings beyond the housing's modes."
+    "L_W is the sound power level re 1 pW, L_WA the same A-weighted. The equivalent radiated power (ERP) is an "
+    "estimate that takes a radiation efficiency of 1. The order is the frequency over that of the first driver's "
+    "rotation. Parts are signed: others that work against the largest one make it exceed 100 %. Mode local is the "
+    "compliance around the bearings beyond the housing's modes."
 )
 
 _PICTURES = (

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
-from matplotlib.ticker import FixedLocator
+from matplotlib.ticker import FixedLocator, MultipleLocator
 
 from gearwhine.case import Case
 from gearwhine.figures.style import (
@@ -50,6 +50,7 @@ _NAMED = 6  # lines
 _RANGE = 60.0  # of levels below the highest that are drawn [dB]
 _HEARD = 30.0  # below the loudest line down to which lines have names and directivities [dB]
 _STEP = 10.0  # of levels [dB]
+_FEWEST_BANDS = 8
 _EFFICIENCY = 62.0  # height [mm]
 _NUMBERED = 12  # modes
 _ROSE, _ROSE_ROOM = 41.0, 14.0  # diameter of a directivity and the room between two of them [mm]
@@ -117,13 +118,14 @@ def _draw_power(axes: Axes, solved: "SolvedSound", lines: "Sequence[SoundLine]",
     modes = solved.mode_frequencies[solved.mode_frequencies <= limit]
     axes.plot(modes, np.full(modes.size, 0.02), marker=6, color=GREY, ms=4, ls="", transform=axes.get_xaxis_transform())
     axes.set(xlim=(0.0, limit), ylim=(low, high), xlabel="frequency [Hz]", ylabel="sound power level [dB]")
+    axes.yaxis.set_major_locator(MultipleLocator(_STEP))
 
 
 def _draw_bands(axes: Axes, solved: "SolvedSound") -> None:
     """Draw the levels of third octaves as bars, and A-weighted as lines across them."""
     nominal, levels = solved.bands
     low, high = _level_limits(levels)
-    first = int(np.argmax(levels > low))
+    first = max(min(int(np.argmax(levels > low)), len(levels) - _FEWEST_BANDS), 0)
     nominal, levels = nominal[first:], levels[first:]
     weighted, places, shown = levels + a_weighting(nominal), np.arange(len(nominal)), levels > low
     axes.bar(places[shown], levels[shown] - low, bottom=low, width=0.8, color=BLUE, alpha=0.85, lw=0.0, zorder=3)
@@ -152,7 +154,7 @@ def _level_limits(*levels: FloatArray) -> tuple[float, float]:
     known = np.concatenate([values[np.isfinite(values)] for values in levels])
     high = _STEP * np.ceil((float(known.max()) + 2.0) / _STEP)
     lowest = max(float(known.min()) - 3.0, float(levels[0].max()) - _RANGE)
-    return float(min(_STEP * np.floor(lowest / _STEP), high - 2.0 * _STEP)), float(high)
+    return float(min(_STEP * np.floor(lowest / _STEP), high - 4.0 * _STEP)), float(high)
 
 
 def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
@@ -220,7 +222,7 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
         directions = np.outer(np.cos(_ANGLES), right) + np.outer(np.sin(_ANGLES), up)
         curves.append([_directed(line, directions) for line in lines])
     top = 5.0 * np.ceil(max(float(np.nanmax(curve)) for plane in curves for curve in plane) / 5.0)
-    note = f"{shortened(title, 60)}; far field, referred to 1 m from the middle; level [dB re 20 µPa]"
+    note = f"{shortened(title, 50)}; far field, referred to 1 m from the middle; level [dB re 20 µPa]"
     height = HEAD + 6.0 + _ROSE + 8.0
     figure = sheet(height, "Directivity at the loudest lines", note)
     for place, ((heading, _, _, names), plane) in enumerate(zip(_PLANES, curves, strict=True)):
