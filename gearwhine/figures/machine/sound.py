@@ -46,9 +46,9 @@ FloatArray = npt.NDArray[np.float64]
 
 _POWER, _BANDS, _BETWEEN = 48.0, 34.0, 13.0  # heights of the panels of sound power, and between them [mm]
 _ABOVE = 2.0  # the panel, for the leaders of the names [mm]
-_NAMED = 6  # lines
+_NAMED = 5  # lines
 _RANGE = 60.0  # of levels below the highest that are drawn [dB]
-_HEARD = 30.0  # below the loudest line down to which lines have names and directivities [dB]
+_HEARD = 25.0  # below the loudest line down to which lines have names and directivities [dB]
 _STEP = 10.0  # of levels [dB]
 _FEWEST_BANDS = 8
 _EFFICIENCY = 62.0  # height [mm]
@@ -124,7 +124,7 @@ def _draw_power(axes: Axes, solved: "SolvedSound", lines: "Sequence[SoundLine]",
 def _draw_bands(axes: Axes, solved: "SolvedSound") -> None:
     """Draw the levels of third octaves as bars, and A-weighted as lines across them."""
     nominal, levels = solved.bands
-    low, high = _level_limits(levels)
+    low, high = _level_limits(levels[levels >= levels.max() - _RANGE])
     first = max(min(int(np.argmax(levels > low)), len(levels) - _FEWEST_BANDS), 0)
     nominal, levels = nominal[first:], levels[first:]
     weighted, places, shown = levels + a_weighting(nominal), np.arange(len(nominal)), levels > low
@@ -169,7 +169,7 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
     modes = [mode for mode in solved.modes if mode.radiation_efficiency > 0.0]
     frequencies = np.array([mode.frequency_hz for mode in modes])
     values = np.array([mode.radiation_efficiency for mode in modes])
-    of_lines = [(line.frequency_hz, line.sound.radiation_efficiency) for line in loudest_lines(solved)]
+    of_lines = [(line.frequency_hz, line.sound.radiation_efficiency) for line in loudest_lines(solved, _RANGE)]
     note = f"{shortened(title, 60)}; 1: as a plane wave; numbers: housing modes"
     figure = sheet(HEAD + _EFFICIENCY + FOOT, "Radiation efficiency", note)
     axes = panel(figure, FOOT, _EFFICIENCY)
