@@ -210,7 +210,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     if document["total_db"] is not None:
         yield (
             f"Sound power level of {counted(len(document['lines']), 'line')}: {document['total_db']:.1f} dB re 1 pW, "
-            f"{document['total_db_a']:.1f} dB(A); they hold {percent(document['covered'])} of the equivalent power"
+            f"{document['total_db_a']:.1f} dB(A); by an estimate {percent(document['covered'])} of the whole"
         )
         total = sum(document["faces_w"].values())
         if total > 0.0:

@@ -41,7 +41,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
 _WORKERS = 2
-_FAINT = 1e-5  # part of the largest line's equivalent power below which a line is left out
+_FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
 _COUNTS = 1e-4  # part of the whole power above which a line has to prove its own
 _AUDIBLE = 20.0  # [Hz]
 _HOLES = 1.1  # of the widest seat, that are closed by default
@@ -123,7 +123,7 @@ class SolvedSound:
     bearings : tuple of str
         That the motions of each line's sound stand for.
     covered : float
-        Part of the motion's equivalent radiated power that these lines hold.
+        Part of all lines' power that these lines hold, by the equivalent power times a pulsating sphere's efficiency.
     microphones : dict of str to ndarray, shape (3,)
         Positions [m].
     box_area : float or None
@@ -387,7 +387,9 @@ def solve_sound(
         paths = housing_paths(machine, _TWO_PI * frequencies, forces)
         bearings = paths.bearings
         rates = paths.acceleration / (1j * _TWO_PI * frequencies[:, None, None])
-        estimate = radiation.equivalent_power(rates.sum(axis=1).T)
+        # No motion of a body radiates better than a pulsating sphere of its area, whose efficiency is this.
+        squared = (_TWO_PI * frequencies / radiation.medium.speed_of_sound) ** 2 * radiation.area / (4.0 * np.pi)
+        estimate = radiation.equivalent_power(rates.sum(axis=1).T) * squared / (1.0 + squared)
         total += float(estimate.sum())
         chosen += [(float(estimate[i]), rates[i].T, float(frequencies[i])) for i in range(len(frequencies))]
     chosen.sort(key=lambda one: -one[0])
