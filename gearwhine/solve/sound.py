@@ -6,7 +6,7 @@ motion by each bearing, exactly, and :class:`housing.acoustics.radiation.Housing
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,8 +20,10 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.microphones import MicrophoneHistories, microphone_histories, solve_transfer
 from gearwhine.solve.signature import SolvedSignature
 from gearwhine.solve.steady_state import SolvedSteady
+from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
 from housing.acoustics.medium import HardPlane, Medium
 from housing.acoustics.radiation import HousingRadiation, RadiatedSound
@@ -45,6 +47,7 @@ _FAINT = 1e-6  # part of the largest line's estimated power below which a line i
 _COUNTS = 1e-4  # part of the whole power above which a line has to prove its own
 _AUDIBLE = 20.0  # [Hz]
 _HOLES = 1.1  # of the widest seat, that are closed by default
+_ROUGH = 0.06  # relative error of an interpolation, half a decibel
 _LEAK = 0.1  # pressure inside, relative to that on the surface, above which a solution is doubtful
 
 
@@ -130,6 +133,8 @@ class SolvedSound:
         Of the measurement surface of ISO 3744 that the last nine microphones stand on [m²].
     limit_hz : float
         Highest frequency of the sound.
+    histories : MicrophoneHistories or None
+        Sound pressure over time at the microphones.
     """
 
     radiation: HousingRadiation
@@ -141,6 +146,7 @@ class SolvedSound:
     microphones: dict[str, FloatArray]
     box_area: float | None
     limit_hz: float
+    histories: MicrophoneHistories | None = None
 
     @property
     def total_db(self) -> float:
@@ -203,6 +209,15 @@ class SolvedSound:
                         relative=leak,
                     )
                 )
+        if self.histories is not None and self.histories.error > _ROUGH:
+            found.append(
+                warning(
+                    "microphone_interpolation",
+                    f"sound pressure over time is doubtful: the transfer to the microphones is interpolated over "
+                    f"frequency with an error of {100.0 * self.histories.error:.2g} %",
+                    relative=self.histories.error,
+                )
+            )
         return found
 
 
@@ -412,6 +427,28 @@ def solve_sound(
         if max(line.sound.power, line.sound.surface_power) > _COUNTS * all_power:
             line.sound.require_balance()
     return SolvedSound(radiation, modes, lines, housing.modes.frequencies_hz, bearings, covered, positions, area, limit)
+
+
+def with_histories(solved: SolvedSound, transient: SolvedTransient, progress: Progress = silent) -> SolvedSound:
+    """Add the sound pressure over time at the microphones, of the record of a transient at once.
+
+    Parameters
+    ----------
+    solved : SolvedSound
+        Without microphones it is returned as it is.
+    transient : SolvedTransient
+        Of a long record the last stretch is taken.
+    """
+    places = np.array(list(solved.microphones.values()))
+    if not len(places):
+        return solved
+    transfer = solve_transfer(solved.radiation, places, _AUDIBLE, solved.limit_hz, progress)
+    histories = transient.histories
+    repeats = transient.turning is None and transient.record.sampling.window == "uniform"
+    heard = microphone_histories(
+        transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
+    )
+    return replace(solved, histories=heard)
 
 
 def _solved(solve: Callable[[int], Any], numbers: Sequence[int], what: str, progress: Progress) -> tuple[Any, ...]:
