@@ -45,7 +45,10 @@ _TWO_PI = 2.0 * np.pi
 _WORKERS = 2
 _FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
 _COUNTS = 1e-4  # part of the whole power above which a line has to prove its own
-_AUDIBLE = 20.0  # [Hz]
+
+AUDIBLE = 20.0
+"""Lowest frequency of a sound [Hz]."""
+
 _HOLES = 1.1  # of the widest seat, that are closed by default
 _ROUGH = 0.06  # relative error of an interpolation, half a decibel
 _LEAK = 0.1  # pressure inside, relative to that on the surface, above which a solution is doubtful
@@ -389,22 +392,22 @@ def solve_sound(
         return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares)
 
     numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit] if of_modes else []
-    modes = _solved(of_mode, numbers, "sound of the housing's modes", progress)
+    modes = solved_in_order(of_mode, numbers, "sound of the housing's modes", progress)
 
     chosen: list[tuple[float, ComplexArray, float]] = []
     bearings: tuple[str, ...] = ()
     covered, total = 0.0, 0.0
     for motion in motions:
         assert machine is not None
-        kept = (motion.frequencies >= _AUDIBLE) & (motion.frequencies <= limit * (1.0 + 1e-9))
+        kept = (motion.frequencies >= AUDIBLE) & (motion.frequencies <= limit * (1.0 + 1e-9))
         frequencies = motion.frequencies[kept]
         forces = {name: force[kept] for name, force in motion.forces.items()}
         paths = housing_paths(machine, _TWO_PI * frequencies, forces)
         bearings = paths.bearings
         rates = paths.acceleration / (1j * _TWO_PI * frequencies[:, None, None])
-        # No motion of a body radiates better than a pulsating sphere of its area, whose efficiency is this.
-        squared = (_TWO_PI * frequencies / radiation.medium.speed_of_sound) ** 2 * radiation.area / (4.0 * np.pi)
-        estimate = radiation.equivalent_power(rates.sum(axis=1).T) * squared / (1.0 + squared)
+        estimate = radiation.equivalent_power(rates.sum(axis=1).T) * pulsating_efficiency(
+            frequencies, radiation.area, radiation.medium.speed_of_sound
+        )
         total += float(estimate.sum())
         chosen += [(float(estimate[i]), rates[i].T, float(frequencies[i])) for i in range(len(frequencies))]
     chosen.sort(key=lambda one: -one[0])
@@ -421,7 +424,7 @@ def solve_sound(
         heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
         return SoundLine(hertz, names[place].name, names[place].order, sound, heard)
 
-    lines = _solved(of_line, range(len(chosen)), "sound of the lines", progress)
+    lines = solved_in_order(of_line, range(len(chosen)), "sound of the lines", progress)
     all_power = sum(line.sound.power for line in lines)
     for line in lines:
         if max(line.sound.power, line.sound.surface_power) > _COUNTS * all_power:
@@ -442,7 +445,7 @@ def with_histories(solved: SolvedSound, transient: SolvedTransient, progress: Pr
     places = np.array(list(solved.microphones.values()))
     if not len(places):
         return solved
-    transfer = solve_transfer(solved.radiation, places, _AUDIBLE, solved.limit_hz, progress)
+    transfer = solve_transfer(solved.radiation, places, AUDIBLE, solved.limit_hz, progress)
     histories = transient.histories
     repeats = transient.turning is None and transient.record.sampling.window == "uniform"
     heard = microphone_histories(
@@ -451,7 +454,18 @@ def with_histories(solved: SolvedSound, transient: SolvedTransient, progress: Pr
     return replace(solved, histories=heard)
 
 
-def _solved(solve: Callable[[int], Any], numbers: Sequence[int], what: str, progress: Progress) -> tuple[Any, ...]:
+def pulsating_efficiency(frequencies: FloatArray, area: float, speed_of_sound: float) -> FloatArray:
+    """Radiation efficiency (k a)² / (1 + (k a)²) of a pulsating sphere of an area [m²], an estimate for any body.
+
+    F. Fahy and P. Gardonio, Sound and Structural Vibration, 2nd ed., Academic Press, 2007, section 3.2.
+    """
+    squared = (_TWO_PI * frequencies / speed_of_sound) ** 2 * area / (4.0 * np.pi)
+    return np.asarray(squared / (1.0 + squared))
+
+
+def solved_in_order(
+    solve: Callable[[int], Any], numbers: Sequence[int], what: str, progress: Progress
+) -> tuple[Any, ...]:
     """Solve one after the other on two threads, in their order, under the progress."""
     found = []
     with ThreadPoolExecutor(_WORKERS) as pool:
