@@ -320,7 +320,7 @@ def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, sparse.c
 
 def _places(surface: RadiatingSurface) -> FloatArray:
     """Places of the six points of each triangle [m], shape (6 n_triangles, 3)."""
-    return np.einsum("pc,eci->epi", _SHARES, surface.corners).reshape(-1, 3)
+    return np.asarray(np.einsum("pc,eci->epi", _SHARES, surface.corners).reshape(-1, 3))
 
 
 def _triangle_skin(surface: RadiatingSurface) -> Skin:

@@ -12,7 +12,8 @@ MICCAI 1998, Lecture Notes in Computer Science 1496, 888-898 (the mesh); T. Ju, 
 "Dual contouring of Hermite data", ACM Transactions on Graphics 21 (2002), 339-346 (the squared distances from planes).
 """
 
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from itertools import product
 
 import numpy as np
@@ -21,7 +22,7 @@ from scipy import ndimage, sparse
 from scipy.spatial import cKDTree
 
 from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.skin import Skin, skin_of
+from housing.acoustics.skin import skin_of
 from housing.errors import HousingError
 from meshes import Mesh
 
@@ -41,6 +42,9 @@ _AGREE = 0.3  # least cosine between a face and the skin that it is moved to
 _LEAST = 0.2  # square cells added to each face's area where faces are weighted
 _RANK = 0.05  # part of the largest eigenvalue below which the planes of a vertex leave a direction free
 
+_FIRST_REACH, _REACH = 1.5, 0.8  # cells from the skin within which faces are moved onto it: at first, and later
+_FOLD = -0.8  # cosine between neighbours below which the surface is folded
+_UNFOLDINGS = 20
 _MENDINGS = 3  # rounds of mending badly shaped triangles
 _POOR = 0.55  # shape below which a triangle is mended: 1 of an equilateral one
 _SHORT = 0.6  # cells below which an edge may collapse
@@ -91,12 +95,16 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     hit[tuple(np.floor((skin.samples(0.6 * fine)[0] - origin) / fine).astype(np.int64).T)] = True
     solid = _filled(_closed(hit), 0.5 * close_holes / fine + 1.0)
     blocks = solid.reshape(shape[0] // _FINE, _FINE, shape[1] // _FINE, _FINE, shape[2] // _FINE, _FINE)
-    coarse = _manifold(~_outside(blocks.mean(axis=(1, 3, 5)) < _FILLED))
+    coarse = _manifold(_large_bodies(~_outside(blocks.mean(axis=(1, 3, 5)) < _FILLED)))
     _require_tight(coarse, origin, cell, close_holes)
-    points, faces = _surface_net(coarse)
-    points = origin + cell * points
-    points, faces = _on_skin(points, faces, skin, ~solid, origin, fine, cell)
-    surface = RadiatingSurface(points, faces)
+    points, quads = _surface_net(coarse)
+    places, owners = skin.samples(cell / 3.0)
+    # Outer are the samples before which there is air.
+    ahead = np.floor((places + 1.5 * fine * skin.normals[owners] - origin) / fine).astype(np.int64)
+    outer = ~solid[tuple(ahead.T)]
+    surface = RadiatingSurface(
+        *_on_skin(origin + cell * points, quads, _OuterSkin(places[outer], skin.normals[owners[outer]], cell))
+    )
     surface.require_closed()
     return surface
 
@@ -105,6 +113,14 @@ def _outside(free: BoolArray) -> BoolArray:
     """Free cells that are connected through faces with the corner of the grid."""
     labels, _ = ndimage.label(free)
     return np.asarray(labels == labels[0, 0, 0])
+
+
+def _large_bodies(solid: BoolArray) -> BoolArray:
+    """Leave out bodies of less than a hundredth of the largest: bits of parts that are thinner than the cells."""
+    labels, _ = ndimage.label(solid)
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return np.asarray((sizes >= 0.01 * sizes.max())[labels] & (labels > 0))
 
 
 def _closed(cells: BoolArray) -> BoolArray:
@@ -225,7 +241,7 @@ def _manifold(solid: BoolArray) -> BoolArray:
         patterns = _patterns(solid)
         wrong = np.argwhere(repairs[patterns] != patterns)
         if len(wrong) == 0:
-            return ~_outside(~solid) if (~solid & ~_outside(~solid)).any() else solid
+            return ~_outside(~solid)
         wanted = repairs[patterns[tuple(wrong.T)]]
         for bit, offset in enumerate(_BLOCK):
             solid[tuple((wrong[(wanted >> bit & 1) == 1] + offset).T)] = True
@@ -257,51 +273,49 @@ def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
     return np.argwhere(mixed) + 1.0, np.concatenate(faces)
 
 
-def _on_skin(
-    points: FloatArray,
-    quads: IntArray,
-    skin: Skin,
-    free: BoolArray,
-    origin: FloatArray,
-    fine: float,
-    cell: float,
-) -> tuple[FloatArray, IntArray]:
+@dataclass(frozen=True)
+class _OuterSkin:
+    """Samples of the skin that the air touches: places [m] and outward normals, shape (n, 3), and the cell [m]."""
+
+    places: FloatArray
+    normals: FloatArray
+    cell: float
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(np.hstack([self.places, _TURN * self.cell * self.normals]))
+
+    def nearest(self, places: FloatArray, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the place and normal of the sample that is nearest to each place in place and direction."""
+        _, found = self._tree.query(np.hstack([places, _TURN * self.cell * normals]))
+        return self.places[found], self.normals[found]
+
+
+def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[FloatArray, IntArray]:
     """Move the vertices of a net onto the skin and split its quadrilaterals."""
-    places, owners = skin.samples(cell / 3.0)
-    normals = skin.normals[owners]
-    # Outer are the samples before which there is air.
-    ahead = np.floor((places + 1.5 * fine * normals - origin) / fine).astype(np.int64)
-    outer = free[tuple(ahead.T)]
-    places, normals = places[outer], normals[outer]
-    tree = cKDTree(np.hstack([places, _TURN * cell * normals]))
     for number in range(_ROUNDS):
-        points = _moved(points, quads, tree, places, normals, cell, (1.5 if number < 5 else 0.8) * cell)
+        points = _moved(points, quads, skin, (_FIRST_REACH if number < _ROUNDS // 3 else _REACH) * skin.cell)
     triangles = _split(points, quads)
     for _ in range(_MENDINGS):
-        points, triangles = _mended(points, triangles, cell)
+        points, triangles = _mended(points, triangles, skin.cell)
         for _ in range(3):
-            points = _moved(points, triangles, tree, places, normals, cell, 0.8 * cell)
-    return _mended(points, triangles, cell)
+            points = _moved(points, triangles, skin, _REACH * skin.cell)
+    return _mended(_unfolded(points, triangles), triangles, skin.cell)
 
 
-def _moved(
-    points: FloatArray,
-    faces: IntArray,
-    tree: cKDTree,
-    places: FloatArray,
-    normals: FloatArray,
-    cell: float,
-    reach: float,
-) -> FloatArray:
-    """Move each vertex onto the planes of its faces, and along them to the centroid of its faces."""
+def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) -> FloatArray:
+    """Move each vertex onto the planes of its faces, and along them to the centroid of its faces.
+
+    Faces farther from the skin than the reach [m] have no plane, as those over holes.
+    """
+    cell = skin.cell
     corners = points[faces]
     center = corners.mean(axis=1)
     last = corners[:, 3] - corners[:, 1] if faces.shape[1] == 4 else corners[:, 2] - corners[:, 1]
     normal = np.cross(corners[:, 2] - corners[:, 0], last)
     area = np.linalg.norm(normal, axis=1)
     normal /= np.maximum(area, 1e-300)[:, None]
-    _, found = tree.query(np.hstack([center, _TURN * cell * normal]))
-    plane, direction = places[found], normals[found]
+    plane, direction = skin.nearest(center, normal)
     agree = (np.linalg.norm(plane - center, axis=1) < reach) & ((direction * normal).sum(axis=1) > _AGREE)
     share = area + _LEAST * cell**2  # a narrow face keeps its say, so that the rims of thin plates do not shrink
     weight = np.where(agree, share / cell**2, 0.0)
@@ -322,12 +336,32 @@ def _moved(
     return np.asarray(points + step * np.minimum(1.0, cell / np.maximum(length, 1e-300)))
 
 
+def _unfolded(points: FloatArray, triangles: IntArray) -> FloatArray:
+    """Smooth the vertices of triangles that lie folded upon each other, off the skin."""
+    ends = np.concatenate([triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    order = np.lexsort(np.sort(ends, axis=1).T)
+    pairs = (order % len(triangles)).reshape(-1, 2)  # each edge of a closed surface has two triangles
+    for _ in range(_UNFOLDINGS):
+        _, normals = _shapes(points[triangles])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        folded = pairs[np.einsum("ei,ei->e", *normals[pairs.T]) < _FOLD]
+        if len(folded) == 0:
+            break
+        moved = np.unique(triangles[folded])
+        around = np.isin(ends[:, 0], moved)
+        sums = np.zeros_like(points)
+        np.add.at(sums, ends[around, 0], points[ends[around, 1]])
+        points = points.copy()
+        points[moved] += 0.5 * (sums[moved] / np.bincount(ends[around, 0])[moved, None] - points[moved])
+    return points
+
+
 def _split(points: FloatArray, quads: IntArray) -> IntArray:
     """Split quadrilaterals along the diagonal that leaves the larger least angle."""
     first = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 2, 3)
     second = quads[:, [0, 1, 3, 1, 2, 3]].reshape(-1, 2, 3)
     better = least_angles(points[first]).min(axis=1) >= least_angles(points[second]).min(axis=1)
-    return np.where(better[:, None, None], first, second).reshape(-1, 3)
+    return np.asarray(np.where(better[:, None, None], first, second).reshape(-1, 3))
 
 
 def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[FloatArray, IntArray]:
