@@ -9,7 +9,7 @@ from gearwhine.analyses.result import Result
 from gearwhine.case import Case, dump_case, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.from_case.machine import basis_error, point_of_pairs, require_machine, solve_machine, solve_pairs
-from gearwhine.mode_pictures import draw_load_pictures
+from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
@@ -383,15 +383,21 @@ def sound(
         progress("drawing the sound")
         yield from draw_sound(case, solved)
 
-    return Result(
+    def files(place: Path, *, pictures: bool) -> None:
+        if pictures:
+            add_warnings(result.document, draw_sound_pictures(solved, place, progress))
+
+    result = Result(
         "sound",
         case,
         solved,
         joined(document, origin_document(housing)),
         _arrays=lambda: labelled(case, (HOUSING, housing), (SOUND, solved)),
         _figures=figures,
+        _files=files,
         _housing=housing,
     )
+    return result
 
 
 def sweep(

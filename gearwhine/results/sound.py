@@ -19,6 +19,7 @@ _METHODS = {
 }
 _TOLD = 3  # parts of a line that are named
 _SHOWN = 12  # lines on the terminal
+_ON_BOX = 9  # microphones of the box, the last ones
 _FAINT = 0.02  # part of a power that is worth its place
 
 SURFACE = (
@@ -39,7 +40,7 @@ MODE = (
         (),
         "Hz",
         "natural frequency",
-        heading="frequency [Hz]",
+        heading="natural frequency [Hz]",
         shown=".1f",
     ),
     Quantity(
@@ -91,13 +92,13 @@ def _lines(name: str, of: Any, unit: str, what: str) -> Quantity:
 
 
 ENTRY = (
-    Quantity("frequency_hz", lambda row: row[1].frequency_hz, heading="line [Hz]", shown=".1f"),
+    Quantity("frequency_hz", lambda row: row[1].frequency_hz),
     Quantity("order", lambda row: row[1].order),
-    Quantity("name", lambda row: row[1].name, heading="what it is"),
-    Quantity("sound_power_db", lambda row: row[1].level_db, heading="L_W [dB]", shown=".1f"),
-    Quantity("sound_power_db_a", lambda row: row[1].level_db_a, heading="[dB(A)]", shown=".1f"),
-    Quantity("equivalent_power_db", lambda row: row[1].equivalent_db, heading="ERP [dB]", shown=".1f"),
-    Quantity("radiation_efficiency", lambda row: row[1].sound.radiation_efficiency, heading="efficiency", shown=".2f"),
+    Quantity("name", lambda row: row[1].name),
+    Quantity("sound_power_db", lambda row: row[1].level_db),
+    Quantity("sound_power_db_a", lambda row: row[1].level_db_a),
+    Quantity("equivalent_power_db", lambda row: row[1].equivalent_db),
+    Quantity("radiation_efficiency", lambda row: row[1].sound.radiation_efficiency),
     Quantity("surface_power_db", lambda row: float(power_level(row[1].sound.surface_power))),
     Quantity("contributions", _contributions),
     Quantity(
@@ -109,18 +110,52 @@ ENTRY = (
 )
 """Of the solved sound and one of its lines."""
 
+
+def _picture_of(row: Document) -> tuple[str, ...]:
+    """Return the place in the report that shows where the housing radiates at a line."""
+    return (f"picture sound-faces-{row['frequency_hz']:.1f}Hz",)
+
+
+def _largest(heading: str, group: str, *, share: bool = True) -> Column:
+    """Return the column that names the largest part of a line's power, with its share."""
+
+    def text(row: Document) -> str:
+        parts = row["contributions"][group]
+        if not parts:
+            return ""
+        name = str(parts[0]["name"]).removeprefix("housing mode ").replace("local compliance", "local")
+        return f"{name}, {100.0 * parts[0]['share']:.0f} %" if share else name
+
+    return Column(heading, text)
+
+
+_LINE = Column("line [Hz]", "frequency_hz", ".1f", link=_picture_of)
+_ORDER = Column("order", "order", ".4g")
+_LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB]", "sound_power_db_a", ".1f"))
+_NAME = Column("what it is", lambda row: str(row["name"]).replace(" -> ", " → "))
+_MODE, _FACE = _largest("by mode", "housing_modes"), _largest("by face", "faces")
+
+LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _largest("by bearing", "bearings", share=False), _FACE)
+"""Of a line, on the terminal and the first page."""
+
 LINE_COLUMNS = (
-    *columns_of(ENTRY),
-    Column("mode", lambda row: _named(row["contributions"]["housing_modes"]).removeprefix("housing mode ")),
-    Column("bearing", lambda row: _named(row["contributions"]["bearings"])),
-    Column("face", lambda row: _named(row["contributions"]["faces"])),
+    _LINE,
+    _ORDER,
+    _NAME,
+    *_LEVELS,
+    Column("ERP [dB]", "equivalent_power_db", ".1f"),
+    Column("efficiency", "radiation_efficiency", ".2g"),
+    _MODE,
+    _largest("by bearing", "bearings"),
+    _FACE,
 )
+"""Of a line, in the report."""
 
 MICROPHONE = (
     Quantity("name", lambda row: row[0], heading="microphone"),
     Quantity("position_m", lambda row: row[1]),
     Quantity("level_db", lambda row: row[2], heading="sound pressure [dB re 20 µPa]", shown=".1f"),
-    Quantity("level_db_a", lambda row: row[3], heading="[dB(A)]", shown=".1f"),
+    Quantity("level_db_a", lambda row: row[3], heading="A-weighted [dB]", shown=".1f"),
 )
 """Of a microphone: name, position, level of all lines and the same A-weighted."""
 
@@ -209,14 +244,25 @@ def sound_document(solved: "SolvedSound") -> dict[str, Any]:
     return document_of(SOUND, solved)
 
 
-def _named(parts: list[dict[str, Any]]) -> str:
-    return f"{parts[0]['name']} {percent(parts[0]['share'])}" if parts else ""
-
-
 def _parts(faces: Document) -> str:
     """Return parts of a power in words, the largest first."""
     ordered = sorted(faces.items(), key=lambda one: -one[1])[:_TOLD]
     return ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in ordered)
+
+
+def loudest_lines(document: Document) -> list[Document]:
+    """Return the lines of a document, the loudest first."""
+    return sorted(document["lines"], key=lambda line: -float(line["sound_power_db"]))
+
+
+def total_sentence(document: Document) -> str:
+    """Return the sound power level of all lines in words; empty without lines."""
+    if document["total_db"] is None:
+        return ""
+    return (
+        f"Sound power level L_W of {counted(len(document['lines']), 'line')} together: {document['total_db']:.1f} dB "
+        f"re 1 pW, A-weighted L_WA {document['total_db_a']:.1f} dB"
+    )
 
 
 def _content(document: Document) -> Iterator[str | Table]:
@@ -225,45 +271,67 @@ def _content(document: Document) -> Iterator[str | Table]:
         f"Sound by {_METHODS[document['method']]}: {surface['triangles']} triangles, {surface['area_m2']:.3g} m², "
         f"of which {surface['caps_m2']:.2g} m² close holes; up to {document['highest_frequency_hz']:.0f} Hz"
     )
-    if document["total_db"] is not None:
-        yield (
-            f"Sound power level of {counted(len(document['lines']), 'line')}: {document['total_db']:.1f} dB re 1 pW, "
-            f"{document['total_db_a']:.1f} dB(A); by an estimate {percent(document['covered'])} of the whole"
-        )
-        total = sum(document["faces_w"].values())
-        if total > 0.0:
-            yield f"Radiating faces: {_parts({face: part / total for face, part in document['faces_w'].items()})}"
+    if total := total_sentence(document):
+        yield f"{total}; by an estimate {percent(document['covered'])} of the whole"
+        power = sum(document["faces_w"].values())
+        if power > 0.0:
+            yield f"Radiating faces: {_parts({face: part / power for face, part in document['faces_w'].items()})}"
     if document["box_power_db"] is not None:
-        yield f"By the mean pressure on the box of microphones (ISO 3744): {document['box_power_db']:.1f} dB re 1 pW"
+        levels = [one["level_db"] for one in document["microphones"][-_ON_BOX:]]
+        yield (
+            f"By the mean pressure on the box of microphones (ISO 3744): L_W {document['box_power_db']:.1f} dB; "
+            f"pressure {min(levels):.1f} to {max(levels):.1f} dB re 20 µPa"
+        )
 
 
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the levels, the lines, the microphones and the modes for the terminal."""
-    loudest = sorted(document["lines"], key=lambda line: -float(line["sound_power_db"]))[:_SHOWN]
+    microphones = document["microphones"]
+    if document["box_power_db"] is not None:
+        microphones = microphones[:-_ON_BOX]
     tables = (
-        *table_of(LINE_COLUMNS, loudest),
-        *table_of(columns_of(MICROPHONE), document["microphones"]),
-        *table_of(MODE_COLUMNS, document["modes"]),
+        *table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_SHOWN], "Loudest lines, and the largest part of each"),
+        *table_of(columns_of(MICROPHONE), microphones, "All lines at the microphones"),
+        *table_of(MODE_COLUMNS, document["modes"], "Modes; a radiation efficiency of 1 is that of a plane wave"),
     )
     return (Section("", (*_content(document), *tables)),)
 
 
 def report(document: Document) -> Section:
     """Chapter of the report."""
-    loudest = sorted(document["lines"], key=lambda line: -float(line["sound_power_db"]))
     tables = (
-        *table_of(LINE_COLUMNS, loudest, "Lines, the loudest first"),
-        *table_of(columns_of(MICROPHONE), document["microphones"], "Microphones, all lines"),
+        *table_of(LINE_COLUMNS, loudest_lines(document), "Lines, the loudest first, and the largest part of each"),
+        *table_of(columns_of(MICROPHONE), document["microphones"], "All lines at the microphones"),
         *table_of(MODE_COLUMNS, document["modes"], "Radiation of the housing's modes"),
     )
-    return Section("Sound", (*_content(document), *tables), pictures=_PICTURES)
+    notes = (_READ,) if document["lines"] else ()
+    return Section("Sound", (*_content(document), *notes, *tables), pictures=_PICTURES)
 
+
+_READ = (
+    "L_W is the sound power level re 1 pW, L_WA the same A-weighted. The equivalent radiated power (ERP) is an "
+    "estimate that takes a radiation efficiency of 1. The order is the frequency over that of the first driver's "
+    "rotation. Parts are signed: others that work against the largest one make it exceed 100 %. Mode local is the "
+    "compliance around the bearings beyond the housing's modes."
+)
 
 _PICTURES = (
-    Picture("sound-power", "Sound power of the lines over frequency, and of third octaves; the loudest have names."),
-    Picture("sound-faces", "Mean sound intensity out of the housing at the loudest line: red places radiate."),
-    Picture("sound-directivity", "Sound pressure level in the horizontal plane at the loudest lines."),
     Picture(
-        "sound-efficiency", "Radiation efficiency of each housing mode at its natural frequency; 1: as a plane wave."
+        "sound-power",
+        "Sound power level of each line, the loudest with names, and of third octaves; marks where ERP differs "
+        "from the line: the housing radiates less or more than a plane wave of its velocity.",
+    ),
+    Picture("sound-faces-all", "Mean sound intensity out of the housing over all lines: red radiates, blue absorbs."),
+    Picture("sound-faces", "The same at one of the loudest lines.", small=True),
+    Picture(
+        "sound-directivity",
+        "Sound pressure level of the far field over direction at the loudest lines, in three planes through the "
+        "middle.",
+    ),
+    Picture(
+        "sound-efficiency",
+        "Radiation efficiency of each housing mode at its natural frequency; 1 is that of a plane wave. Modes far "
+        "below 1 may move much and are hardly heard.",
     ),
 )
+"""Figures of the sound: power of lines and third octaves, radiating faces, directivity, efficiency of the modes."""
