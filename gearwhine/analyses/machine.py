@@ -444,8 +444,14 @@ def sweep(
     points = sweep_points(*source, keys)
     count = workers or default_workers()
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    told = []
+    if case.acoustics is not None and case.housing is not None:
+        from gearwhine.sweep.sound import add_sound
+
+        told = add_sound(case, keys, swept, solve_housing(case, progress, folder=folder), progress)
     dataset = collected_sweep(case, keys, swept)
     document = {"title": case.title} | sweep_document(keys, swept)
+    add_warnings(document, told)
     document["workers"] = count if scheduler is None else None
     document["seconds"] = {"total": time.perf_counter() - start}
 

@@ -66,7 +66,7 @@ class Acoustics(Table):
     microphone_box: PositiveLength | None = None
     """Distance of nine microphones on a box around the housing (ISO 3744), which stands on its lowest point."""
     lines: Annotated[int, Whole(1, 400)] = 40
-    """Number of spectral lines that are solved at most: those with most equivalent radiated power."""
+    """Number of spectral lines that are solved at most: those with most power by an estimate."""
 
     @model_validator(mode="after")
     def _complete(self) -> Acoustics:

@@ -6,7 +6,7 @@ motion by each bearing, exactly, and :class:`housing.acoustics.radiation.Housing
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,8 +20,10 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.microphones import MicrophoneHistories, microphone_histories, solve_transfer
 from gearwhine.solve.signature import SolvedSignature
 from gearwhine.solve.steady_state import SolvedSteady
+from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
 from housing.acoustics.medium import HardPlane, Medium
 from housing.acoustics.radiation import HousingRadiation, RadiatedSound
@@ -41,10 +43,14 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
 _WORKERS = 2
-_FAINT = 1e-5  # part of the largest line's equivalent power below which a line is left out
+_FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
 _COUNTS = 1e-4  # part of the whole power above which a line has to prove its own
-_AUDIBLE = 20.0  # [Hz]
+
+AUDIBLE = 20.0
+"""Lowest frequency of a sound [Hz]."""
+
 _HOLES = 1.1  # of the widest seat, that are closed by default
+_ROUGH = 0.06  # relative error of an interpolation, half a decibel
 _LEAK = 0.1  # pressure inside, relative to that on the surface, above which a solution is doubtful
 
 
@@ -123,13 +129,15 @@ class SolvedSound:
     bearings : tuple of str
         That the motions of each line's sound stand for.
     covered : float
-        Part of the motion's equivalent radiated power that these lines hold.
+        Part of all lines' power that these lines hold, by the equivalent power times a pulsating sphere's efficiency.
     microphones : dict of str to ndarray, shape (3,)
         Positions [m].
     box_area : float or None
         Of the measurement surface of ISO 3744 that the last nine microphones stand on [m²].
     limit_hz : float
         Highest frequency of the sound.
+    histories : MicrophoneHistories or None
+        Sound pressure over time at the microphones.
     """
 
     radiation: HousingRadiation
@@ -141,6 +149,7 @@ class SolvedSound:
     microphones: dict[str, FloatArray]
     box_area: float | None
     limit_hz: float
+    histories: MicrophoneHistories | None = None
 
     @property
     def total_db(self) -> float:
@@ -203,6 +212,15 @@ class SolvedSound:
                         relative=leak,
                     )
                 )
+        if self.histories is not None and self.histories.error > _ROUGH:
+            found.append(
+                warning(
+                    "microphone_interpolation",
+                    f"sound pressure over time is doubtful: the transfer to the microphones is interpolated over "
+                    f"frequency with an error of {100.0 * self.histories.error:.2g} %",
+                    relative=self.histories.error,
+                )
+            )
         return found
 
 
@@ -374,20 +392,22 @@ def solve_sound(
         return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares)
 
     numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit] if of_modes else []
-    modes = _solved(of_mode, numbers, "sound of the housing's modes", progress)
+    modes = solved_in_order(of_mode, numbers, "sound of the housing's modes", progress)
 
     chosen: list[tuple[float, ComplexArray, float]] = []
     bearings: tuple[str, ...] = ()
     covered, total = 0.0, 0.0
     for motion in motions:
         assert machine is not None
-        kept = (motion.frequencies >= _AUDIBLE) & (motion.frequencies <= limit * (1.0 + 1e-9))
+        kept = (motion.frequencies >= AUDIBLE) & (motion.frequencies <= limit * (1.0 + 1e-9))
         frequencies = motion.frequencies[kept]
         forces = {name: force[kept] for name, force in motion.forces.items()}
         paths = housing_paths(machine, _TWO_PI * frequencies, forces)
         bearings = paths.bearings
         rates = paths.acceleration / (1j * _TWO_PI * frequencies[:, None, None])
-        estimate = radiation.equivalent_power(rates.sum(axis=1).T)
+        estimate = radiation.equivalent_power(rates.sum(axis=1).T) * pulsating_efficiency(
+            frequencies, radiation.area, radiation.medium.speed_of_sound
+        )
         total += float(estimate.sum())
         chosen += [(float(estimate[i]), rates[i].T, float(frequencies[i])) for i in range(len(frequencies))]
     chosen.sort(key=lambda one: -one[0])
@@ -404,7 +424,7 @@ def solve_sound(
         heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
         return SoundLine(hertz, names[place].name, names[place].order, sound, heard)
 
-    lines = _solved(of_line, range(len(chosen)), "sound of the lines", progress)
+    lines = solved_in_order(of_line, range(len(chosen)), "sound of the lines", progress)
     all_power = sum(line.sound.power for line in lines)
     for line in lines:
         if max(line.sound.power, line.sound.surface_power) > _COUNTS * all_power:
@@ -412,7 +432,40 @@ def solve_sound(
     return SolvedSound(radiation, modes, lines, housing.modes.frequencies_hz, bearings, covered, positions, area, limit)
 
 
-def _solved(solve: Callable[[int], Any], numbers: Sequence[int], what: str, progress: Progress) -> tuple[Any, ...]:
+def with_histories(solved: SolvedSound, transient: SolvedTransient, progress: Progress = silent) -> SolvedSound:
+    """Add the sound pressure over time at the microphones, of the record of a transient at once.
+
+    Parameters
+    ----------
+    solved : SolvedSound
+        Without microphones it is returned as it is.
+    transient : SolvedTransient
+        Of a long record the last stretch is taken.
+    """
+    places = np.array(list(solved.microphones.values()))
+    if not len(places):
+        return solved
+    transfer = solve_transfer(solved.radiation, places, AUDIBLE, solved.limit_hz, progress)
+    histories = transient.histories
+    repeats = transient.turning is None and transient.record.sampling.window == "uniform"
+    heard = microphone_histories(
+        transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
+    )
+    return replace(solved, histories=heard)
+
+
+def pulsating_efficiency(frequencies: FloatArray, area: float, speed_of_sound: float) -> FloatArray:
+    """Radiation efficiency (k a)² / (1 + (k a)²) of a pulsating sphere of an area [m²], an estimate for any body.
+
+    F. Fahy and P. Gardonio, Sound and Structural Vibration, 2nd ed., Academic Press, 2007, section 3.2.
+    """
+    squared = (_TWO_PI * frequencies / speed_of_sound) ** 2 * area / (4.0 * np.pi)
+    return np.asarray(squared / (1.0 + squared))
+
+
+def solved_in_order(
+    solve: Callable[[int], Any], numbers: Sequence[int], what: str, progress: Progress
+) -> tuple[Any, ...]:
     """Solve one after the other on two threads, in their order, under the progress."""
     found = []
     with ThreadPoolExecutor(_WORKERS) as pool:

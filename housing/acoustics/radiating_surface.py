@@ -64,7 +64,7 @@ class RadiatingSurface:
     @cached_property
     def normals(self) -> FloatArray:
         """Outward unit normal of each triangle, shape (n_triangles, 3)."""
-        return self._cross / np.linalg.norm(self._cross, axis=1, keepdims=True)
+        return np.asarray(self._cross / np.linalg.norm(self._cross, axis=1, keepdims=True))
 
     @cached_property
     def lengths(self) -> FloatArray:
@@ -87,7 +87,7 @@ class RadiatingSurface:
         ends = np.concatenate([self.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
         edges, owner = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
         sense = np.bincount(owner.ravel(), np.where(ends[:, 0] < ends[:, 1], 1.0, -1.0), len(edges))
-        return edges[sense != 0.0]
+        return np.asarray(edges[sense != 0.0])
 
     def require_closed(self) -> None:
         """Refuse a surface that is open or turned inside out.

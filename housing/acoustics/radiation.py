@@ -314,6 +314,11 @@ class HousingRadiation:
         return self.elements[0].medium
 
     @property
+    def area(self) -> float:
+        """Radiating area [m²]."""
+        return float(sum(one.surface.area for one in self.elements))
+
+    @property
     def highest_frequency(self) -> float:
         """Highest frequency that six elements a wavelength resolve [Hz]; infinity for the estimate."""
         if self.method == "erp":

@@ -86,7 +86,7 @@ class Skin:
             owners.append(np.repeat(chosen, len(shares)))
         return np.concatenate(points), np.concatenate(owners)
 
-    def nearest(self, places: FloatArray, normals: FloatArray, spacing: float) -> "NearestSkin":
+    def nearest(self, places: FloatArray, normals: FloatArray, spacing: float, turned: float) -> "NearestSkin":
         """Find the nearest points of the skin that look the way of the places.
 
         Parameters
@@ -94,19 +94,20 @@ class Skin:
         places, normals : ndarray, shape (m, 3)
             Places [m] and their unit normals.
         spacing : float
-            Of the samples among which candidates are sought [m]: a skin that looks at a right angle to the place is
-            taken when it is nearer by about six of them.
+            Of the samples among which candidates are sought [m].
+        turned : float
+            Distance that counts as much as a unit difference of the normals [m]: the sum of squares of distance and
+            difference is least.
         """
         points, owners = self.samples(spacing)
-        weight = 4.0 * spacing
-        tree = cKDTree(np.hstack([points, weight * self.normals[owners]]))
-        _, found = tree.query(np.hstack([places, weight * normals]), k=min(_NEAREST, len(points)))
+        tree = cKDTree(np.hstack([points, turned * self.normals[owners]]))
+        _, found = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
         candidates = owners[np.reshape(found, (len(places), -1))]
         shares = closest_on_triangles(self.corners[candidates], places[:, None])
         feet = np.einsum("mkc,mkci->mki", shares, self.corners[candidates])
         gaps = np.linalg.norm(feet - places[:, None], axis=2)
-        turned = np.linalg.norm(self.normals[candidates] - normals[:, None], axis=2)
-        best = np.argmin(gaps**2 + (weight * turned) ** 2, axis=1)
+        difference = np.linalg.norm(self.normals[candidates] - normals[:, None], axis=2)
+        best = np.argmin(gaps**2 + (turned * difference) ** 2, axis=1)
         rows = np.arange(len(places))
         return NearestSkin(candidates[rows, best], shares[rows, best], feet[rows, best], gaps[rows, best])
 

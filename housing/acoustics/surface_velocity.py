@@ -18,7 +18,7 @@ from housing.acoustics.skin import NearestSkin, Skin, skin_of
 from housing.errors import HousingError
 from housing.fem.surface import flat_face_numbers, surface_quadrature
 from meshes import Mesh
-from meshes.elements import Facets
+from meshes.elements import Facets, facet_centers, facet_normals
 from meshes.shape_functions import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
@@ -31,6 +31,8 @@ _WEIGHTS = _RULE_WEIGHTS / _RULE_WEIGHTS.sum()
 # Corner values from values at the points: the inverse of the mass matrix area (1 + delta_ij) / 12, times the load.
 _PROJECTION = 12.0 * (np.eye(3) - 0.25) @ (_SHARES * _WEIGHTS[:, None]).T
 
+_SPACING = 0.25  # edges between the samples of a skin
+_TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
 _BESIDE = 0.1  # edges that a point of a cap lies beside the skin, across its normal
 _ON = 0.35  # edges that the skin and the wrap may lie apart where both are compared
 _SAME_WAY = 0.7  # least cosine between their normals there
@@ -62,7 +64,7 @@ class SurfaceVelocity:
         return self.skin.facet[self.nearest.triangles].reshape(-1, len(_WEIGHTS))
 
     @cached_property
-    def _edge(self) -> float:
+    def edge(self) -> float:
         """Edge of an equilateral triangle of the mean area [m]."""
         return float(np.sqrt(4.0 / np.sqrt(3.0) * self.surface.area / len(self.surface.triangles)))
 
@@ -72,7 +74,7 @@ class SurfaceVelocity:
         gap = (_places(self.surface) - self.nearest.points).reshape(-1, len(_WEIGHTS), 3)
         ahead = np.einsum("epi,ei->ep", gap, self.surface.normals)
         beside = np.sqrt(np.maximum((gap**2).sum(axis=2) - ahead**2, 0.0))
-        return np.asarray(beside > _BESIDE * self._edge)
+        return np.asarray(beside > _BESIDE * self.edge)
 
     @cached_property
     def caps(self) -> BoolArray:
@@ -93,7 +95,7 @@ class SurfaceVelocity:
         # The corners of a triangle look its way; the least distance of a vertex by any of them counts.
         corners = self.surface.triangles
         places, normals = self.surface.points[corners].reshape(-1, 3), np.repeat(self.surface.normals, 3, axis=0)
-        away = self.skin.nearest(places, normals, 0.15 * self._edge).distances
+        away = self.skin.nearest(places, normals, _SPACING * self.edge, _TURNED * self.edge).distances
         least = np.full(len(free), np.inf)
         np.minimum.at(least, corners.ravel(), away)
         found[free] = least[free]
@@ -192,9 +194,11 @@ def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
         Around it.
     """
     skin = skin_of(mesh, mesh.boundary)
-    edge = np.sqrt(4.0 / np.sqrt(3.0) * surface.area / len(surface.triangles))
+    edge = float(np.sqrt(4.0 / np.sqrt(3.0) * surface.area / len(surface.triangles)))
     normals = np.repeat(surface.normals, len(_WEIGHTS), axis=0)
-    return SurfaceVelocity(mesh, surface, skin, skin.nearest(_places(surface), normals, 0.15 * float(edge)))
+    return SurfaceVelocity(
+        mesh, surface, skin, skin.nearest(_places(surface), normals, _SPACING * edge, _TURNED * edge)
+    )
 
 
 def velocity_transfer(mesh: Mesh, surface: RadiatingSurface, without: Sequence[str | Facets] = ()) -> sparse.csr_array:
@@ -260,24 +264,23 @@ def transfer_error(velocity: SurfaceVelocity, shapes: FloatArray) -> TransferErr
     normal = (velocity.transfer() @ shapes.reshape(len(shapes), -1).T).reshape(len(surface.triangles), 3, -1)
     # int q² dA = area / 12 (sum q_i² + (sum q_i)²)
     squares = surface.areas[:, None] / 12.0 * ((normal**2).sum(axis=1) + normal.sum(axis=1) ** 2)
+    edge = velocity.edge
     wrapped = _triangle_skin(surface)
     on_skin, area = np.zeros(len(shapes)), 0.0
     for block in mesh.boundary:
+        middle, direction = facet_centers(mesh.points, (block,)), facet_normals(mesh.points, (block,))
+        near = wrapped.nearest(middle, direction, _SPACING * edge, _TURNED * edge)
+        cosine = (surface.normals[near.triangles] * direction).sum(axis=1)
+        facets = block.nodes[(near.distances < _ON * edge) & (cosine > _SAME_WAY)]
         places, weights = quadrature(block.kind, 4)
         values, gradients = shape_functions(block.kind, places)
-        nodes = mesh.points[block.nodes]
-        tangents = np.einsum("fai,qaj->fqij", nodes, gradients, optimize=True)
+        tangents = np.einsum("fai,qaj->fqij", mesh.points[facets], gradients, optimize=True)
+        # n dA without its length: (n . u)² dA is the square of (n dA . u) over dA.
         cross = np.cross(tangents[..., 0], tangents[..., 1])
         size = np.linalg.norm(cross, axis=2)
-        unit = cross / size[..., None]
-        points = np.einsum("fai,qa->fqi", nodes, values, optimize=True)
-        near = wrapped.nearest(points.reshape(-1, 3), unit.reshape(-1, 3), 0.15 * velocity._edge)
-        cosine = (surface.normals[near.triangles] * unit.reshape(-1, 3)).sum(axis=1)
-        on = (near.distances < _ON * velocity._edge) & (cosine > _SAME_WAY)
-        share = (size * weights) * on.reshape(size.shape)
-        moving = np.einsum("nfai,qa,fqi->nfq", shapes[:, block.nodes], values, unit, optimize=True)
-        on_skin += np.einsum("nfq,fq->n", moving**2, share)
-        area += float(share.sum())
+        flux = np.einsum("nfai,qa,fqi->nfq", shapes[:, facets], values, cross, optimize=True)
+        on_skin += np.einsum("nfq,fq,q->n", flux**2, 1.0 / size, weights, optimize=True)
+        area += float((size @ weights).sum())
     outside = ~velocity.caps
     return TransferError(squares[outside].sum(axis=0), on_skin, float(surface.areas[outside].sum()), area)
 
@@ -317,7 +320,7 @@ def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, sparse.c
 
 def _places(surface: RadiatingSurface) -> FloatArray:
     """Places of the six points of each triangle [m], shape (6 n_triangles, 3)."""
-    return np.einsum("pc,eci->epi", _SHARES, surface.corners).reshape(-1, 3)
+    return np.asarray(np.einsum("pc,eci->epi", _SHARES, surface.corners).reshape(-1, 3))
 
 
 def _triangle_skin(surface: RadiatingSurface) -> Skin:

@@ -12,7 +12,8 @@ MICCAI 1998, Lecture Notes in Computer Science 1496, 888-898 (the mesh); T. Ju, 
 "Dual contouring of Hermite data", ACM Transactions on Graphics 21 (2002), 339-346 (the squared distances from planes).
 """
 
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from itertools import product
 
 import numpy as np
@@ -21,7 +22,8 @@ from scipy import ndimage, sparse
 from scipy.spatial import cKDTree
 
 from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.skin import Skin, skin_of
+from housing.acoustics.skin import skin_of
+from housing.errors import HousingError
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -29,19 +31,24 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 _FINE = 3  # fine cells along a cell of the wrap
+_MOST_CELLS = 3e7  # of the fine grid: about 2 GB
 _FILLED = 0.3  # least part of a cell's fine cells that makes it solid: a plate of one layer is a third
-_GAP = 0.6  # gaps narrower than twice this many cells are closed
-_OPEN = 0.12  # largest open part of the border of a cavity: a cube without its lid has a sixth
+_OPEN = 0.2  # largest open part of the border of a cavity: a cube without its lid has a sixth
+_WIDER = 1.4  # steps of the ball that seeks a leak
+_INSIDE = 0.15  # part of the whole above which a cavity that is open is a leak
 _ROUNDS = 14  # of moving the vertices onto the skin
 _TURN = 0.7  # cells that a right angle between face and skin counts as distance, over sqrt(2)
 _AGREE = 0.3  # least cosine between a face and the skin that it is moved to
-_LEAST = 0.2  # square cells added to each face's area in the means that smooth
+_LEAST = 0.2  # square cells added to each face's area where faces are weighted
 _RANK = 0.05  # part of the largest eigenvalue below which the planes of a vertex leave a direction free
 
+_FIRST_REACH, _REACH = 1.5, 0.8  # cells from the skin within which faces are moved onto it: at first, and later
+_FOLD = -0.8  # cosine between neighbours below which the surface is folded
+_UNFOLDINGS = 20
 _MENDINGS = 3  # rounds of mending badly shaped triangles
 _POOR = 0.55  # shape below which a triangle is mended: 1 of an equilateral one
 _SHORT = 0.6  # cells below which an edge may collapse
-_FLAT = 0.1  # cells that the four points of a flipped edge may lie from a plane
+_FLAT = 0.1  # cells that mending may move the surface; shape below which a triangle has no plane
 
 
 def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
@@ -64,26 +71,40 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     Raises
     ------
     HousingError
-        Where an opening wider than `close_holes` lets the air inside, or the surface does not close.
+        Where a size is not positive or takes too many cells, where an opening wider than `close_holes` lets the air
+        inside, or where the surface does not close.
     """
+    if not (0.0 < edge < np.inf and 0.0 <= close_holes < np.inf):
+        raise HousingError(
+            f"a wrap with an edge of {1e3 * edge:.4g} mm and holes of {1e3 * close_holes:.4g} mm; expected a positive "
+            "edge, and 0 or more for close_holes"
+        )
     cell = edge / 1.05  # two edges of a triangle are a cell long, and one is a diagonal
     fine = cell / _FINE
     skin = skin_of(mesh, mesh.boundary)
     low = mesh.bounds[0] - 0.5 * (np.ceil(np.ptp(mesh.bounds, axis=0) / cell) * cell - np.ptp(mesh.bounds, axis=0))
     around = _FINE * (2 + int(np.ceil(0.5 * close_holes / cell)))
     shape = np.ceil(np.ptp(mesh.bounds, axis=0) / cell - 1e-9).astype(np.int64) * _FINE + 2 * around
+    if np.prod(shape.astype(np.float64)) > _MOST_CELLS:
+        raise HousingError(
+            f"a wrap with an edge of {1e3 * edge:.4g} mm takes {np.prod(shape.astype(np.float64)):.3g} cells; expected "
+            f"at most {_MOST_CELLS:.3g}: give a longer edge"
+        )
     origin = low - around * fine
     hit = np.zeros(shape, dtype=bool)
     hit[tuple(np.floor((skin.samples(0.6 * fine)[0] - origin) / fine).astype(np.int64).T)] = True
-    solid = _closed(hit, _GAP * _FINE)
-    solid = _filled(solid, 0.5 * close_holes / fine + 1.0)
+    solid = _filled(_closed(hit), 0.5 * close_holes / fine + 1.0)
     blocks = solid.reshape(shape[0] // _FINE, _FINE, shape[1] // _FINE, _FINE, shape[2] // _FINE, _FINE)
-    coarse = ~_outside(blocks.mean(axis=(1, 3, 5)) < _FILLED)
-    coarse = _manifold(coarse)
-    points, faces = _surface_net(coarse)
-    points = origin + cell * points
-    points, faces = _on_skin(points, faces, skin, ~solid, origin, fine, cell)
-    surface = RadiatingSurface(points, faces)
+    coarse = _manifold(_large_bodies(~_outside(blocks.mean(axis=(1, 3, 5)) < _FILLED)))
+    _require_tight(coarse, origin, cell, close_holes)
+    points, quads = _surface_net(coarse)
+    places, owners = skin.samples(cell / 3.0)
+    # Outer are the samples before which there is air.
+    ahead = np.floor((places + 1.5 * fine * skin.normals[owners] - origin) / fine).astype(np.int64)
+    outer = ~solid[tuple(ahead.T)]
+    surface = RadiatingSurface(
+        *_on_skin(origin + cell * points, quads, _OuterSkin(places[outer], skin.normals[owners[outer]], cell))
+    )
     surface.require_closed()
     return surface
 
@@ -94,10 +115,18 @@ def _outside(free: BoolArray) -> BoolArray:
     return np.asarray(labels == labels[0, 0, 0])
 
 
-def _closed(cells: BoolArray, radius: float) -> BoolArray:
-    """Morphological closing of cells by a ball [cells]."""
-    grown = ndimage.distance_transform_edt(~cells) <= radius
-    return np.asarray(cells | (ndimage.distance_transform_edt(grown) > radius))
+def _large_bodies(solid: BoolArray) -> BoolArray:
+    """Leave out bodies of less than a hundredth of the largest: bits of parts that are thinner than the cells."""
+    labels, _ = ndimage.label(solid)
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return np.asarray((sizes >= 0.01 * sizes.max())[labels] & (labels > 0))
+
+
+def _closed(cells: BoolArray) -> BoolArray:
+    """Morphological closing of cells by a cube of three cells a side."""
+    grown = ndimage.maximum_filter(cells.view(np.uint8), 3)
+    return np.asarray(ndimage.minimum_filter(grown, 3).view(bool))
 
 
 def _filled(solid: BoolArray, radius: float) -> BoolArray:
@@ -107,10 +136,8 @@ def _filled(solid: BoolArray, radius: float) -> BoolArray:
     air = ndimage.distance_transform_edt(~ball) < radius
     rest = free & ~air
     # A gap of one cell between a hole's rim and the ball would join the cavity with corners outside.
-    depth = ndimage.distance_transform_edt(rest)
-    cores, count = ndimage.label(depth > 1.01)
-    away, nearest = ndimage.distance_transform_edt(cores == 0, return_indices=True)
-    regions = np.where(rest & (away < 1.8), cores[tuple(nearest)], 0)
+    cores, count = ndimage.label(ndimage.binary_erosion(rest))
+    regions = np.where(cores > 0, cores, np.where(rest, ndimage.maximum_filter(cores, 3), 0))
     open_faces, all_faces = np.zeros(count + 1), np.zeros(count + 1)
     for axis in range(3):
         for here, there in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
@@ -122,6 +149,51 @@ def _filled(solid: BoolArray, radius: float) -> BoolArray:
     kept = open_faces < _OPEN * all_faces
     kept[0] = False
     return np.asarray(~_outside(free & ~kept[regions]))
+
+
+def _require_tight(solid: BoolArray, origin: FloatArray, cell: float, close_holes: float) -> None:
+    """Refuse a wrap with an inside that is open to the air.
+
+    It has one where a ball wider than the holes to be closed finds a cavity of some size that it cannot enter.
+    """
+    radius, largest = max(0.5 * close_holes / cell, 1.0), 0.5 * max(np.ptp(np.argwhere(solid), axis=0) + 1)
+    tight = radius
+    while (tight := _WIDER * tight) < largest:
+        cavity, opening = _large_cavity(solid, tight)
+        if cavity == 0.0:
+            continue
+        leaking = tight / _WIDER
+        for _ in range(6):
+            middle = 0.5 * (leaking + tight)
+            found = _large_cavity(solid, middle)
+            if found[0] > 0.0:
+                tight, opening = middle, found[1]
+            else:
+                leaking = middle
+        x, y, z = 1e3 * (origin + cell * (opening + 0.5))
+        raise HousingError(
+            f"an opening near ({x:.4g}, {y:.4g}, {z:.4g}) mm wider than close_holes of {1e3 * close_holes:.4g} mm lets "
+            f"the air into a cavity of {1e3 * cavity * cell**3:.3g} l; expected the inside to be closed: give "
+            f"close_holes of about {5.0 * np.ceil(2e3 * tight * cell / 5.0):.4g} mm"
+        )
+
+
+def _large_cavity(solid: BoolArray, radius: float) -> tuple[float, FloatArray]:
+    """Volume of the largest cavity that a ball cannot enter, and the middle of its widest opening [cells].
+
+    The volume is 0 where it is a small part of the whole.
+    """
+    around = int(np.ceil(radius)) + 2
+    wide = np.pad(solid, around)
+    filled = _filled(wide, radius)
+    labels, count = ndimage.label(filled & ~wide)
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+    if count == 0 or sizes.max() < _INSIDE * np.count_nonzero(filled):
+        return 0.0, np.zeros(3)
+    cavity = labels == 1 + int(np.argmax(sizes))
+    rim, count = ndimage.label(cavity & ndimage.binary_dilation(~filled), np.ones((3, 3, 3)))
+    widest = 1 + int(np.argmax(np.bincount(rim.ravel(), minlength=count + 1)[1:]))
+    return float(sizes.max()), np.argwhere(rim == widest).mean(axis=0) - around
 
 
 _BLOCK = np.array(list(product((0, 1), repeat=3)))  # places of the cells of a block of 2 x 2 x 2
@@ -169,7 +241,7 @@ def _manifold(solid: BoolArray) -> BoolArray:
         patterns = _patterns(solid)
         wrong = np.argwhere(repairs[patterns] != patterns)
         if len(wrong) == 0:
-            return ~_outside(~solid) if (~solid & ~_outside(~solid)).any() else solid
+            return ~_outside(~solid)
         wanted = repairs[patterns[tuple(wrong.T)]]
         for bit, offset in enumerate(_BLOCK):
             solid[tuple((wrong[(wanted >> bit & 1) == 1] + offset).T)] = True
@@ -201,60 +273,58 @@ def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
     return np.argwhere(mixed) + 1.0, np.concatenate(faces)
 
 
-def _on_skin(
-    points: FloatArray,
-    quads: IntArray,
-    skin: Skin,
-    free: BoolArray,
-    origin: FloatArray,
-    fine: float,
-    cell: float,
-) -> tuple[FloatArray, IntArray]:
+@dataclass(frozen=True)
+class _OuterSkin:
+    """Samples of the skin that the air touches: places [m] and outward normals, shape (n, 3), and the cell [m]."""
+
+    places: FloatArray
+    normals: FloatArray
+    cell: float
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(np.hstack([self.places, _TURN * self.cell * self.normals]))
+
+    def nearest(self, places: FloatArray, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the place and normal of the sample that is nearest to each place in place and direction."""
+        _, found = self._tree.query(np.hstack([places, _TURN * self.cell * normals]))
+        return self.places[found], self.normals[found]
+
+
+def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[FloatArray, IntArray]:
     """Move the vertices of a net onto the skin and split its quadrilaterals."""
-    places, owners = skin.samples(cell / 3.0)
-    normals = skin.normals[owners]
-    # Outer are the samples before which there is air.
-    ahead = np.floor((places + 1.5 * fine * normals - origin) / fine).astype(np.int64)
-    outer = free[tuple(ahead.T)]
-    places, normals = places[outer], normals[outer]
-    tree = cKDTree(np.hstack([places, _TURN * cell * normals]))
     for number in range(_ROUNDS):
-        points = _moved(points, quads, tree, places, normals, cell, (1.5 if number < 5 else 0.8) * cell)
+        points = _moved(points, quads, skin, (_FIRST_REACH if number < _ROUNDS // 3 else _REACH) * skin.cell)
     triangles = _split(points, quads)
     for _ in range(_MENDINGS):
-        points, triangles = _mended(points, triangles, cell)
+        points, triangles = _mended(points, triangles, skin.cell)
         for _ in range(3):
-            points = _moved(points, triangles, tree, places, normals, cell, 0.8 * cell)
-    return _mended(points, triangles, cell)
+            points = _moved(points, triangles, skin, _REACH * skin.cell)
+    return _mended(_unfolded(points, triangles), triangles, skin.cell)
 
 
-def _moved(
-    points: FloatArray,
-    faces: IntArray,
-    tree: cKDTree,
-    places: FloatArray,
-    normals: FloatArray,
-    cell: float,
-    reach: float,
-) -> FloatArray:
-    """Move each vertex onto the planes of its faces, and along them to the centroid of its faces."""
+def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) -> FloatArray:
+    """Move each vertex onto the planes of its faces, and along them to the centroid of its faces.
+
+    Faces farther from the skin than the reach [m] have no plane, as those over holes.
+    """
+    cell = skin.cell
     corners = points[faces]
     center = corners.mean(axis=1)
     last = corners[:, 3] - corners[:, 1] if faces.shape[1] == 4 else corners[:, 2] - corners[:, 1]
     normal = np.cross(corners[:, 2] - corners[:, 0], last)
     area = np.linalg.norm(normal, axis=1)
     normal /= np.maximum(area, 1e-300)[:, None]
-    _, found = tree.query(np.hstack([center, _TURN * cell * normal]))
-    plane, direction = places[found], normals[found]
+    plane, direction = skin.nearest(center, normal)
     agree = (np.linalg.norm(plane - center, axis=1) < reach) & ((direction * normal).sum(axis=1) > _AGREE)
-    weight = np.where(agree, area / cell**2, 0.0)
+    share = area + _LEAST * cell**2  # a narrow face keeps its say, so that the rims of thin plates do not shrink
+    weight = np.where(agree, share / cell**2, 0.0)
     rows = np.repeat(np.arange(len(faces)), faces.shape[1])
     incident = sparse.csr_array((np.ones(faces.size), (faces.ravel(), rows)), shape=(len(points), len(faces)))
     matrix = (incident @ (weight[:, None, None] * direction[:, :, None] * direction[:, None]).reshape(-1, 9)).reshape(
         -1, 3, 3
     )
     side = incident @ ((weight * (plane * direction).sum(axis=1))[:, None] * direction)
-    share = area + _LEAST * cell**2  # a face without area keeps its say, so that it opens again
     mean = (incident @ (share[:, None] * center)) / (incident @ share)[:, None]
     values, vectors = np.linalg.eigh(matrix)
     kept = values > _RANK * np.maximum(values[:, -1:], 1e-6)
@@ -266,12 +336,32 @@ def _moved(
     return np.asarray(points + step * np.minimum(1.0, cell / np.maximum(length, 1e-300)))
 
 
+def _unfolded(points: FloatArray, triangles: IntArray) -> FloatArray:
+    """Smooth the vertices of triangles that lie folded upon each other, off the skin."""
+    ends = np.concatenate([triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    order = np.lexsort(np.sort(ends, axis=1).T)
+    pairs = (order % len(triangles)).reshape(-1, 2)  # each edge of a closed surface has two triangles
+    for _ in range(_UNFOLDINGS):
+        _, normals = _shapes(points[triangles])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        folded = pairs[np.einsum("ei,ei->e", *normals[pairs.T]) < _FOLD]
+        if len(folded) == 0:
+            break
+        moved = np.unique(triangles[folded])
+        around = np.isin(ends[:, 0], moved)
+        sums = np.zeros_like(points)
+        np.add.at(sums, ends[around, 0], points[ends[around, 1]])
+        points = points.copy()
+        points[moved] += 0.5 * (sums[moved] / np.bincount(ends[around, 0])[moved, None] - points[moved])
+    return points
+
+
 def _split(points: FloatArray, quads: IntArray) -> IntArray:
     """Split quadrilaterals along the diagonal that leaves the larger least angle."""
     first = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 2, 3)
     second = quads[:, [0, 1, 3, 1, 2, 3]].reshape(-1, 2, 3)
     better = least_angles(points[first]).min(axis=1) >= least_angles(points[second]).min(axis=1)
-    return np.where(better[:, None, None], first, second).reshape(-1, 3)
+    return np.asarray(np.where(better[:, None, None], first, second).reshape(-1, 3))
 
 
 def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[FloatArray, IntArray]:
@@ -299,7 +389,7 @@ def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[Float
             continue
         a, b = triangle[shortest], triangle[(shortest + 1) % 3]
         if lengths[shortest] < _SHORT * cell:
-            for gone in _collapse(points, corners, around, a, b):
+            for gone in _collapse(points, corners, around, a, b, cell):
                 alive[gone] = False
     kept = np.array(corners)[alive]
     used, renumbered = np.unique(kept, return_inverse=True)
@@ -333,7 +423,7 @@ def _flip(
 
 
 def _collapse(
-    points: FloatArray, corners: list[tuple[int, ...]], around: list[set[int]], a: int, b: int
+    points: FloatArray, corners: list[tuple[int, ...]], around: list[set[int]], a: int, b: int, cell: float
 ) -> tuple[int, ...]:
     """Collapse the edge from a to b into the best of its ends and its middle, where that helps; the triangles lost."""
     gone = around[a] & around[b]
@@ -344,7 +434,13 @@ def _collapse(
     moved = sorted((around[a] | around[b]) - gone)
     old = np.array([corners[number] for number in moved])
     before, normal = _shapes(points[old])
-    lost, _ = _shapes(points[[list(corners[number]) for number in sorted(gone)]])
+    lost, lost_normal = _shapes(points[[list(corners[number]) for number in sorted(gone)]])
+    # The planes around hold the vertex, but for those of triangles too flat to have one.
+    normals = np.concatenate([normal[before > _FLAT], lost_normal[lost > _FLAT]])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    bases = np.concatenate(
+        [points[old[before > _FLAT, 0]], points[[corners[n][0] for n in sorted(gone)]][lost > _FLAT]]
+    )
     found: tuple[float, FloatArray] | None = None
     for place in (points[a], points[b], 0.5 * (points[a] + points[b])):
         trial = points[old]
@@ -352,7 +448,8 @@ def _collapse(
         after, turned = _shapes(trial)
         cosine = (turned * normal).sum(axis=1) / np.linalg.norm(turned, axis=1) / np.linalg.norm(normal, axis=1)
         sound = (cosine > 0.5) | (before < 0.5 * _POOR)
-        if sound.all() and (found is None or after.min() > found[0]):
+        held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _FLAT * cell
+        if held and sound.all() and (found is None or after.min() > found[0]):
             found = float(after.min()), place.copy()
     if found is None or found[0] <= min(before.min(), lost.min()):
         return ()

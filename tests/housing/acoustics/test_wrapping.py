@@ -1,5 +1,7 @@
 """Wrapping of meshes in closed radiating surfaces."""
 
+import re
+
 import numpy as np
 import pytest
 from solids import cubes, hollow_box, spherical_shell
@@ -7,6 +9,7 @@ from solids import cubes, hollow_box, spherical_shell
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.surface_velocity import surface_velocity
 from housing.acoustics.wrapping import least_angles, wrap
+from housing.errors import HousingError
 from meshes import Mesh
 
 
@@ -67,3 +70,39 @@ def test_the_wrap_is_the_same_every_time(box: Mesh) -> None:
     first, second = wrap(box, 0.03, 0.055), wrap(box, 0.03, 0.055)
     assert np.array_equal(first.points, second.points)
     assert np.array_equal(first.triangles, second.triangles)
+
+
+@pytest.mark.parametrize("hole", [10, 18])
+def test_a_leak_is_refused_with_the_diameter_that_closes_it(hole: int) -> None:
+    mesh = hollow_box(hole)
+    with pytest.raises(HousingError, match=r"near \(.*, 120, .*\) mm wider than close_holes of 65 mm") as caught:
+        wrap(mesh, 0.025, 0.065)
+    found = re.search(r"close_holes of about (\d+) mm", str(caught.value))
+    assert found is not None
+    assert wrap(mesh, 0.025, 1e-3 * float(found[1])).volume == pytest.approx(0.3 * 0.24 * 0.2, rel=0.01)
+
+
+def test_a_wide_bore_of_a_narrow_box_is_capped() -> None:
+    cells = np.ones((30, 30, 8), dtype=bool)
+    cells[1:-1, 1:-1, 1:-1] = False
+    x, y = np.mgrid[:30, :30]
+    cells[np.hypot(x - 14.5, y - 14.5) < 5.5] = False
+    surface = wrap(cubes(cells, (0.01, 0.01, 0.01)), 0.025, 0.12)
+    assert surface.volume == pytest.approx(0.3 * 0.3 * 0.08, rel=1e-6)
+
+
+@pytest.mark.parametrize(("edge", "close_holes"), [(0.0, 0.05), (-0.01, 0.05), (0.02, -0.01), (np.nan, 0.05)])
+def test_sizes_must_be_positive(edge: float, close_holes: float) -> None:
+    with pytest.raises(HousingError, match="expected"):
+        wrap(hollow_box(6), edge, close_holes)
+
+
+def test_too_fine_a_wrap_is_refused() -> None:
+    with pytest.raises(HousingError, match="cells"):
+        wrap(hollow_box(6), 0.0005, 0.05)
+
+
+def test_a_thin_plate_keeps_its_rim() -> None:
+    surface = wrap(cubes(np.ones((10, 8, 1), dtype=bool), (0.03, 0.03, 0.004)), 0.02, 0.0)
+    assert surface.volume == pytest.approx(0.3 * 0.24 * 0.004, rel=1e-6)
+    assert surface.area == pytest.approx(2 * (0.3 * 0.24 + 0.54 * 0.004), rel=1e-6)
