@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     from gearwhine.solve.load_sensitivity import LoadSensitivity
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
+    from gearwhine.solve.sound import SolvedSound
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
-    from housing.pictures.drawn_shapes import DrawnShape
+    from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
@@ -32,6 +33,7 @@ _MICRO = 1e6
 _PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
 _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
 _DB = 20.0 / np.log(10.0)  # of a level, in one relative change of an amplitude
+_LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least part of the loudest one's power
 _MOST_MODES = 5000
 _DOMINANT = 8
 _MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
@@ -329,6 +331,86 @@ def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -
         f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
     )
     return [DrawnShape("load-sensitivity-line", title, note, turned.real, "Change [dB/(mm·dm²)]", largest, values)]
+
+
+def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) -> list[dict[str, Any]]:
+    """Draw where the housing radiates; return warnings.
+
+    They are ``sound-faces-all.png`` over all lines and ``sound-faces-123.4Hz.png`` at each of the loudest, each on
+    a scale of its own: red places send sound out, blue ones take it in. Without a renderer a warning says so.
+
+    Parameters
+    ----------
+    solved : SolvedSound
+    place : path
+    progress : callable
+    """
+    from gearwhine.drawing_process import draw_in_process
+    from housing.errors import RendererUnavailableError
+
+    shapes = _intensity_shapes(solved)
+    try:
+        if shapes:
+            surface = _radiating_surface(solved)
+            draw_in_process(surface, shapes, place, "png", "iso", progress)
+    except RendererUnavailableError as error:
+        return [warning("pictures", f"no picture of the radiating surface: {error}")]
+    return []
+
+
+def _radiating_surface(solved: "SolvedSound") -> "DrawnHousing":
+    """Return the triangles of all radiating surfaces."""
+    from housing.pictures.drawn_shapes import DrawnHousing
+
+    surfaces = [elements.surface for elements in solved.radiation.elements]
+    starts = np.cumsum([0, *(len(surface.points) for surface in surfaces)])
+    triangles = [surface.triangles + start for surface, start in zip(surfaces, starts, strict=False)]
+    points = np.concatenate([surface.points for surface in surfaces])
+    return DrawnHousing(points, np.concatenate(triangles), np.arange(len(points)))
+
+
+def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
+    """Mean sound intensity out of the surface over all lines, and at each of the loudest."""
+    from housing.acoustics.sound_levels import power_level
+    from housing.pictures.drawn_shapes import DrawnShape
+
+    lines = sorted((line for line in solved.lines if line.sound.power > 0.0), key=lambda line: -line.sound.power)
+    if not lines:
+        return []
+    loudest = [line for line in lines[:_LOUDEST] if line.sound.power >= _HEARD * lines[0].sound.power]
+    surface = _radiating_surface(solved)
+    areas = np.concatenate([elements.surface.areas for elements in solved.radiation.elements])
+    corners, weights = surface.triangles.ravel(), np.repeat(areas, 3)
+    total = np.bincount(corners, weights, len(surface.rest))
+
+    def at_points(intensity: FloatArray) -> FloatArray:
+        """Mean of the triangles around each point, by area."""
+        return np.asarray(np.bincount(corners, np.repeat(intensity * areas, 3), len(surface.rest)) / total)
+
+    every = at_points(np.sum([line.sound.intensity for line in lines], axis=0))
+    power = sum(line.sound.power for line in lines)
+    drawn = [("sound-faces-all", "Sound intensity, all lines", every, power)]
+    for line in loudest:
+        name, title = f"sound-faces-{line.frequency_hz:.1f}Hz", f"Sound intensity at {line.frequency_hz:.0f} Hz"
+        drawn.append((name, title, at_points(line.sound.intensity), line.sound.power))
+    ends = [float(np.quantile(np.abs(values), _SHOWN_PART)) for *_, values, _ in drawn]
+    if min(ends) == 0.0:
+        return []
+    units = ((1.0, "W"), (1e3, "mW"), (1e6, "µW"), (1e9, "nW"))
+    factor, unit = next((one for one in units if one[0] * ends[0] >= 1.0), units[-1])
+    beyond = f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
+    return [
+        DrawnShape(
+            name,
+            title,
+            f"{power_level(power):.1f} dB re 1 pW; red radiates, blue absorbs. {beyond}",
+            np.zeros_like(surface.rest),
+            f"Intensity [{unit}/m²]",
+            factor * end,
+            factor * values,
+        )
+        for (name, title, values, power), end in zip(drawn, ends, strict=True)
+    ]
 
 
 def draw_measured(

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
+    from gearwhine.solve.sound import SolvedSound
     from gearwhine.solve.steady_state import SolvedSteady
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
@@ -278,6 +279,12 @@ class Study:
             housing=self.housing,
             progress=self.progress,
         )
+
+    def sound(self) -> Result[SolvedSound]:
+        """Find the sound that the housing radiates; see :func:`gearwhine.analyses.machine.sound`."""
+        from gearwhine.analyses import machine
+
+        return machine.sound(self.case, housing=self.housing, progress=self.progress)
 
     def simulate(self) -> Result[RunSolution]:
         """Integrate the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, dump_case, require, swept_keys
+from gearwhine.case.acoustics import Acoustics
 from gearwhine.from_case.machine import basis_error, point_of_pairs, require_machine, solve_machine, solve_pairs
-from gearwhine.mode_pictures import draw_load_pictures
+from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
@@ -16,6 +17,7 @@ from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.operating_point import LOAD, kept_options, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.steady_state import STEADY, steady_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.coupled_system import SolvedSystem, solve_system
@@ -29,6 +31,7 @@ from gearwhine.solve.plausibility import (
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
+from gearwhine.solve.sound import SolvedSound, highest_frequency, lines_of_steady, solve_sound
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 
 if TYPE_CHECKING:
@@ -332,6 +335,71 @@ def steady(
     )
 
 
+def sound(
+    case: Case,
+    *,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> "Result[SolvedSound]":
+    """Find the sound that the housing radiates: of its modes, and of the lines of the steady motion.
+
+    Parameters
+    ----------
+    case : Case
+        With `[housing]`; without `[acoustics]` boundary elements in free air are taken. Without rotors and an operation
+        the sound is that of the modes alone.
+    housing, folder, fresh, progress
+        As :func:`gearwhine.analyses.housing.modes`.
+
+    Raises
+    ------
+    CaseError, coupling.CouplingError, coupling.PeriodicError
+        Where the parts do not make a machine, no periodic motion is found, or the housing cannot be wrapped.
+    housing.HousingError
+        Where the power through the surface and in the far field differ by more than 10 %.
+    """
+    require(case, "housing", command="sound")
+    if case.acoustics is None:
+        case = case.model_copy(update={"acoustics": Acoustics()})
+    if housing is None:
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+    machine, motions, told = None, [], []
+    if case.rotor and case.operation is not None:
+        require_machine(case)
+        load, told = find_load(case, housing, progress)
+        point = None if load is None else load.point
+        _, _, machine = solve_machine(case, progress, housing=housing, point=point)
+        steady_state = solve_steady(case, machine, housing, progress)
+        motions = lines_of_steady(steady_state, highest_frequency(case, housing))
+    solved = solve_sound(case, housing, motions, machine, progress)
+    document = {"title": case.title} | sound_document(solved)
+    add_warnings(document, [*solved.warnings(), *told])
+
+    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
+        from gearwhine.figures import draw_sound
+
+        progress("drawing the sound")
+        yield from draw_sound(case, solved)
+
+    def files(place: Path, *, pictures: bool) -> None:
+        if pictures:
+            add_warnings(result.document, draw_sound_pictures(solved, place, progress))
+
+    result = Result(
+        "sound",
+        case,
+        solved,
+        joined(document, origin_document(housing)),
+        _arrays=lambda: labelled(case, (HOUSING, housing), (SOUND, solved)),
+        _figures=figures,
+        _files=files,
+        _housing=housing,
+    )
+    return result
+
+
 def sweep(
     case: Case,
     source: tuple[str, Sequence[str]],
@@ -376,8 +444,14 @@ def sweep(
     points = sweep_points(*source, keys)
     count = workers or default_workers()
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    told = []
+    if case.acoustics is not None and case.housing is not None:
+        from gearwhine.sweep.sound import add_sound
+
+        told = add_sound(case, keys, swept, solve_housing(case, progress, folder=folder), progress)
     dataset = collected_sweep(case, keys, swept)
     document = {"title": case.title} | sweep_document(keys, swept)
+    add_warnings(document, told)
     document["workers"] = count if scheduler is None else None
     document["seconds"] = {"total": time.perf_counter() - start}
 

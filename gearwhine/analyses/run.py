@@ -24,6 +24,7 @@ from gearwhine.results.housing import HOUSING, modes_document, origin_document, 
 from gearwhine.results.operating_point import LOAD, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import RUN_SIGNATURE, TRANSIENT, HistoryStream, run_signature_document, transient_document
+from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.comparison import compare_housing
 from gearwhine.solve.coupled_system import solve_system
@@ -35,6 +36,7 @@ from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings,
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.signature import solve_signature
+from gearwhine.solve.sound import highest_frequency, lines_of_run, solve_sound, with_histories
 from gearwhine.solve.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.solve.transient_record import stored_record
 
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import SolvedSignature
+    from gearwhine.solve.sound import SolvedSound
     from gearwhine.solve.transient import SolvedTransient
     from housing.correlation import Comparison
 
@@ -129,7 +132,7 @@ def run(
             comparison = compare_housing(case, housing, progress)
             document["compare"] = comparison_document(comparison, housing)
 
-    transient, system, signature, run_signature = None, None, None, None
+    transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
     if case.rotor and case.operation:
         begin = time.perf_counter()
         machine = build_machine(case, part, pairs, progress, point=point)
@@ -166,9 +169,21 @@ def run(
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
+    if case.acoustics is not None and housing is not None:
+        begin = time.perf_counter()
+        motions = [] if signature is None else lines_of_run(signature, highest_frequency(case, housing))
+        sound = solve_sound(case, housing, motions, machine if motions else None, progress)
+        if transient is not None:
+            sound = with_histories(sound, transient, progress)
+        document["sound"] = sound_document(sound)
+        add_warnings(document, sound.warnings())
+        timed("sound", begin)
+
     seconds["total"] = time.perf_counter() - start
     document["seconds"] = seconds
-    solved = RunSolution(rotors, analysed, housing, comparison, system, transient, signature, run_signature, load)
+    solved = RunSolution(
+        rotors, analysed, housing, comparison, system, transient, signature, run_signature, load, sound
+    )
 
     def files(place: Path, *, pictures: bool) -> None:
         if solved.housing is None:
@@ -281,6 +296,7 @@ class RunSolution:
     signature: SolvedSignature | None
     run_signature: RunSignature | None
     load: SolvedLoad | None = None
+    sound: SolvedSound | None = None
 
 
 def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
@@ -295,6 +311,7 @@ def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
         (SYSTEM, solved.system),
         (TRANSIENT, None if solved.transient is None else (solved.transient, solved.signature)),
         (RUN_SIGNATURE, solved.run_signature),
+        (SOUND, solved.sound),
         streams=streams,
     )
 
@@ -316,6 +333,9 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
         yield from figures.draw_transient(case, *found)
     if solved.run_signature is not None:
         yield from figures.draw_run(case, solved.run_signature, solved.housing)
+    if solved.sound is not None:
+        progress("drawing the sound")
+        yield from figures.draw_sound(case, solved.sound)
     if solved.housing is not None and solved.comparison is not None:
         progress("drawing the comparison with measured modes")
         yield from figures.draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)

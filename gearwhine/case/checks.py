@@ -33,6 +33,7 @@ _NAMED = (
     ("housing", "mass"),
     ("housing", "sensor"),
     ("housing", "region"),
+    ("acoustics", "microphone"),
     _PROBES,
     _TORSION_PROBES,
 )

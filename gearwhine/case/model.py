@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 import tomli_w
 from pydantic import Field, ValidationError
 
+from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.box import Box
 from gearwhine.case.errors import NOTHING, CaseError, Problem, look_up
@@ -84,6 +85,8 @@ class Case(Table):
     """Measured modes of the housing."""
     update: Update | None = None
     """Parameters that are fitted to the measured modes."""
+    acoustics: Acoustics | None = None
+    """Sound that the housing radiates."""
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
     """Standing of each number: from key path (`*` for any entry) to "published", "nominal" or "found", with text after
     a colon."""
@@ -284,6 +287,7 @@ _PURPOSES = {
     "transient": "a length of run such as revolutions = 40",
     "sweep": "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }",
     "measured": "frequencies such as ['658 Hz', '1049 Hz'], or a file of them",
+    "acoustics": "at least an empty table, for boundary elements in free air",
     "update": "what is fitted, such as [[update.parameter]] name = 'top', keys = ['housing.box.wall.top']",
 }
 

@@ -28,6 +28,7 @@ for _command in (
     machine.load,
     machine.system,
     machine.steady,
+    machine.sound,
     machine.sweep,
     housing.compare,
     housing.survey,

@@ -1,4 +1,4 @@
-"""Commands on rotors, gear pairs and the coupled machine: rotors, gears, load, system, steady, sweep."""
+"""Commands on rotors, gear pairs and the coupled machine: rotors, gears, load, system, steady, sound, sweep."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -193,6 +193,19 @@ def steady(
             fresh=fresh,
             progress=progress,
         )
+        return written(found, common.output, progress)
+
+    on_case(case, common, work, shown_by(sections))
+
+
+def sound(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) -> None:
+    """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines."""
+    from gearwhine.analyses import machine as analyses
+    from gearwhine.output.terminal import shown_by
+    from gearwhine.results.sound import sections
+
+    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+        found = analyses.sound(given, folder=common.output, fresh=fresh, progress=progress)
         return written(found, common.output, progress)
 
     on_case(case, common, work, shown_by(sections))

@@ -21,6 +21,7 @@ from gearwhine.figures.housing import (
 )
 from gearwhine.figures.machine.operating_point import draw_load
 from gearwhine.figures.machine.run_up import draw_run
+from gearwhine.figures.machine.sound import draw_sound
 from gearwhine.figures.machine.steady_state import draw_steady
 from gearwhine.figures.machine.sweep import draw_sweep
 from gearwhine.figures.machine.system import draw_system
@@ -51,6 +52,7 @@ __all__ = [
     "draw_rotors",
     "draw_run",
     "draw_shaft",
+    "draw_sound",
     "draw_steady",
     "draw_sweep",
     "draw_system",

@@ -11,6 +11,7 @@ import io
 import math
 import struct
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from pathlib import Path
@@ -214,12 +215,12 @@ def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str) -> tuple[s
 
 
 def write_sounds(folder: Path, place: Path, rate: int = AUDIO_RATE) -> list[Document]:
-    """Write the acceleration history of every sensor as a sound file in 32-bit floating point, to hear and to measure.
+    """Write the histories of sensors and microphones as sound files in 32-bit floating point, to hear and to measure.
 
     The history less its mean is resampled to an audio rate by a band-limited interpolation and divided by a full
-    scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …) m/s² above its peak. The full scale stands in the
-    file's name, in its comment (chunk LIST INFO ICMT) and in what is returned: acceleration is the sample by the full
-    scale.
+    scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …) m/s² or Pa above its peak. The full scale stands in
+    the file's name, in its comment (chunk LIST INFO ICMT) and in what is returned: the signal is the sample times the
+    full scale.
 
     Parameters
     ----------
@@ -233,33 +234,53 @@ def write_sounds(folder: Path, place: Path, rate: int = AUDIO_RATE) -> list[Docu
     Returns
     -------
     list of dict
-        File, sensor, full scale, peak and root mean square [m/s²], length [s] and sampling rate [Hz].
+        File, sensor or microphone, full scale, peak and root mean square [m/s² or Pa], length [s] and sampling rate
+        [Hz].
     """
     written: list[Document] = []
     for command, data in _datasets(folder):
-        if "sensor_acceleration" not in data:
-            continue
-        times = np.asarray(data["time"].values, dtype=np.float64)
-        names = [str(name) for name in data["sensor"].values]
-        for stem, name in zip(file_stems(names, f"{command}-"), names, strict=True):
-            signal = np.asarray(data["sensor_acceleration"].sel(sensor=name).values, dtype=np.float64)
-            sound = resampled(signal - signal.mean(), (times[-1] - times[0]) / (len(times) - 1), rate)
-            scale = full_scale(float(np.abs(sound).max()))
-            path = place / f"{stem}-full-scale-{scale:g}-m-per-s2.wav"
-            comment = f"acceleration at {name}; full scale (sample 1.0) is {scale:g} m/s2; gearwhine {command}"
-            _write_wav(path, (sound / scale).astype("<f4"), rate, comment)
-            written.append(
-                {
-                    "file": path.name,
-                    "sensor": name,
-                    "full_scale_m_per_s2": scale,
-                    "peak_m_per_s2": float(np.abs(sound).max()),
-                    "rms_m_per_s2": float(np.sqrt(np.mean(sound**2))),
-                    "seconds": len(sound) / rate,
-                    "sampling_rate_hz": rate,
-                }
-            )
+        for one in _SOUNDS:
+            if one.variable not in data:
+                continue
+            times = np.asarray(data[one.time].values, dtype=np.float64)
+            names = [str(name) for name in data[one.label].values]
+            for stem, name in zip(file_stems(names, f"{command}-"), names, strict=True):
+                signal = np.asarray(data[one.variable].sel({one.label: name}).values, dtype=np.float64)
+                sound = resampled(signal - signal.mean(), (times[-1] - times[0]) / (len(times) - 1), rate)
+                scale = full_scale(float(np.abs(sound).max()))
+                path = place / f"{stem}-full-scale-{scale:g}-{one.suffix.replace('_', '-')}.wav"
+                comment = f"{one.what} at {name}; full scale (sample 1.0) is {scale:g} {one.unit}; gearwhine {command}"
+                _write_wav(path, (sound / scale).astype("<f4"), rate, comment)
+                written.append(
+                    {
+                        "file": path.name,
+                        one.label: name,
+                        f"full_scale_{one.suffix}": scale,
+                        f"peak_{one.suffix}": float(np.abs(sound).max()),
+                        f"rms_{one.suffix}": float(np.sqrt(np.mean(sound**2))),
+                        "seconds": len(sound) / rate,
+                        "sampling_rate_hz": rate,
+                    }
+                )
     return written
+
+
+@dataclass(frozen=True)
+class _Sound:
+    """Kind of histories that become sound files."""
+
+    variable: str
+    label: str
+    time: str
+    what: str
+    unit: str
+    suffix: str
+
+
+_SOUNDS = (
+    _Sound("sensor_acceleration", "sensor", "time", "acceleration", "m/s2", "m_per_s2"),
+    _Sound("microphone_pressure", "microphone", "microphone_time", "sound pressure", "Pa", "pa"),
+)
 
 
 def full_scale(peak: float) -> float:

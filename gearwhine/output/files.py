@@ -183,6 +183,7 @@ COMMANDS = (
     "load",
     "system",
     "steady",
+    "sound",
     "sweep",
     "compare",
     "survey",

@@ -11,7 +11,19 @@ __all__ = ["chapters_of", "write_shapes"]
 
 def chapters_of(document: Document) -> tuple[Section, ...]:
     """Return the chapters of a command's document in the report, leaving out empty ones."""
-    from gearwhine.results import check, comparison, gears, housing, operating_point, rotors, run, sweep, system, update
+    from gearwhine.results import (
+        check,
+        comparison,
+        gears,
+        housing,
+        operating_point,
+        rotors,
+        run,
+        sound,
+        sweep,
+        system,
+        update,
+    )
     from gearwhine.results import steady_state as steady
 
     if document.get("command") == "check":
@@ -27,6 +39,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (operating_point.report, load),
         (system.report, document.get("system", document if "stability" in document else {})),
         (run.report, document if "steps" in document else {}),
+        (sound.report, document.get("sound", document if "total_db_a" in document else {})),
         (sweep.report, document if "points" in document and "axes" in document else {}),
         (housing.render_report, document if document.get("command") == "render" else {}),
         (steady.report, document if "motions" in document else {}),

@@ -1,4 +1,4 @@
-"""First page of the report: the machine, whether its results are sound, the highest lines, and measured modes."""
+"""First page of the report: the machine, its proofs, the highest and the loudest lines, and measured modes."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -21,6 +21,7 @@ from gearwhine.output.sections import (
 from gearwhine.results.comparison import LINKED_PAIR
 from gearwhine.results.motion import leading_lines, path_place, shape_column
 from gearwhine.results.run import SPECTRUM
+from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
 from gearwhine.solve.case_summary import checked_pairs, checked_rotors
 
 if TYPE_CHECKING:
@@ -28,9 +29,11 @@ if TYPE_CHECKING:
 
 _MM = 1e3
 _LINES = 3  # of each sensor
+_LOUDEST = 5  # lines of the sound
 _MOST_ERROR = 1e-2  # of the energy balance that passes
 _SURE = 0.03  # error of a line by the modal basis that passes
 _BALANCED = 1e-6  # part of the largest load that may be left of the equilibrium
+_SAME_POWER = 0.5  # difference of a line's sound power levels by two ways that passes [dB]
 _PERIODIC = 1e-3  # part by which a periodic motion may miss itself, or change with finer elements
 
 _CHAPTERS = {
@@ -40,6 +43,7 @@ _CHAPTERS = {
     "Coupled system": ("unstable mode",),
     "Motion": ("bearing load", "run signature"),
     "Steady state": ("superposition",),
+    "Sound": ("interior_pressure",),
     "Updated numbers": ("shapes",),
     "Operating point": (
         "sensitivity",
@@ -58,6 +62,7 @@ _CHAPTERS = {
 
 _PICTURES = (
     SPECTRUM,
+    Picture("sound-power", "Sound power level of each line, the loudest with names, and of third octaves."),
     Picture("steady-motion", "One period of the motion: mesh force, and its harmonics."),
     Picture("sweep-rms", "Level of each sensor over the sweep: peaks are resonances of the machine."),
     Picture("load-misalignment", "Misalignment of the flanks by its causes, which may cancel; black: their sum."),
@@ -84,6 +89,7 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
         machine_section(case, documents),
         Section("Are the results sound?", _findings(documents, stale)),
         Section("Highest lines", _lines(documents)),
+        Section("Loudest lines", _sound(documents)),
         Section("", pictures=_PICTURES),
         Section("Measured and modelled", _compared(documents)),
     )
@@ -295,7 +301,21 @@ def _proofs(document: Document) -> Iterator[Finding]:
                 passed=max(error, motion["residual"]) < _PERIODIC and bool(motion["stable"]),
                 link=("section Steady state",),
             )
+    yield from _balance(_sound_of(document))
     yield from _basis(document)
+
+
+def _balance(sound: Document) -> Iterator[Finding]:
+    """Yield whether the sound power of the loudest line is the same through the surface and into the far field."""
+    if sound and sound["lines"] and sound["method"] == "boundary-elements":
+        loudest = loudest_lines(sound)[0]
+        difference = abs(loudest["surface_power_db"] - loudest["sound_power_db"])
+        yield Finding(
+            f"Sound: the powers of the loudest line through the surface and into the far field differ by "
+            f"{difference:.2f} dB.",
+            passed=difference < _SAME_POWER,
+            link=("section Sound",),
+        )
 
 
 def _basis(document: Document) -> Iterator[Finding]:
@@ -330,6 +350,21 @@ def _highest(rows: Sequence[Document]) -> list[str]:
         f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {row['amplitude_m_per_s2']:.3g} m/s² peak: "
         f"{arrowed(str(row['name']))}{near}{by}."
     ]
+
+
+def _sound_of(document: Document) -> Document:
+    """Return the sound's part of a document, which that of the command `sound` is itself."""
+    found = document.get("sound", document if "total_db_a" in document else {})
+    return found if isinstance(found, dict) else {}
+
+
+def _sound(documents: Sequence[Document]) -> tuple[str | Table, ...]:
+    """Return the sound power level of the newest sound with lines, and its loudest lines with their cause."""
+    for document in documents:
+        if (sound := _sound_of(document)) and sound["lines"]:
+            rows = loudest_lines(sound)[:_LOUDEST]
+            return (f"{total_sentence(sound)}.", *table_of(LOUDEST_COLUMNS, rows))
+    return ()
 
 
 def _of_motion(document: Document) -> Iterator[tuple[Iterable[Document], str]]:

@@ -62,6 +62,8 @@ def _columns(document: Document, first: Document) -> tuple[Column, ...]:
             ),
             Column("apart", partial(_apart, place)),
         ]
+    if "sound" in first:
+        columns.append(Column("sound power\n[dB(A)]", partial(_sound, "total_db_a")))
     return (*columns, Column("energy\nerror", lambda point: f"{point['energy_error']:.0e}"))
 
 
@@ -76,6 +78,10 @@ def _force(place: int, point: Document) -> str:
 
 def _apart(place: int, point: Document) -> str:
     return percent(point["gear_pairs"][place]["contact_loss_fraction"])
+
+
+def _sound(key: str, point: Document) -> str:
+    return f"{point['sound'][key]:.1f}" if "sound" in point else ""
 
 
 def _level(name: str, point: Document) -> str:

@@ -56,6 +56,7 @@ def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptP
     _add_meshes(grid, orders, variables, coordinates)
     _add_bearings(grid, variables, coordinates)
     _add_operating_points(grid, variables, coordinates)
+    _add_sound(grid, variables, coordinates)
     modes = max((result.housing_frequencies_hz.size for result in grid.results()), default=0)
     if modes:
         coordinates["housing_mode"] = ("housing_mode", np.arange(1, modes + 1), _unit("1", "number of the mode"))
@@ -244,6 +245,34 @@ def _add_operating_points(grid: _Grid, variables: dict[str, Any], coordinates: d
         coordinates |= {"loaded_bearing": ("loaded_bearing", bearings, {}), "axis": ("axis", ["x", "y", "z"], {})}
         told = _unit("N", "force of the shaft on its bearing at the operating point")
         variables["bearing_operating_force"] = grid.rows(("loaded_bearing", "axis"), (len(bearings), 3), forces, told)
+
+
+def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
+    """Add sound power levels of every point, in all and of its loudest lines."""
+    sounds = [result.document["sound"] for result in grid.results() if "sound" in result.document]
+    if not sounds:
+        return
+    count = min(_PEAKS, max(len(sound["lines"]) for sound in sounds))
+    coordinates["sound_line"] = ("sound_line", np.arange(1, count + 1), _unit("1", "rank of the line, loudest first"))
+
+    def total(key: str) -> Callable[[PointResult], float]:
+        return lambda result: result.document.get("sound", {}).get(key, np.nan)
+
+    def lines(key: str) -> Callable[[PointResult], FloatArray]:
+        return lambda result: _padded(
+            np.array([line[key] for line in result.document.get("sound", {}).get("lines", ())]), count
+        )
+
+    for name, key, unit, what in (
+        ("sound_power_level", "total_db", "dB", "sound power level of all lines re 1 pW"),
+        ("sound_power_level_a", "total_db_a", "dB", "A-weighted sound power level of all lines re 1 pW"),
+    ):
+        variables[name] = grid.rows((), (), total(key), _unit(unit, what))
+    for name, key, unit, what in (
+        ("sound_line_frequency", "frequency_hz", "Hz", "frequency of the loudest lines"),
+        ("sound_line_level", "sound_power_db", "dB", "sound power level of the loudest lines re 1 pW"),
+    ):
+        variables[name] = grid.rows(("sound_line",), (count,), lines(key), _unit(unit, what))
 
 
 def _pair_name(pair: Mapping[str, Any]) -> str:

@@ -58,6 +58,10 @@ class PointResult:
         Empty without a housing.
     window : str
         Of the spectra.
+    line_frequencies : ndarray, shape (l,)
+        Of the lines whose sound is wanted [Hz]; empty without `[acoustics]`.
+    line_rates : ndarray, shape (l, n, 2)
+        Rates of the housing's coordinates there, real and imaginary part.
     """
 
     document: dict[str, Any]
@@ -68,6 +72,8 @@ class PointResult:
     bearing_force_rms: dict[str, FloatArray] = field(default_factory=dict)
     housing_frequencies_hz: FloatArray = field(default_factory=lambda: np.empty(0))
     window: str = "uniform"
+    line_frequencies: FloatArray = field(default_factory=lambda: np.empty(0))
+    line_rates: FloatArray = field(default_factory=lambda: np.empty((0, 0, 2)))
 
 
 @dataclass(frozen=True)
@@ -166,6 +172,11 @@ def _reduced(
     add_warnings(document, told)
     add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved), known=told))
     forces = solved.histories.bearing_load
+    drive = {}
+    if case.acoustics is not None and solved.machine.housing is not None:
+        from gearwhine.sweep.sound import strongest_lines
+
+        drive = dict(zip(("line_frequencies", "line_rates"), strongest_lines(case, solved), strict=True))
     return PointResult(
         document=document,
         orders=lines[:count] / turning_hz,
@@ -175,6 +186,7 @@ def _reduced(
         bearing_force_rms={name: force.std(axis=0) for name, force in forces.items()},
         housing_frequencies_hz=np.empty(0) if housing is None else housing.frequencies_hz,
         window=spectra[0].window if spectra else "uniform",
+        **drive,
     )
 
 
@@ -263,6 +275,11 @@ def _arrays(result: PointResult) -> Variables:
             arrays |= {"bearing": ("bearing", list(forces), {}), "load": ("load", list(_LOADS), {})}
             values = np.array(list(forces.values()))
             arrays[group] = (("bearing", "load"), values, {"units": "N, N m of moments", "long_name": what})
+    if result.line_frequencies.size:
+        told = {"units": "Hz", "long_name": "frequency of a line whose sound is wanted"}
+        arrays["line_frequencies"] = ("sound_line", result.line_frequencies, told)
+        told = {"units": "m kg^0.5 / s", "long_name": "rates of the housing's coordinates, real and imaginary"}
+        arrays["line_rates"] = (("sound_line", "coordinate", "part"), result.line_rates, told)
     attributes = {"units": "Hz", "long_name": "housing natural frequency"}
     arrays["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
     return arrays
@@ -283,4 +300,5 @@ def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> 
         housing_frequencies_hz=arrays["housing_frequencies_hz"],
         window=attributes["window"],
         **named,
+        **{name: arrays[name] for name in ("line_frequencies", "line_rates") if name in arrays},
     )

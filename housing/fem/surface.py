@@ -93,8 +93,22 @@ class FlatFace:
 
 def flat_faces(mesh: Mesh) -> list[FlatFace]:
     """Divide a mesh's boundary into flat faces: facets that share edges and lie in one plane; the largest first."""
-    boundary = mesh.boundary
+    boundary, face_of = mesh.boundary, flat_face_numbers(mesh)
     normals, centers = facet_normals(mesh.points, boundary), facet_centers(mesh.points, boundary)
+    areas = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(mesh, boundary)])
+    found = []
+    for number in np.argsort(-np.bincount(face_of, areas), kind="stable").tolist():
+        chosen = face_of == number
+        area, normal = float(areas[chosen].sum()), areas[chosen] @ normals[chosen]
+        center = areas[chosen] @ centers[chosen] / area
+        found.append(FlatFace(pick_facets(boundary, chosen), area, center, normal / np.linalg.norm(normal)))
+    return found
+
+
+def flat_face_numbers(mesh: Mesh) -> IntArray:
+    """Find the number of the flat face that each boundary facet belongs to, shape (n_facets,), block after block."""
+    boundary = mesh.boundary
+    normals = facet_normals(mesh.points, boundary)
     ends, owners, first = [], [], 0
     for block in boundary:
         corners = block.corners
@@ -108,15 +122,7 @@ def flat_faces(mesh: Mesh) -> list[FlatFace]:
     one, other = (owner[part][(edges[1:] == edges[:-1]).all(axis=1)] for part in (slice(None, -1), slice(1, None)))
     flat = np.einsum("ei,ei->e", normals[one], normals[other]) > _ALIGNED
     joined = sparse.coo_array((np.ones(flat.sum()), (one[flat], other[flat])), shape=(first, first))
-    count, face_of = connected_components(joined, directed=False)
-    areas = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(mesh, boundary)])
-    found = []
-    for number in np.argsort(-np.bincount(face_of, areas, count), kind="stable").tolist():
-        chosen = face_of == number
-        area, normal = float(areas[chosen].sum()), areas[chosen] @ normals[chosen]
-        center = areas[chosen] @ centers[chosen] / area
-        found.append(FlatFace(pick_facets(boundary, chosen), area, center, normal / np.linalg.norm(normal)))
-    return found
+    return np.asarray(connected_components(joined, directed=False)[1], dtype=np.int64)
 
 
 @dataclass(frozen=True)
@@ -481,7 +487,7 @@ def sample_surface(mesh: Mesh, facets: Facets) -> SurfaceSamples:
             normal = normal / np.where(length > 0.0, length, 1.0)
             parts = np.ceil(np.linalg.norm(edges, axis=2).max(axis=1) / spacing).astype(np.int64)
             for count in np.unique(parts):
-                shares = _middles(int(count))
+                shares = triangle_middles(int(count))
                 chosen = parts == count
                 points.append(np.einsum("sc,tci->tsi", shares, triangles[chosen]).reshape(-1, 3))
                 normals.append(np.repeat(normal[chosen], len(shares), axis=0))
@@ -519,7 +525,7 @@ def _cells(points: FloatArray, others: FloatArray, across: FloatArray, size: flo
     return (first - lowest) @ strides, (second - lowest) @ strides
 
 
-def _middles(count: int) -> FloatArray:
+def triangle_middles(count: int) -> FloatArray:
     """Shares of the corners at the middles of the triangles that a triangle is cut into, `count` along each side."""
     upward = [(i + 1 / 3, j + 1 / 3) for i in range(count) for j in range(count - i)]
     downward = [(i + 2 / 3, j + 2 / 3) for i in range(count) for j in range(count - i - 1)]

@@ -130,7 +130,8 @@ class DrawnShape:
     title, note : str
         The line above the picture and those below that; the note may be empty.
     motion : ndarray of float or complex, shape (n_points, 3)
-        U, to any scale. A real one moves in one phase; a complex one may run around.
+        U, to any scale. A real one moves in one phase; a complex one may run around. Zero draws `values` on the surface
+        at rest.
     quantity : str
         Quantity shown by the colours, with its unit.
     largest : float
@@ -141,7 +142,7 @@ class DrawnShape:
     Raises
     ------
     HousingError
-        Where nothing moves, or a number of the motion is none.
+        Where nothing moves and there are no values, or a number of the motion is none.
     """
 
     name: str
@@ -154,7 +155,7 @@ class DrawnShape:
 
     def __post_init__(self) -> None:
         """Check that the displacements are finite and not all zero."""
-        if not np.all(np.isfinite(self.motion)) or not np.any(self.motion):
+        if not np.all(np.isfinite(self.motion)) or not (np.any(self.motion) or self.values is not None):
             raise HousingError(f"{self.title or self.name}: a shape to draw needs finite displacements, some not zero")
 
     @property
@@ -164,9 +165,10 @@ class DrawnShape:
         return np.asarray(swing / swing.max())
 
     def at(self, angle: float) -> FloatArray:
-        """Displacement at a phase angle [rad] after that of the widest, the largest amplitude being 1."""
+        """Displacement at a phase angle [rad] after that of the widest, the largest amplitude being 1; zero at rest."""
         turned = self.motion * np.exp(1j * (angle - widest_angle(self.motion)))
-        return np.asarray(turned.real / peak_displacement(self.motion).max())
+        largest = peak_displacement(self.motion).max()
+        return np.asarray(turned.real / largest if largest > 0.0 else turned.real)
 
 
 def peak_displacement(motion: FloatArray | ComplexArray) -> FloatArray:

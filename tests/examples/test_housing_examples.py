@@ -57,3 +57,23 @@ def test_modes_of_shafts_in_a_housing_are_those_of_its_matrices(example: Any) ->
     assert "<td>1500.00</td>" in machine_html(found["machine"])
     modes = found["machine"].housing
     assert f"<td>{modes.frequencies_hz[2]:.1f}</td>" in modes_html(modes)
+
+
+def test_sound_of_a_housing_is_what_crosses_a_half_sphere(example: Any) -> None:
+    """Near pressures over a half sphere on the floor, p²/ρc where waves run outwards; nine places come near it."""
+    found = example("sound_of_a_housing")
+    middle, radius = np.array([0.0, -0.022, 0.0]), 8.0
+    heights, weights = np.polynomial.legendre.leggauss(24)
+    heights, weights = 0.5 * (heights + 1.0), 0.5 * weights
+    around = np.arange(48) * np.pi / 24.0
+    level = np.sqrt(1.0 - heights**2)
+    directions = np.stack(
+        [np.outer(level, np.cos(around)), np.outer(heights, np.ones(48)), np.outer(level, np.sin(around))], axis=-1
+    )
+    for sound, power in zip(found["solved"], found["powers"], strict=True):
+        squared = np.abs(sound.pressure_at(middle + radius * directions.reshape(-1, 3))) ** 2 / 2.0
+        mean = weights @ squared.reshape(24, 48).mean(axis=1)
+        through = 2.0 * np.pi * radius**2 * mean / (1.204 * 343.2)
+        assert power == pytest.approx(10.0 * np.log10(through / 1e-12), abs=0.1)
+    together = [10.0 * np.log10(sum(10.0 ** (0.1 * np.array(found[name])))) for name in ("powers", "measured")]
+    assert together[1] == pytest.approx(together[0], abs=2.0)

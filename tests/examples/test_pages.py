@@ -146,7 +146,7 @@ def test_the_variant_of_the_reducer_is_drawn(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_programs_of_all_pages_are_run() -> None:
     """Those of README are an example, and tutorials and how-to pages run as a whole."""
-    here = {"README.md", "docs/python.md", "docs/report.md", "docs/two-stage-reducer.md"}
+    here = {"README.md", "docs/python.md", "docs/report.md", "docs/sound.md", "docs/two-stage-reducer.md"}
     for page in PAGES:
         name = page.relative_to(ROOT).as_posix()
         if "```python" in page.read_text(encoding="utf-8"):
@@ -160,6 +160,16 @@ def test_the_page_on_the_report_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     exec(compile(block, "docs/report.md", "exec"), names)  # noqa: S102 - the page is ours
     assert names["page"] == Path("out", "report.html")
     assert "<h2 id=" in names["page"].read_text(encoding="utf-8")
+
+
+def test_the_page_on_sound_runs() -> None:
+    """Efficiencies of a box whose modes have wavelengths in air about as long as itself."""
+    (block,) = blocks("docs/sound.md")
+    names: dict[str, Any] = {"__name__": "__main__"}
+    exec(compile(block, "docs/sound.md", "exec"), names)  # noqa: S102 - the page is ours
+    efficiency = names["efficiency"].values
+    assert len(efficiency) == len(names["sound"].document["modes"]) >= 3
+    assert np.all((efficiency > 0.5) & (efficiency < 2.0))
 
 
 def test_files_that_contributing_names_exist() -> None:

@@ -57,6 +57,35 @@ DOCUMENT = {
     "coordinates": 50,
     "energy_error": 1e-6,
     "sensors": [{"name": HOSTILE, "peaks": [LINE]}],
+    "sound": {
+        "method": "boundary-elements",
+        "highest_frequency_hz": 3000.0,
+        "surface": {"triangles": 500, "area_m2": 0.2, "caps_m2": 0.01},
+        "lines": [
+            {
+                "frequency_hz": 1000.0,
+                "order": 10.9,
+                "name": HOSTILE,
+                "sound_power_db": 70.0,
+                "sound_power_db_a": 70.0,
+                "equivalent_power_db": 71.0,
+                "surface_power_db": 70.1,
+                "radiation_efficiency": 0.8,
+                "contributions": {
+                    "housing_modes": [{"name": "housing mode 2", "share": 0.9}],
+                    "bearings": [{"name": HOSTILE, "share": 1.4}],
+                    "faces": [{"name": "top", "share": 0.7}],
+                },
+            }
+        ],
+        "covered": 0.99,
+        "total_db": 70.0,
+        "total_db_a": 70.0,
+        "faces_w": {"top": 1e-5},
+        "modes": [],
+        "microphones": [],
+        "box_power_db": None,
+    },
 }
 FREQUENCY = np.arange(0.0, 3000.0, 2.0)
 
@@ -91,7 +120,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     (folder / "summary.json").write_text(json.dumps(DOCUMENT), encoding="utf-8")
     (folder / "case.toml").write_text(f'title = "x"\nnotes = """{HOSTILE}"""\n', encoding="utf-8")
     y, x = np.mgrid[0:300, 0:500]
-    for name in ("spectrum", "mesh-force", "mode-02-1007Hz", "own"):
+    for name in ("spectrum", "mesh-force", "mode-02-1007Hz", "sound-faces-1000.0Hz", "own"):
         pixels = np.stack([255 - x // 4, 255 - y // 3, 200 + 0 * x], axis=-1).astype(np.uint8)
         Image.fromarray(pixels).save(folder / f"{name}.png")
     speeds = np.arange(1000.0, 3000.0, 100.0)
@@ -177,6 +206,14 @@ def test_chapters_fold_and_a_link_opens_them(browser: Browser, pages: dict[str, 
     browser.wait_for(f"{table}.checkVisibility()")
     place = browser.value("document.querySelector('#run-picture-mode-02-1007hz').getBoundingClientRect().top")
     assert -50.0 < place < 900.0
+
+
+def test_the_loudest_line_leads_to_where_it_radiates(browser: Browser, pages: dict[str, Path]) -> None:
+    browser.open(pages["static"])
+    link = "document.querySelector('#summary-section-loudest-lines a[href=\"#run-picture-sound-faces-1000-0hz\"]')"
+    assert browser.value(f"{link}.textContent") == "1000.0"
+    assert browser.value("document.querySelector('#run-picture-sound-faces-1000-0hz img').naturalWidth") > 0
+    assert "70.0 dB re 1 pW" in browser.value("document.querySelector('#summary-section-loudest-lines p').textContent")
 
 
 def test_a_printed_page_is_light_and_has_no_contents(browser: Browser, pages: dict[str, Path]) -> None:

@@ -1,0 +1,337 @@
+"""Sound: quantities of the housing's radiation and of the sound of a motion's lines, and how they are shown."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.output.quantity import Part, Quantity, Rows, document_of
+from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, percent, table_of
+from housing.acoustics.sound_levels import power_level, pressure_level
+
+if TYPE_CHECKING:
+    from gearwhine.solve.sound import SolvedSound
+
+_METHODS = {
+    "boundary-elements": "boundary elements over the whole surface",
+    "rayleigh": "Rayleigh's integral over flat faces in baffles",
+    "erp": "equivalent radiated power, an estimate",
+}
+_TOLD = 3  # parts of a line that are named
+_SHOWN = 12  # lines on the terminal
+_ON_BOX = 9  # microphones of the box, the last ones
+_FAINT = 0.02  # part of a power that is worth its place
+
+SURFACE = (
+    Quantity("triangles", lambda one: sum(len(part.surface.triangles) for part in one.elements)),
+    Quantity("area_m2", lambda one: sum(part.surface.area for part in one.elements)),
+    Quantity("caps_m2", lambda one: one.cap_area),
+    Quantity("velocity_error", lambda one: one.transfer_error),
+    Quantity("resolved_below_hz", lambda one: one.highest_frequency if np.isfinite(one.highest_frequency) else None),
+)
+"""Of the radiating surface."""
+
+MODE = (
+    Quantity("number", lambda one: one.number, "sound_mode", unit="1", long_name="number of the housing mode"),
+    Quantity(
+        "frequency_hz",
+        lambda one: one.frequency_hz,
+        "sound_mode_frequency",
+        (),
+        "Hz",
+        "natural frequency",
+        heading="natural frequency [Hz]",
+        shown=".1f",
+    ),
+    Quantity(
+        "radiation_efficiency",
+        lambda one: one.radiation_efficiency,
+        "radiation_efficiency",
+        (),
+        "1",
+        "radiation efficiency of the mode at its natural frequency",
+        heading="radiation efficiency",
+        shown=".3g",
+    ),
+    Quantity("faces", lambda one: {face: part for face, part in one.by_face.items() if abs(part) > _FAINT}),
+)
+"""Of the sound of one housing mode."""
+
+MODE_COLUMNS = (
+    Column("mode", "number", "d"),
+    *columns_of(MODE),
+    Column("radiating faces", lambda row: _parts(row["faces"])),
+)
+
+
+def _contributions(row: Any) -> dict[str, list[dict[str, Any]]]:
+    solved, line = row
+    power = line.sound.power
+    modes = line.sound.by_mode
+    named = [(f"housing mode {number}", float(part)) for number, part in enumerate(modes, start=1)]
+    count = len(solved.mode_frequencies)
+    named = [*named[:count], ("local compliance", float(modes[count:].sum()))]
+    groups = {
+        "housing_modes": named,
+        "bearings": list(zip(solved.bearings, line.sound.by_motion.tolist(), strict=True)),
+        "faces": list(line.sound.by_face.items()),
+    }
+    return {
+        group: [
+            {"name": name, "share": part / power}
+            for name, part in sorted(parts, key=lambda one: -abs(one[1]))
+            if abs(part) > _FAINT * power
+        ]
+        for group, parts in groups.items()
+    }
+
+
+def _lines(name: str, of: Any, unit: str, what: str) -> Quantity:
+    """Declare an array over the lines."""
+    return Quantity("", lambda solved: np.array([of(line) for line in solved.lines]), name, ("sound_line",), unit, what)
+
+
+ENTRY = (
+    Quantity("frequency_hz", lambda row: row[1].frequency_hz),
+    Quantity("order", lambda row: row[1].order),
+    Quantity("name", lambda row: row[1].name),
+    Quantity("sound_power_db", lambda row: row[1].level_db),
+    Quantity("sound_power_db_a", lambda row: row[1].level_db_a),
+    Quantity("equivalent_power_db", lambda row: row[1].equivalent_db),
+    Quantity("radiation_efficiency", lambda row: row[1].sound.radiation_efficiency),
+    Quantity("surface_power_db", lambda row: float(power_level(row[1].sound.surface_power))),
+    Quantity("contributions", _contributions),
+    Quantity(
+        "microphones_db",
+        lambda row: {
+            name: float(pressure_level(row[1].microphones[place])) for place, name in enumerate(row[0].microphones)
+        },
+    ),
+)
+"""Of the solved sound and one of its lines."""
+
+
+def _picture_of(row: Document) -> tuple[str, ...]:
+    """Return the place in the report that shows where the housing radiates at a line."""
+    return (f"picture sound-faces-{row['frequency_hz']:.1f}Hz",)
+
+
+def _largest(heading: str, group: str, *, share: bool = True) -> Column:
+    """Return the column that names the largest part of a line's power, with its share."""
+
+    def text(row: Document) -> str:
+        parts = row["contributions"][group]
+        if not parts:
+            return ""
+        name = str(parts[0]["name"]).removeprefix("housing mode ").replace("local compliance", "local")
+        return f"{name}, {100.0 * parts[0]['share']:.0f} %" if share else name
+
+    return Column(heading, text)
+
+
+_LINE = Column("line [Hz]", "frequency_hz", ".1f", link=_picture_of)
+_ORDER = Column("order", "order", ".4g")
+_LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB]", "sound_power_db_a", ".1f"))
+_NAME = Column("what it is", lambda row: str(row["name"]).replace(" -> ", " → "))
+_MODE, _FACE = _largest("by mode", "housing_modes"), _largest("by face", "faces")
+
+LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _largest("by bearing", "bearings", share=False), _FACE)
+"""Of a line, on the terminal and the first page."""
+
+LINE_COLUMNS = (
+    _LINE,
+    _ORDER,
+    _NAME,
+    *_LEVELS,
+    Column("ERP [dB]", "equivalent_power_db", ".1f"),
+    Column("efficiency", "radiation_efficiency", ".2g"),
+    _MODE,
+    _largest("by bearing", "bearings"),
+    _FACE,
+)
+"""Of a line, in the report."""
+
+MICROPHONE = (
+    Quantity("name", lambda row: row[0], heading="microphone"),
+    Quantity("position_m", lambda row: row[1]),
+    Quantity("level_db", lambda row: row[2], heading="sound pressure [dB re 20 µPa]", shown=".1f"),
+    Quantity("level_db_a", lambda row: row[3], heading="A-weighted [dB]", shown=".1f"),
+)
+"""Of a microphone: name, position, level of all lines and the same A-weighted."""
+
+
+def _microphones(solved: "SolvedSound") -> list[Any]:
+    levels, weighted = solved.microphone_levels(), solved.microphone_levels(weighted=True)
+    return [
+        (name, place, levels[name] if solved.lines else None, weighted[name] if solved.lines else None)
+        for name, place in solved.microphones.items()
+    ]
+
+
+def _bands(solved: "SolvedSound") -> list[dict[str, float]]:
+    return [
+        {"frequency_hz": hertz, "sound_power_db": level}
+        for hertz, level in zip(*(values.tolist() for values in solved.bands), strict=True)
+        if np.isfinite(level)
+    ]
+
+
+SOUND = (
+    Quantity("method", lambda solved: solved.radiation.method),
+    Quantity("highest_frequency_hz", lambda solved: solved.limit_hz),
+    Part("surface", lambda solved: solved.radiation, SURFACE),
+    Rows("lines", lambda solved: [(solved, line) for line in solved.lines], ENTRY),
+    Quantity("covered", lambda solved: solved.covered if solved.lines else None),
+    Quantity("total_db", lambda solved: solved.total_db if solved.lines else None),
+    Quantity("total_db_a", lambda solved: solved.total_db_a if solved.lines else None),
+    Quantity("third_octaves", _bands),
+    Quantity("faces_w", lambda solved: solved.by_face),
+    Rows("modes", lambda solved: solved.modes, MODE, "sound_mode"),
+    Rows("microphones", _microphones, MICROPHONE),
+    Quantity("box_power_db", lambda solved: solved.box_level_db),
+    Quantity("microphone_error", lambda solved: None if solved.histories is None else solved.histories.error),
+    Quantity(
+        "",
+        lambda solved: None if solved.histories is None else solved.histories.times,
+        "microphone_time",
+        ("microphone_time",),
+        "s",
+        "time",
+        common=True,
+    ),
+    Quantity(
+        "",
+        lambda solved: None if solved.histories is None else solved.histories.pressure,
+        "microphone_pressure",
+        ("microphone", "microphone_time"),
+        "Pa",
+        "sound pressure at the microphone",
+    ),
+    _lines("sound_frequency", lambda line: line.frequency_hz, "Hz", "frequency of the line"),
+    _lines("sound_name", lambda line: line.name, "", "name of the line"),
+    _lines("sound_order", lambda line: line.order, "1", "order over the speed of the first driver"),
+    _lines("sound_power", lambda line: line.sound.power, "W", "sound power of the line"),
+    _lines("equivalent_radiated_power", lambda line: line.sound.medium.impedance * line.sound.area
+           * line.sound.mean_square_velocity, "W", "equivalent radiated power of the line"),
+    Quantity("", lambda solved: list(solved.microphones) or None, "microphone", ("microphone",), common=True),
+    Quantity(
+        "",
+        lambda solved: np.array(list(solved.microphones.values())) if solved.microphones else None,
+        "microphone_position",
+        ("microphone", "coordinate"),
+        "m",
+        "position of the microphone",
+        common=True,
+    ),
+    Quantity(
+        "",
+        lambda solved: (
+            np.array([[np.stack([v.real, v.imag], -1) for v in line.microphones] for line in solved.lines])
+            if solved.microphones and solved.lines
+            else None
+        ),
+        "sound_pressure",
+        ("sound_line", "microphone", "part"),
+        "Pa",
+        "complex amplitude of the sound pressure",
+    ),
+)  # fmt: skip
+"""Of the sound of a case."""
+
+
+def sound_document(solved: "SolvedSound") -> dict[str, Any]:
+    """Return the sound as the command's JSON."""
+    return document_of(SOUND, solved)
+
+
+def _parts(faces: Document) -> str:
+    """Return parts of a power in words, the largest first."""
+    ordered = sorted(faces.items(), key=lambda one: -one[1])[:_TOLD]
+    return ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in ordered)
+
+
+def loudest_lines(document: Document) -> list[Document]:
+    """Return the lines of a document, the loudest first."""
+    return sorted(document["lines"], key=lambda line: -float(line["sound_power_db"]))
+
+
+def total_sentence(document: Document) -> str:
+    """Return the sound power level of all lines in words; empty without lines."""
+    if document["total_db"] is None:
+        return ""
+    return (
+        f"Sound power level L_W of {counted(len(document['lines']), 'line')} together: {document['total_db']:.1f} dB "
+        f"re 1 pW, A-weighted L_WA {document['total_db_a']:.1f} dB"
+    )
+
+
+def _content(document: Document) -> Iterator[str | Table]:
+    surface = document["surface"]
+    yield (
+        f"Sound by {_METHODS[document['method']]}: {surface['triangles']} triangles, {surface['area_m2']:.3g} m², "
+        f"of which {surface['caps_m2']:.2g} m² close holes; up to {document['highest_frequency_hz']:.0f} Hz"
+    )
+    if total := total_sentence(document):
+        yield f"{total}; by an estimate {percent(document['covered'])} of the whole"
+        power = sum(document["faces_w"].values())
+        if power > 0.0:
+            yield f"Radiating faces: {_parts({face: part / power for face, part in document['faces_w'].items()})}"
+    if document["box_power_db"] is not None:
+        levels = [one["level_db"] for one in document["microphones"][-_ON_BOX:]]
+        yield (
+            f"By the mean pressure on the box of microphones (ISO 3744): L_W {document['box_power_db']:.1f} dB; "
+            f"pressure {min(levels):.1f} to {max(levels):.1f} dB re 20 µPa"
+        )
+
+
+def sections(document: Document) -> tuple[Section, ...]:
+    """Return the levels, the lines, the microphones and the modes for the terminal."""
+    microphones = document["microphones"]
+    if document["box_power_db"] is not None:
+        microphones = microphones[:-_ON_BOX]
+    tables = (
+        *table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_SHOWN], "Loudest lines, and the largest part of each"),
+        *table_of(columns_of(MICROPHONE), microphones, "All lines at the microphones"),
+        *table_of(MODE_COLUMNS, document["modes"], "Modes; a radiation efficiency of 1 is that of a plane wave"),
+    )
+    return (Section("", (*_content(document), *tables)),)
+
+
+def report(document: Document) -> Section:
+    """Chapter of the report."""
+    tables = (
+        *table_of(LINE_COLUMNS, loudest_lines(document), "Lines, the loudest first, and the largest part of each"),
+        *table_of(columns_of(MICROPHONE), document["microphones"], "All lines at the microphones"),
+        *table_of(MODE_COLUMNS, document["modes"], "Radiation of the housing's modes"),
+    )
+    notes = (_READ,) if document["lines"] else ()
+    return Section("Sound", (*_content(document), *notes, *tables), pictures=_PICTURES)
+
+
+_READ = (
+    "L_W is the sound power level re 1 pW, L_WA the same A-weighted. The equivalent radiated power (ERP) is an "
+    "estimate that takes a radiation efficiency of 1. The order is the frequency over that of the first driver's "
+    "rotation. Parts are signed: others that work against the largest one make it exceed 100 %. Mode local is the "
+    "compliance around the bearings beyond the housing's modes."
+)
+
+_PICTURES = (
+    Picture(
+        "sound-power",
+        "Sound power level of each line, the loudest with names, and of third octaves; marks where ERP differs "
+        "from the line: the housing radiates less or more than a plane wave of its velocity.",
+    ),
+    Picture("sound-faces-all", "Mean sound intensity out of the housing over all lines: red radiates, blue absorbs."),
+    Picture("sound-faces", "The same at one of the loudest lines.", small=True),
+    Picture(
+        "sound-directivity",
+        "Sound pressure level of the far field over direction at the loudest lines, in three planes through the "
+        "middle.",
+    ),
+    Picture(
+        "sound-efficiency",
+        "Radiation efficiency of each housing mode at its natural frequency; 1 is that of a plane wave. Modes far "
+        "below 1 may move much and are hardly heard.",
+    ),
+)
+"""Figures of the sound: power of lines and third octaves, radiating faces, directivity, efficiency of the modes."""

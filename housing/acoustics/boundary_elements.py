@@ -1,0 +1,353 @@
+"""Exterior Helmholtz equation by boundary elements: direct collocation with CHIEF points, least squares.
+
+For the time factor exp(+i ω t) the pressure p and the outward normal velocity v of a closed surface S satisfy
+
+``c(x) p(x) = ∫ (p(y) ∂G/∂n(x, y) + i ω ρ v(y) G(x, y)) dS``, ``c(x) = 1 + ∫ ∂G₀/∂n(x, y) dS``
+
+at a point x of S, where c is the part of the directions that leads into the air. G₀ is Green's function of Laplace's
+equation; both integrals over G and G₀ use the same points, so that a constant pressure is represented exactly. The
+pressure is linear on each triangle and continuous, the velocity linear on each triangle and discontinuous at edges.
+
+At the natural frequencies of the air *inside* S with p = 0 on the wall the equation at the vertices alone is singular.
+Points in the inside, where the right-hand side is zero, complete it (combined Helmholtz integral equation formulation,
+CHIEF): H. A. Schenck, "Improved integral formulation for acoustic radiation problems", Journal of the Acoustical
+Society of America 44 (1968), 41-58. Many points, spread at random, and least squares make an accident unlikely that
+all lie on nodal surfaces; points that were not used prove it, see :attr:`SoundField.interior_residual`.
+
+The equation of Burton and Miller, which couples the normal derivative, needs a smooth surface at the vertices and
+spoils weak radiators at low frequencies; on a sphere and on boxes CHIEF was the more accurate.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import lapack
+
+from housing.acoustics.boundary_integrals import SourcePoints, far_field_amplitudes, solid_angles, surface_integrals
+from housing.acoustics.medium import AIR, HardPlane, Medium
+from housing.acoustics.radiating_surface import RadiatingSurface
+from housing.errors import HousingError
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_TWO_PI = 2.0 * np.pi
+_INNER_WEIGHT = 5.0  # of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
+_CHECK_POINTS = 12
+_FEWEST_INNER = 30
+_MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # of linear shape functions on a triangle of unit area
+
+
+@dataclass(frozen=True)
+class SoundField:
+    """Solution for some distributions of normal velocity at one frequency.
+
+    Attributes
+    ----------
+    surface : RadiatingSurface
+    medium : Medium
+    plane : HardPlane or None
+    frequency_hz : float
+    velocity : ndarray, shape (3 n_triangles, n)
+        Normal velocity at the corners of each triangle [m/s].
+    pressure : ndarray, shape (n_points, n)
+        At the vertices [Pa].
+    interior_residual : float
+        Root mean square of the pressure at points inside that the solution did not use, where zero is exact, relative
+        to that on the surface; the largest of all distributions. Zero for a baffled face, which has no inside.
+    """
+
+    surface: RadiatingSurface
+    medium: Medium
+    plane: HardPlane | None
+    frequency_hz: float
+    velocity: ComplexArray
+    pressure: ComplexArray
+    interior_residual: float
+
+    @property
+    def wavenumber(self) -> float:
+        """Wavenumber k = ω / c [rad/m]."""
+        return _TWO_PI * self.frequency_hz / self.medium.speed_of_sound
+
+    @property
+    def flux(self) -> ComplexArray:
+        """Normal derivative of the pressure, −i ω ρ v [Pa/m]."""
+        return -1j * self.wavenumber * self.medium.impedance * self.velocity
+
+    @cached_property
+    def mean_square_velocity(self) -> ComplexArray:
+        """∫ v̄ᵢ vⱼ dS [m⁴/s²], shape (n, n)."""
+        return surface_product(self.surface, self.velocity, self.velocity)
+
+    @property
+    def pressure_at_corners(self) -> ComplexArray:
+        """Pressure at the corners of each triangle [Pa], shape (3 n_triangles, n)."""
+        return self.pressure[self.surface.triangles].reshape(len(self.velocity), -1)
+
+    @cached_property
+    def surface_resistance(self) -> FloatArray:
+        """Radiation resistance from the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n) [W s²/m² per unit velocity]."""
+        product = surface_product(self.surface, self.velocity, self.pressure_at_corners)
+        return np.asarray(0.5 * (product + product.conj().T).real)
+
+    @cached_property
+    def reciprocity_error(self) -> float:
+        """Largest difference of ∫ vᵢ pⱼ dS and ∫ vⱼ pᵢ dS relative to √(∫vᵢpᵢ ∫vⱼpⱼ) in size, of two distributions."""
+        product = surface_product(self.surface, self.velocity.conj(), self.pressure_at_corners)
+        size = np.sqrt(np.abs(np.diag(product)))
+        return float(np.max(np.abs(product - product.T) / np.outer(size, size)))
+
+    @cached_property
+    def resistance(self) -> FloatArray:
+        """Radiation resistance R from the far field, shape (n, n): the power of amplitudes a is ½ aᴴ R a.
+
+        ``R = (1 / ρ c) ∫ F̄ᵢ Fⱼ dΩ`` over the directions into the air, where F exp(−i k r) / r is the far field. R is
+        positive semidefinite by construction; an error ε of the pressure that is out of phase with the velocity, which
+        spoils the surface's power of a weak radiator, changes it by ε² only.
+        """
+        directions, weights = _directions(self._degree)
+        far = self.far_field(directions)
+        share = 1.0 if self.plane is None else 0.5  # the field and its mirror image hold each direction twice
+        return np.asarray(share / self.medium.impedance * ((far.conj().T * weights) @ far).real)
+
+    @property
+    def _degree(self) -> int:
+        center = self.surface.points.mean(axis=0)
+        reach = np.linalg.norm(self.surface.points - center, axis=1).max()
+        if self.plane is not None:
+            reach += abs(float(self.plane.height(center[None])[0]))
+        return int(np.ceil(self.wavenumber * reach)) + 9
+
+    def far_field(self, directions: FloatArray) -> ComplexArray:
+        """Amplitude F of the far field F exp(−i k r) / r [Pa m], shape (n_directions, n).
+
+        Parameters
+        ----------
+        directions : ndarray, shape (n_directions, 3)
+            Unit vectors. Distances r are from the centre of the surface's vertices, or its foot on the hard plane.
+        """
+        center = self.surface.points.mean(axis=0)
+        if self.plane is not None:
+            center = center - self.plane.height(center[None])[0] * self.plane.normal
+        sources = SourcePoints.of(self.surface)
+        flux = self.flux
+        far = far_field_amplitudes(sources, directions, center, self.wavenumber, self.pressure, flux)
+        if self.plane is not None:
+            images = directions - 2.0 * np.outer(directions @ self.plane.normal, self.plane.normal)
+            far = far + far_field_amplitudes(sources, images, center, self.wavenumber, self.pressure, flux)
+        return far
+
+    def pressure_at(self, points: FloatArray) -> ComplexArray:
+        """Sound pressure at points in the air [Pa], shape (n_points, n).
+
+        Raises
+        ------
+        HousingError
+            Where a point is inside the surface or behind the hard plane.
+        """
+        if self.plane is not None and (behind := np.flatnonzero(self.plane.height(points) < 0.0)).size:
+            raise HousingError(f"the point {_place(points[behind[0]])} is behind the hard plane")
+        if not len(self.surface.open_edges):
+            inside = np.flatnonzero(solid_angles(self.surface, points) > _TWO_PI)
+            if inside.size:
+                raise HousingError(f"the point {_place(points[inside[0]])} is inside the radiating surface")
+        return _represent(self.surface, self.plane, points, self.wavenumber, self.pressure, self.flux)
+
+    @cached_property
+    def intensity(self) -> FloatArray:
+        """Mean sound intensity out of each triangle [W/m²], shape (n_triangles, n)."""
+        shape = (len(self.surface.triangles), 3, -1)
+        pressure, velocity = self.pressure[self.surface.triangles], self.velocity.reshape(shape)
+        return np.asarray(0.5 * np.einsum("ean,ab,ebn->en", velocity.conj(), _MASS, pressure).real)
+
+
+class BoundaryElements:
+    """Boundary elements of a closed surface in a medium, or of a flat face in a baffle.
+
+    A flat face that lies in the hard plane radiates as Rayleigh's integral says, ``p = 2 i ω ρ ∫ v G dS``: the image
+    doubles the single layer and cancels the double layer, so that there is nothing to solve (Lord Rayleigh, The Theory
+    of Sound, vol. 2, §278).
+
+    Parameters
+    ----------
+    surface : RadiatingSurface
+        Closed, or flat in the hard plane.
+    medium : Medium
+    plane : HardPlane, optional
+        A hard floor, or the baffle of a flat face.
+
+    Raises
+    ------
+    HousingError
+        Where the surface is neither closed nor flat in the plane, is turned inside out, or reaches behind the plane.
+    """
+
+    def __init__(self, surface: RadiatingSurface, medium: Medium = AIR, plane: HardPlane | None = None) -> None:
+        self.surface, self.medium, self.plane = surface, medium, plane
+        rounding = 1e-9 * float(np.ptp(surface.points, axis=0).max())
+        heights = np.zeros(0) if plane is None else plane.height(surface.points)
+        self.baffled = plane is not None and bool(np.abs(heights).max() <= 1e3 * rounding)
+        if not self.baffled:
+            surface.require_closed()
+            if plane is not None and heights.min() < -rounding:
+                raise HousingError(f"the radiating surface reaches {-1e3 * heights.min():.3g} mm behind the hard plane")
+
+    def highest_frequency(self, elements: float = 6.0) -> float:
+        """Highest frequency that the surface resolves [Hz], see :meth:`RadiatingSurface.highest_frequency`."""
+        return self.surface.highest_frequency(self.medium.speed_of_sound, elements)
+
+    def require_resolved(self, frequency_hz: float, elements: float = 3.0) -> None:
+        """Refuse a frequency at which the triangles are too large.
+
+        Raises
+        ------
+        HousingError
+            With the edge length that is needed.
+        """
+        limit = self.highest_frequency(elements)
+        if frequency_hz > limit:
+            edge = self.medium.speed_of_sound / (6.0 * frequency_hz)
+            raise HousingError(
+                f"the triangles of the radiating surface are too large for {frequency_hz:.0f} Hz: {elements:g} edges a "
+                f"wavelength end at {limit:.0f} Hz; six need edges of {1e3 * edge:.3g} mm"
+            )
+
+    @cached_property
+    def _inner_points(self) -> FloatArray:
+        """Points inside, no nearer to the surface than half an edge; the first few are checks.
+
+        They are random means of four vertices, so that they turn and grow with the surface.
+        """
+        generator = np.random.default_rng(1968)
+        found: list[FloatArray] = []
+        most = max(_FEWEST_INNER, len(self.surface.points) // 3) + _CHECK_POINTS
+        centers, reach = self.surface.corners.mean(axis=1), 0.6 * self.surface.lengths
+        for _ in range(400):
+            chosen = generator.integers(len(self.surface.points), size=(64, 4))
+            trial = np.einsum("ti,tij->tj", generator.dirichlet(np.ones(4), size=64), self.surface.points[chosen])
+            trial = trial[solid_angles(self.surface, trial) > 1.98 * _TWO_PI]
+            apart = np.linalg.norm(trial[:, None] - centers, axis=2)
+            found += list(trial[(apart > reach).all(axis=1)])
+            if len(found) >= most:
+                break
+        return np.array(found[:most]).reshape(-1, 3)
+
+    def _inner_count(self, wavenumber: float) -> int:
+        """Twice the natural frequencies of the inside, by Weyl's law, within 5 % of this one, and a few more."""
+        expected = 0.2 * self.surface.volume * wavenumber**3 / (2.0 * np.pi**2)
+        return min(_FEWEST_INNER + int(expected), len(self._inner_points) - _CHECK_POINTS)
+
+    def solve(self, frequency_hz: float, velocity: npt.ArrayLike) -> SoundField:
+        """Solve for the sound field of some distributions of normal velocity.
+
+        Parameters
+        ----------
+        frequency_hz : float
+        velocity : array_like, shape (3 n_triangles, n)
+            Outward normal velocity at the corners of each triangle [m/s].
+
+        Raises
+        ------
+        HousingError
+            Where the frequency is not positive or the triangles are too large for it.
+        """
+        if frequency_hz <= 0.0:
+            raise HousingError(f"a frequency of {frequency_hz:g} Hz; expected a positive one")
+        self.require_resolved(frequency_hz)
+        given = np.ascontiguousarray(
+            np.asarray(velocity, dtype=np.complex128).reshape(3 * len(self.surface.triangles), -1)
+        )
+        wavenumber = _TWO_PI * frequency_hz / self.medium.speed_of_sound
+        flux = -1j * wavenumber * self.medium.impedance * given
+        if self.baffled:
+            assert self.plane is not None
+            vertices = self.surface.points
+            own = np.arange(len(vertices))
+            pressure = -2.0 * surface_integrals(self.surface, vertices, own, wavenumber, flux).single
+            return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, 0.0)
+        pressure = self._solve_closed(wavenumber, flux)
+        checks = self._inner_points[:_CHECK_POINTS]
+        inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)
+        size = np.sqrt((np.abs(pressure) ** 2).mean(axis=0))
+        left = np.sqrt((np.abs(inside) ** 2).mean(axis=0)) / np.where(size > 0.0, size, 1.0)
+        return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, float(left.max()))
+
+    def _solve_closed(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
+        vertices = self.surface.points
+        count, inner = len(vertices), self._inner_points[_CHECK_POINTS:][: self._inner_count(wavenumber)]
+        rows = count + len(inner)
+        # LAPACK works in place on arrays in Fortran order.
+        matrix = np.zeros((rows, count), dtype=np.complex128, order="F")
+        right = np.zeros((rows, flux.shape[1]), dtype=np.complex128, order="F")
+        own = np.arange(count)
+        direct = surface_integrals(self.surface, vertices, own, wavenumber, flux)
+        matrix[:count], right[:count], free = -direct.double, -direct.single, 1.0 + direct.static
+        inside = surface_integrals(self.surface, inner, None, wavenumber, flux)
+        matrix[count:], right[count:] = inside.double, inside.single
+        if self.plane is not None:
+            mirrored = self.plane.mirror(vertices)
+            touching = np.abs(self.plane.height(vertices)) <= 1e-9 * np.ptp(vertices)
+            image = surface_integrals(self.surface, mirrored, np.where(touching, own, -1), wavenumber, flux)
+            matrix[:count] -= image.double
+            right[:count] -= image.single
+            free += image.static
+            image = surface_integrals(self.surface, self.plane.mirror(inner), None, wavenumber, flux)
+            matrix[count:] += image.double
+            right[count:] += image.single
+        matrix[own, own] += free
+        matrix[count:] *= _INNER_WEIGHT
+        right[count:] *= _INNER_WEIGHT
+        _, solution, failed = lapack.zgels(
+            matrix, right, lwork=64 * (count + flux.shape[1]), overwrite_a=True, overwrite_b=True
+        )
+        if failed:
+            raise HousingError(f"the boundary elements are singular at {wavenumber:.6g} rad/m")
+        return np.ascontiguousarray(solution[:count])
+
+
+def _represent(
+    surface: RadiatingSurface,
+    plane: HardPlane | None,
+    points: FloatArray,
+    wavenumber: float,
+    pressure: ComplexArray,
+    flux: ComplexArray,
+) -> ComplexArray:
+    """∫ (p ∂G/∂n − q G) dS at points off the surface, with the images in a hard plane."""
+    found = surface_integrals(surface, points, None, wavenumber, flux)
+    field = found.double @ pressure - found.single
+    if plane is not None:
+        found = surface_integrals(surface, plane.mirror(points), None, wavenumber, flux)
+        field = field + found.double @ pressure - found.single
+    return field
+
+
+def surface_product(
+    surface: RadiatingSurface, one: FloatArray | ComplexArray, other: FloatArray | ComplexArray
+) -> ComplexArray:
+    """∫ ūᵢ wⱼ dS of fields that are linear on each triangle, given at its corners."""
+    weighted = np.einsum("e,ab,ebn->ean", surface.areas, _MASS, other.reshape(len(surface.areas), 3, -1))
+    return np.asarray(one.conj().T @ weighted.reshape(len(one), -1))
+
+
+def _directions(degree: int) -> tuple[FloatArray, FloatArray]:
+    """Return unit vectors and weights that integrate products of two spherical harmonics of a degree.
+
+    Gauss's points along the axis y, which is the height of the cases, times even steps around it; upper and lower
+    directions mirror each other.
+    """
+    heights, weights = np.polynomial.legendre.leggauss(degree + 1)
+    angles = np.pi * np.arange(2 * degree + 2) / (degree + 1)
+    level = np.sqrt(1.0 - heights**2)
+    directions = np.stack(
+        [np.outer(level, np.cos(angles)), np.outer(heights, np.ones(len(angles))), np.outer(level, np.sin(angles))], -1
+    )
+    return directions.reshape(-1, 3), np.repeat(weights, len(angles)) * np.pi / (degree + 1)
+
+
+def _place(point: FloatArray) -> str:
+    x, y, z = 1e3 * point
+    return f"({x:.4g}, {y:.4g}, {z:.4g}) mm"

@@ -1,0 +1,365 @@
+"""Radiation of a housing's modes: sound power ½ q̇ᴴ R q̇ by boundary elements, Rayleigh's integral or the ERP estimate.
+
+The normal velocity of the radiating surface is a sum of the modes' with the rates q̇ of their coordinates. Each method
+turns it into a pressure on the surface:
+
+- *boundary elements*: the exterior Helmholtz equation over the whole surface;
+- *Rayleigh*: each chosen flat face alone in an infinite baffle;
+- *ERP*, the equivalent radiated power: ρ c v at every point, a radiation efficiency of 1. It is an estimate.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from housing.acoustics.boundary_elements import BoundaryElements, surface_product
+from housing.acoustics.medium import AIR, HardPlane, Medium
+from housing.acoustics.radiating_surface import RadiatingSurface
+from housing.acoustics.surface_velocity import face_surface, surface_velocity, transfer_error
+from housing.acoustics.wrapping import wrap
+from housing.errors import HousingError
+from housing.fem.surface import FlatFace
+from meshes import Mesh
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+Method = Literal["boundary-elements", "rayleigh", "erp"]
+
+POWERS_AGREE = 0.1
+"""Largest relative difference of the power through the surface and into the far field."""
+
+
+class Field(Protocol):
+    """Pressure on a surface that moves, by any method."""
+
+    @property
+    def surface(self) -> RadiatingSurface: ...  # noqa: D102
+    @property
+    def velocity(self) -> ComplexArray: ...  # noqa: D102
+    @property
+    def pressure_at_corners(self) -> ComplexArray: ...  # noqa: D102
+    @property
+    def mean_square_velocity(self) -> ComplexArray: ...  # noqa: D102
+    @property
+    def resistance(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def surface_resistance(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def intensity(self) -> FloatArray: ...  # noqa: D102
+
+
+@dataclass(frozen=True)
+class EquivalentField:
+    """Field of the equivalent radiated power: the pressure ρ c v of a plane wave at every point.
+
+    The attributes are those of :class:`housing.acoustics.boundary_elements.SoundField`.
+    """
+
+    surface: RadiatingSurface
+    medium: Medium
+    velocity: ComplexArray
+
+    @property
+    def pressure_at_corners(self) -> ComplexArray:
+        """ρ c v [Pa], shape (3 n_triangles, n)."""
+        return self.medium.impedance * self.velocity
+
+    @cached_property
+    def mean_square_velocity(self) -> ComplexArray:
+        """∫ v̄ᵢ vⱼ dS [m⁴/s²], shape (n, n)."""
+        return surface_product(self.surface, self.velocity, self.velocity)
+
+    @property
+    def resistance(self) -> FloatArray:
+        """ρ c Re ∫ v̄ᵢ vⱼ dS, shape (n, n)."""
+        return np.asarray(self.medium.impedance * self.mean_square_velocity.real)
+
+    @property
+    def surface_resistance(self) -> FloatArray:
+        """The same."""
+        return self.resistance
+
+    @property
+    def intensity(self) -> FloatArray:
+        """½ ρ c times the mean |v|² of each triangle [W/m²], shape (n_triangles, n)."""
+        corners = self.velocity.reshape(len(self.surface.triangles), 3, -1)
+        mean = (np.abs(corners.sum(axis=1)) ** 2 + (np.abs(corners) ** 2).sum(axis=1)) / 12.0
+        return np.asarray(0.5 * self.medium.impedance * mean)
+
+
+@dataclass(frozen=True)
+class RadiatedSound:
+    """Sound of some motions of the housing at one frequency, which are added coherently.
+
+    Attributes
+    ----------
+    frequency_hz : float
+    medium : Medium
+    fields : tuple of Field
+        One, or for Rayleigh's integral one of each face.
+    modal : tuple of ndarray, shape (3 n_triangles, n_modes)
+        Normal velocities of the modes, of each field's surface.
+    coordinates : ndarray, shape (n_modes, n)
+        Rates q̇ of the modes' coordinates in each motion.
+    faces : tuple of str
+        Label of every triangle, of all fields one after the other.
+    """
+
+    frequency_hz: float
+    medium: Medium
+    fields: tuple[Field, ...]
+    modal: tuple[FloatArray, ...]
+    coordinates: ComplexArray
+    faces: tuple[str, ...]
+
+    @cached_property
+    def resistance(self) -> FloatArray:
+        """Radiation resistance R of the motions: their sum with amplitudes a has the power ½ aᴴ R a, shape (n, n)."""
+        return np.asarray(sum(field.resistance for field in self.fields))
+
+    @property
+    def power(self) -> float:
+        """Sound power of the sum of all motions [W]."""
+        return float(0.5 * self.resistance.sum())
+
+    @property
+    def surface_power(self) -> float:
+        """The same by the intensity on the surface [W]."""
+        return float(0.5 * sum(field.surface_resistance.sum() for field in self.fields))
+
+    @property
+    def area(self) -> float:
+        """Radiating area [m²]."""
+        return float(sum(field.surface.area for field in self.fields))
+
+    @property
+    def mean_square_velocity(self) -> float:
+        """Mean over the surface of the sum's normal velocity, squared and averaged over time [m²/s²]."""
+        return float(0.5 * sum(field.mean_square_velocity.sum().real for field in self.fields) / self.area)
+
+    @property
+    def radiation_efficiency(self) -> float:
+        """Radiation efficiency σ = W / (ρ c S ⟨v²⟩) of the sum; 0 where nothing moves."""
+        equivalent = self.medium.impedance * self.area * self.mean_square_velocity
+        return self.power / equivalent if equivalent > 0.0 else 0.0
+
+    def require_balance(self) -> None:
+        """Refuse a solution whose powers through the surface and into the far field differ by more than 10 %.
+
+        Raises
+        ------
+        HousingError
+            With both.
+        """
+        if abs(self.surface_power - self.power) > POWERS_AGREE * abs(self.power):
+            raise HousingError(
+                f"at {self.frequency_hz:.1f} Hz the sound power is {self.surface_power:.4g} W through the surface and "
+                f"{self.power:.4g} W in the far field; expected a difference of at most 10 %: use smaller triangles"
+            )
+
+    @cached_property
+    def by_motion(self) -> FloatArray:
+        """Part of each motion in the power of the sum [W], shape (n,): ½ Re Σⱼ Rᵢⱼ; negative where it works against."""
+        return np.asarray(0.5 * self.resistance.sum(axis=1))
+
+    @cached_property
+    def by_mode(self) -> FloatArray:
+        """Part of each mode in the surface power of the sum [W], shape (n_modes,): ½ Re q̇̄ᵢ ∫ vᵢ p dS."""
+        rates = self.coordinates.sum(axis=1)
+        found = np.zeros(len(rates))
+        for field, modal in zip(self.fields, self.modal, strict=True):
+            pressure = field.pressure_at_corners.sum(axis=1, keepdims=True)
+            found += 0.5 * (rates.conj() * surface_product(field.surface, modal, pressure)[:, 0]).real
+        return found
+
+    @cached_property
+    def intensity(self) -> FloatArray:
+        """Mean sound intensity of the sum out of each triangle [W/m²], of all fields one after the other."""
+        found = []
+        for field in self.fields:
+            shape = (len(field.surface.triangles), 3)
+            velocity, pressure = field.velocity.sum(axis=1).reshape(shape), field.pressure_at_corners.sum(axis=1)
+            mean = (np.ones((3, 3)) + np.eye(3)) / 12.0
+            found.append(0.5 * np.einsum("ea,ab,eb->e", velocity.conj(), mean, pressure.reshape(shape)).real)
+        return np.concatenate(found)
+
+    @property
+    def by_face(self) -> dict[str, float]:
+        """Power through each face [W], the largest first."""
+        areas = np.concatenate([field.surface.areas for field in self.fields])
+        labels, number = np.unique(np.array(self.faces), return_inverse=True)
+        powers = np.bincount(number, self.intensity * areas, len(labels))
+        return {str(labels[i]): float(powers[i]) for i in np.argsort(-powers, kind="stable")}
+
+    def pressure_at(self, points: FloatArray) -> ComplexArray:
+        """Sound pressure of the sum at points in the air [Pa], shape (n_points,).
+
+        Raises
+        ------
+        HousingError
+            Where a point is inside, or the method gives no pressure: the ERP, or Rayleigh's integral of several faces.
+        """
+        if len(self.fields) != 1 or isinstance(self.fields[0], EquivalentField):
+            raise HousingError(
+                "the sound pressure at a point needs boundary elements, or Rayleigh's integral of one face"
+            )
+        field = self.fields[0]
+        assert not isinstance(field, EquivalentField)
+        return np.asarray(field.pressure_at(points).sum(axis=1))  # type: ignore[attr-defined]
+
+
+@dataclass(frozen=True)
+class HousingRadiation:
+    """A housing's radiating surfaces and the normal velocities of its modes on them.
+
+    Attributes
+    ----------
+    method : {"boundary-elements", "rayleigh", "erp"}
+    elements : tuple of BoundaryElements
+        One, or for Rayleigh's integral one of each face.
+    modal : tuple of ndarray, shape (3 n_triangles, n_modes)
+        Normal velocity at the corners of the triangles per rate of each mode's coordinate.
+    faces : tuple of str
+        Label of every triangle.
+    cap_area : float
+        Area of the surface that closes holes [m²].
+    transfer_error : float
+        Root mean square over the modes of the relative difference of ∫ v² dS on the radiating surface and on the skin.
+    """
+
+    method: Method
+    elements: tuple[BoundaryElements, ...]
+    modal: tuple[FloatArray, ...]
+    faces: tuple[str, ...]
+    cap_area: float = 0.0
+    transfer_error: float = 0.0
+
+    @classmethod
+    def of_surface(
+        cls,
+        mesh: Mesh,
+        shapes: FloatArray,
+        *,
+        edge: float,
+        close_holes: float,
+        method: Method = "boundary-elements",
+        medium: Medium = AIR,
+        floor: HardPlane | None = None,
+        still: Sequence[str] = (),
+    ) -> "HousingRadiation":
+        """Wrap the whole housing, by boundary elements or as an estimate.
+
+        Parameters
+        ----------
+        mesh : Mesh
+        shapes : ndarray, shape (n_modes, n_nodes, 3)
+        edge : float
+            Of the triangles [m].
+        close_holes : float
+            Diameter of the largest hole that is capped [m].
+        method : {"boundary-elements", "erp"}
+        medium : Medium
+        floor : HardPlane, optional
+        still : sequence of str
+            Surfaces of the mesh that do not radiate.
+
+        Raises
+        ------
+        HousingError
+            Where the housing cannot be wrapped, or the modes on the surface are not those on the skin.
+        """
+        surface = wrap(mesh, edge, close_holes)
+        carried = surface_velocity(mesh, surface)
+        error = transfer_error(carried, shapes)
+        error.require()
+        modal = carried.transfer(tuple(still)) @ shapes.reshape(len(shapes), -1).T
+        return cls(
+            method,
+            (BoundaryElements(surface, medium, floor),),
+            (np.ascontiguousarray(modal),),
+            tuple(carried.face_of_triangles()),
+            carried.cap_area,
+            float(np.sqrt(np.mean(error.relative**2))),
+        )
+
+    @classmethod
+    def of_faces(
+        cls, mesh: Mesh, shapes: FloatArray, faces: dict[str, FlatFace], *, medium: Medium = AIR
+    ) -> "HousingRadiation":
+        """Take flat faces, each in an infinite baffle of its own (Rayleigh's integral).
+
+        Parameters
+        ----------
+        mesh : Mesh
+        shapes : ndarray, shape (n_modes, n_nodes, 3)
+        faces : dict of str to housing.fem.surface.FlatFace
+        medium : Medium
+        """
+        elements, modal, labels = [], [], []
+        for name, face in faces.items():
+            surface, transfer = face_surface(mesh, face.facets)
+            elements.append(BoundaryElements(surface, medium, HardPlane(face.center, face.normal)))
+            modal.append(np.ascontiguousarray(transfer @ shapes.reshape(len(shapes), -1).T))
+            labels += [name] * len(surface.triangles)
+        return cls("rayleigh", tuple(elements), tuple(modal), tuple(labels))
+
+    @property
+    def medium(self) -> Medium:
+        """Acoustic medium."""
+        return self.elements[0].medium
+
+    @property
+    def area(self) -> float:
+        """Radiating area [m²]."""
+        return float(sum(one.surface.area for one in self.elements))
+
+    @property
+    def highest_frequency(self) -> float:
+        """Highest frequency that six elements a wavelength resolve [Hz]; infinity for the estimate."""
+        if self.method == "erp":
+            return float("inf")
+        return min(one.highest_frequency() for one in self.elements)
+
+    def solve(self, frequency_hz: float, coordinates: npt.ArrayLike) -> RadiatedSound:
+        """Solve for the sound of some motions of the housing.
+
+        Parameters
+        ----------
+        frequency_hz : float
+        coordinates : array_like, shape (n_modes, n)
+            Complex amplitudes of the rates of the modes' coordinates, of each motion.
+
+        Raises
+        ------
+        HousingError
+            Where the triangles are too large for the frequency.
+        """
+        rates = np.asarray(coordinates, dtype=np.complex128).reshape(self.modal[0].shape[1], -1)
+        fields: list[Field] = []
+        for elements, modal in zip(self.elements, self.modal, strict=True):
+            velocity = modal @ rates
+            if self.method == "erp":
+                fields.append(EquivalentField(elements.surface, elements.medium, velocity))
+            else:
+                fields.append(elements.solve(frequency_hz, velocity))
+        return RadiatedSound(frequency_hz, self.medium, tuple(fields), self.modal, rates, self.faces)
+
+    def equivalent_power(self, coordinates: npt.ArrayLike) -> FloatArray:
+        """Equivalent radiated power ½ ρ c ∫ |v|² dS of each motion [W], shape (n,)."""
+        rates = np.asarray(coordinates, dtype=np.complex128)
+        total = np.zeros(rates.shape[1])
+        for elements, gram in zip(self.elements, self._grams, strict=True):
+            total += 0.5 * elements.medium.impedance * np.einsum("il,ij,jl->l", rates.conj(), gram, rates).real
+        return total
+
+    @cached_property
+    def _grams(self) -> tuple[FloatArray, ...]:
+        return tuple(
+            surface_product(one.surface, modal, modal).real
+            for one, modal in zip(self.elements, self.modal, strict=True)
+        )

@@ -1,0 +1,193 @@
+"""Skin of a housing as plane triangles between the nodes of its boundary facets: samples and nearest points.
+
+A facet of six nodes becomes four triangles, so that curved facets are followed by their middle nodes. A place is sought
+by its own normal too: of a thin wall, the side that looks the same way is meant.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from housing.errors import HousingError
+from housing.fem.surface import triangle_middles
+from meshes import Mesh
+from meshes.elements import KINDS, Facets
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+# Local nodes of the plane triangles that a facet of a kind is split into.
+SPLITS: dict[str, tuple[tuple[int, int, int], ...]] = {
+    "triangle": ((0, 1, 2),),
+    "triangle6": ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
+    "quad": ((0, 1, 2), (0, 2, 3)),
+    "quad8": ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)),
+    "quad9": tuple(
+        (ring, following, 8) for ring, following in zip((0, 4, 1, 5, 2, 6, 3, 7), (4, 1, 5, 2, 6, 3, 7, 0), strict=True)
+    ),
+}
+_NEAREST = 6  # samples whose triangles may hold the nearest point
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Plane triangles between the nodes of some facets.
+
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (n, 3)
+        Nodes at the corners of each triangle, counter-clockwise seen from outside.
+    corners : ndarray, shape (n, 3, 3)
+        Their places [m].
+    facet : ndarray of int, shape (n,)
+        Facet that each is a part of, counted block after block.
+    places : ndarray, shape (n, 3, 2)
+        Reference coordinates of the corners in the facet.
+    """
+
+    nodes: IntArray
+    corners: FloatArray
+    facet: IntArray
+    places: FloatArray
+
+    @cached_property
+    def normals(self) -> FloatArray:
+        """Outward unit normals, shape (n, 3)."""
+        normal = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
+        length = np.linalg.norm(normal, axis=1, keepdims=True)
+        return np.asarray(normal / np.where(length > 0.0, length, 1.0))
+
+    def samples(self, spacing: float) -> tuple[FloatArray, IntArray]:
+        """Points spread over the triangles.
+
+        Parameters
+        ----------
+        spacing : float
+            Longest edge of the equal parts that each triangle is cut into [m].
+
+        Returns
+        -------
+        points : ndarray, shape (m, 3)
+            Middles of the parts [m].
+        owners : ndarray of int, shape (m,)
+            Their triangles.
+        """
+        edges = np.linalg.norm(np.roll(self.corners, -1, axis=1) - self.corners, axis=2)
+        parts = np.ceil(edges.max(axis=1) / spacing).astype(np.int64)
+        points, owners = [], []
+        for count in np.unique(parts).tolist():
+            shares = triangle_middles(count)
+            chosen = np.flatnonzero(parts == count)
+            points.append(np.einsum("sc,tci->tsi", shares, self.corners[chosen]).reshape(-1, 3))
+            owners.append(np.repeat(chosen, len(shares)))
+        return np.concatenate(points), np.concatenate(owners)
+
+    def nearest(self, places: FloatArray, normals: FloatArray, spacing: float, turned: float) -> "NearestSkin":
+        """Find the nearest points of the skin that look the way of the places.
+
+        Parameters
+        ----------
+        places, normals : ndarray, shape (m, 3)
+            Places [m] and their unit normals.
+        spacing : float
+            Of the samples among which candidates are sought [m].
+        turned : float
+            Distance that counts as much as a unit difference of the normals [m]: the sum of squares of distance and
+            difference is least.
+        """
+        points, owners = self.samples(spacing)
+        tree = cKDTree(np.hstack([points, turned * self.normals[owners]]))
+        _, found = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
+        candidates = owners[np.reshape(found, (len(places), -1))]
+        shares = closest_on_triangles(self.corners[candidates], places[:, None])
+        feet = np.einsum("mkc,mkci->mki", shares, self.corners[candidates])
+        gaps = np.linalg.norm(feet - places[:, None], axis=2)
+        difference = np.linalg.norm(self.normals[candidates] - normals[:, None], axis=2)
+        best = np.argmin(gaps**2 + (turned * difference) ** 2, axis=1)
+        rows = np.arange(len(places))
+        return NearestSkin(candidates[rows, best], shares[rows, best], feet[rows, best], gaps[rows, best])
+
+
+@dataclass(frozen=True)
+class NearestSkin:
+    """Nearest points of a skin.
+
+    Attributes
+    ----------
+    triangles : ndarray of int, shape (m,)
+    shares : ndarray, shape (m, 3)
+        Barycentric coordinates in them.
+    points : ndarray, shape (m, 3)
+        [m].
+    distances : ndarray, shape (m,)
+        [m].
+    """
+
+    triangles: IntArray
+    shares: FloatArray
+    points: FloatArray
+    distances: FloatArray
+
+
+def skin_of(mesh: Mesh, facets: Facets) -> Skin:
+    """Split facets into plane triangles between their nodes.
+
+    Raises
+    ------
+    HousingError
+        Where there are no facets.
+    """
+    nodes, facet, places, first = [], [], [], 0
+    for block in facets:
+        split = np.array(SPLITS[block.kind])
+        nodes.append(block.nodes[:, split].reshape(-1, 3))
+        facet.append(np.repeat(first + np.arange(len(block)), len(split)))
+        places.append(np.tile(np.array(KINDS[block.kind].places, dtype=np.float64)[split], (len(block), 1, 1)))
+        first += len(block)
+    if first == 0:
+        raise HousingError("there are no facets; expected those of a housing's skin")
+    together = np.concatenate(nodes)
+    return Skin(together, mesh.points[together], np.concatenate(facet), np.concatenate(places))
+
+
+def closest_on_triangles(corners: FloatArray, places: FloatArray) -> FloatArray:
+    """Barycentric coordinates of the points of triangles that are nearest to places.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (..., 3, 3)
+    places : ndarray, shape (..., 3)
+        Broadcast against the triangles.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+    """
+    a, first, second = (
+        corners[..., 0, :],
+        corners[..., 1, :] - corners[..., 0, :],
+        corners[..., 2, :] - corners[..., 0, :],
+    )
+    offset = places - a
+    g11, g12, g22 = ((one * other).sum(-1) for one, other in ((first, first), (first, second), (second, second)))
+    h1, h2 = (offset * first).sum(-1), (offset * second).sum(-1)
+    determinant = np.maximum(g11 * g22 - g12**2, 1e-300)
+    u, v = (g22 * h1 - g12 * h2) / determinant, (g11 * h2 - g12 * h1) / determinant
+    best = np.stack([1.0 - u - v, u, v], axis=-1)
+    inside = (best >= 0.0).all(axis=-1)
+    gap = np.where(inside, 0.0, np.inf)
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        edge = corners[..., j, :] - corners[..., i, :]
+        t = ((places - corners[..., i, :]) * edge).sum(-1) / np.maximum((edge**2).sum(-1), 1e-300)
+        t = np.clip(t, 0.0, 1.0)
+        away = np.linalg.norm(corners[..., i, :] + t[..., None] * edge - places, axis=-1)
+        closer = ~inside & (away < gap)
+        gap = np.where(closer, away, gap)
+        candidate = np.zeros_like(best)
+        candidate[..., i], candidate[..., j] = 1.0 - t, t
+        best = np.where(closer[..., None], candidate, best)
+    return best

@@ -1,0 +1,352 @@
+"""Normal velocity of a radiating surface from the motion of a housing's nodes, and the faces that its triangles lie on.
+
+Each triangle's normal velocity is linear over it. It is the L2 projection of the skin's: with the shape functions phi
+of the triangle, the values q at its corners solve ``sum_j q_j int phi_i phi_j dA = int phi_i (n . v) dA``, where v is
+the velocity of the nearest point of the skin that looks the same way, and n the triangle's normal.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from housing.acoustics.radiating_surface import RadiatingSurface
+from housing.acoustics.skin import NearestSkin, Skin, skin_of
+from housing.errors import HousingError
+from housing.fem.surface import flat_face_numbers, surface_quadrature
+from meshes import Mesh
+from meshes.elements import Facets, facet_centers, facet_normals
+from meshes.shape_functions import quadrature, shape_functions
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+_RULE_POINTS, _RULE_WEIGHTS = quadrature("triangle", 4)
+_SHARES = np.stack([1.0 - _RULE_POINTS.sum(axis=0), *_RULE_POINTS], axis=1)  # shape functions at the six points
+_WEIGHTS = _RULE_WEIGHTS / _RULE_WEIGHTS.sum()
+# Corner values from values at the points: the inverse of the mass matrix area (1 + delta_ij) / 12, times the load.
+_PROJECTION = 12.0 * (np.eye(3) - 0.25) @ (_SHARES * _WEIGHTS[:, None]).T
+
+_SPACING = 0.25  # edges between the samples of a skin
+_TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
+_BESIDE = 0.1  # edges that a point of a cap lies beside the skin, across its normal
+_ON = 0.35  # edges that the skin and the wrap may lie apart where both are compared
+_SAME_WAY = 0.7  # least cosine between their normals there
+_LARGE = 0.02  # part of the surface's area above which a flat face has a label of its own
+
+
+@dataclass(frozen=True)
+class SurfaceVelocity:
+    """Nearest points of a housing's skin for a radiating surface, and the velocity that follows from them.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    surface : RadiatingSurface
+    skin : Skin
+        Of the mesh's boundary.
+    nearest : NearestSkin
+        For the six points of each triangle, triangle after triangle.
+    """
+
+    mesh: Mesh
+    surface: RadiatingSurface
+    skin: Skin
+    nearest: NearestSkin
+
+    @cached_property
+    def facets(self) -> IntArray:
+        """Boundary facet that each point of a triangle moves with, shape (n_triangles, 6)."""
+        return self.skin.facet[self.nearest.triangles].reshape(-1, len(_WEIGHTS))
+
+    @cached_property
+    def edge(self) -> float:
+        """Edge of an equilateral triangle of the mean area [m]."""
+        return float(np.sqrt(4.0 / np.sqrt(3.0) * self.surface.area / len(self.surface.triangles)))
+
+    @cached_property
+    def _cap_points(self) -> BoolArray:
+        """Points that lie beside the skin and not before it, shape (n_triangles, 6)."""
+        gap = (_places(self.surface) - self.nearest.points).reshape(-1, len(_WEIGHTS), 3)
+        ahead = np.einsum("epi,ei->ep", gap, self.surface.normals)
+        beside = np.sqrt(np.maximum((gap**2).sum(axis=2) - ahead**2, 0.0))
+        return np.asarray(beside > _BESIDE * self.edge)
+
+    @cached_property
+    def caps(self) -> BoolArray:
+        """Triangles that close a hole for the most part, shape (n_triangles,)."""
+        return np.asarray(self._cap_points @ _WEIGHTS > 0.5)
+
+    @property
+    def cap_area(self) -> float:
+        """Area of the surface beside the skin [m²]."""
+        return float(self.surface.areas @ (self._cap_points @ _WEIGHTS))
+
+    @cached_property
+    def distances(self) -> FloatArray:
+        """Distance of each vertex outside the caps from the skin [m]; 0 in caps."""
+        free = np.ones(len(self.surface.points), dtype=bool)
+        free[self.surface.triangles[self.caps]] = False
+        found = np.zeros(len(free))
+        # The corners of a triangle look its way; the least distance of a vertex by any of them counts.
+        corners = self.surface.triangles
+        places, normals = self.surface.points[corners].reshape(-1, 3), np.repeat(self.surface.normals, 3, axis=0)
+        away = self.skin.nearest(places, normals, _SPACING * self.edge, _TURNED * self.edge).distances
+        least = np.full(len(free), np.inf)
+        np.minimum.at(least, corners.ravel(), away)
+        found[free] = least[free]
+        return found
+
+    def transfer(self, without: Sequence[str | Facets] = ()) -> sparse.csr_array:
+        """Matrix from nodal velocities to normal velocities at the corners of the triangles.
+
+        Parameters
+        ----------
+        without : sequence of str or of facets
+            Surfaces that do not radiate, such as the soles of feet on a floor: named surfaces of the mesh or their
+            facets. The normal velocity is 0 there.
+
+        Returns
+        -------
+        csr_array, shape (3 n_triangles, 3 n_nodes)
+            Corners triangle after triangle; velocities x, y, z node after node.
+
+        Raises
+        ------
+        meshes.GeometryError
+            Where the mesh has no surface of a name.
+        """
+        silent = np.isin(self.facets.ravel(), _members(self.mesh, without))
+        n_points = self.facets.size
+        normals = np.repeat(self.surface.normals, len(_WEIGHTS), axis=0)
+        places = np.einsum("pk,pki->pi", self.nearest.shares, self.skin.places[self.nearest.triangles])
+        rows, columns, values = [], [], []
+        first = 0
+        for block in self.mesh.boundary:
+            chosen = np.flatnonzero(
+                (self.facets.ravel() >= first) & (self.facets.ravel() < first + len(block)) & ~silent
+            )
+            if len(chosen):
+                shape, _ = shape_functions(block.kind, places[chosen].T)
+                nodes = block.nodes[self.facets.ravel()[chosen] - first]
+                values.append((shape[:, :, None] * normals[chosen][:, None]).ravel())
+                columns.append((3 * nodes[:, :, None] + np.arange(3)).ravel())
+                rows.append(np.repeat(chosen, 3 * nodes.shape[1]))
+            first += len(block)
+        size = (n_points, 3 * len(self.mesh.points))
+        if not rows:
+            return sparse.csr_array((3 * len(self.surface.triangles), size[1]))
+        at_points = sparse.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), size)
+        project = sparse.kron(sparse.eye_array(len(self.surface.triangles)), _PROJECTION, format="csr")
+        return sparse.csr_array(project @ at_points)
+
+    def face_of_triangles(self) -> list[str]:
+        """Label of the housing's face that each triangle lies on.
+
+        A face has the name of the mesh's surface that holds most of it, as ``top``. Another flat face of at least
+        2 % of the surface is ``face 3 (+y)``, with the axis nearest to its normal, and the rest is ``other (+y)``.
+        Triangles over holes are ``cap``.
+        """
+        boundary = self.mesh.boundary
+        n_facets = sum(len(block) for block in boundary)
+        share = np.repeat(self.surface.areas, len(_WEIGHTS)) * np.tile(_WEIGHTS, len(self.surface.triangles))
+        numbers = flat_face_numbers(self.mesh)
+        area = np.bincount(numbers[self.facets.ravel()], share, numbers.max() + 1)
+        own = np.array([""] * n_facets, dtype=object)
+        sizes = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(self.mesh, boundary)])
+        whole = np.bincount(numbers, sizes)
+        for name in self.mesh.surfaces:
+            members = _members(self.mesh, (name,))
+            part = np.bincount(numbers[members], sizes[members], len(whole))
+            own[np.isin(numbers, np.flatnonzero(part > 0.5 * whole))] = name
+        large = [n for n in np.argsort(-area, kind="stable").tolist() if area[n] > _LARGE * self.surface.area]
+        for place, number in enumerate(large):
+            at = numbers == number
+            if not own[at][0]:
+                own[at] = f"face {place + 1}"
+        middle = self.facets[:, int(np.argmax(_WEIGHTS))]
+        labels = []
+        for e, facet in enumerate(middle.tolist()):
+            axis = _direction(self.surface.normals[e])
+            label = own[facet]
+            if self.caps[e]:
+                label = "cap"
+            elif not label:
+                label = f"other ({axis})"
+            elif label.startswith("face "):
+                label = f"{label} ({axis})"
+            labels.append(str(label))
+        return labels
+
+
+def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
+    """Find the points of a housing's skin that a radiating surface moves with.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The housing's finite elements.
+    surface : RadiatingSurface
+        Around it.
+    """
+    skin = skin_of(mesh, mesh.boundary)
+    edge = float(np.sqrt(4.0 / np.sqrt(3.0) * surface.area / len(surface.triangles)))
+    normals = np.repeat(surface.normals, len(_WEIGHTS), axis=0)
+    return SurfaceVelocity(
+        mesh, surface, skin, skin.nearest(_places(surface), normals, _SPACING * edge, _TURNED * edge)
+    )
+
+
+def velocity_transfer(mesh: Mesh, surface: RadiatingSurface, without: Sequence[str | Facets] = ()) -> sparse.csr_array:
+    """Matrix from nodal velocities to normal velocities at corners; see :meth:`SurfaceVelocity.transfer`."""
+    return surface_velocity(mesh, surface).transfer(without)
+
+
+@dataclass(frozen=True)
+class TransferError:
+    """Mean-square normal velocity of shapes on a radiating surface, compared with that on the skin.
+
+    Attributes
+    ----------
+    on_surface, on_skin : ndarray, shape (n,)
+        Integral of the squared normal velocity over both, without caps, for each shape.
+    surface_area, skin_area : float
+        Areas compared [m²].
+    """
+
+    on_surface: FloatArray
+    on_skin: FloatArray
+    surface_area: float
+    skin_area: float
+
+    @property
+    def relative(self) -> FloatArray:
+        """Relative error of each shape, shape (n,): positive where the radiating surface moves more."""
+        return self.on_surface / self.on_skin - 1.0
+
+    def require(self, bound: float = 0.1) -> None:
+        """Refuse a surface that is too coarse for the shapes.
+
+        Raises
+        ------
+        HousingError
+            Where the median of the errors' sizes is above the bound.
+        """
+        sizes = np.abs(self.relative)
+        if not np.median(sizes) <= bound:
+            worst = int(np.argmax(sizes))
+            raise HousingError(
+                f"the radiating surface carries the mean-square normal velocity of the {len(sizes)} shapes with a "
+                f"median error of {100 * np.median(sizes):.3g} %, the worst {100 * self.relative[worst]:+.3g} % of "
+                f"shape {worst + 1}; expected at most {100 * bound:.3g} %: take triangles with shorter edges"
+            )
+
+
+def transfer_error(velocity: SurfaceVelocity, shapes: FloatArray) -> TransferError:
+    """Compare the mean-square normal velocity of shapes on the radiating surface with that on the skin.
+
+    Parameters
+    ----------
+    velocity : SurfaceVelocity
+    shapes : ndarray, shape (n, n_nodes, 3)
+        Mode shapes.
+
+    Notes
+    -----
+    The skin is that part of the boundary whose facets lie near the radiating surface and look its way; on it the
+    integral is exact for the elements' shape functions.
+    """
+    mesh, surface = velocity.mesh, velocity.surface
+    normal = (velocity.transfer() @ shapes.reshape(len(shapes), -1).T).reshape(len(surface.triangles), 3, -1)
+    # int q² dA = area / 12 (sum q_i² + (sum q_i)²)
+    squares = surface.areas[:, None] / 12.0 * ((normal**2).sum(axis=1) + normal.sum(axis=1) ** 2)
+    edge = velocity.edge
+    wrapped = _triangle_skin(surface)
+    on_skin, area = np.zeros(len(shapes)), 0.0
+    for block in mesh.boundary:
+        middle, direction = facet_centers(mesh.points, (block,)), facet_normals(mesh.points, (block,))
+        near = wrapped.nearest(middle, direction, _SPACING * edge, _TURNED * edge)
+        cosine = (surface.normals[near.triangles] * direction).sum(axis=1)
+        facets = block.nodes[(near.distances < _ON * edge) & (cosine > _SAME_WAY)]
+        places, weights = quadrature(block.kind, 4)
+        values, gradients = shape_functions(block.kind, places)
+        tangents = np.einsum("fai,qaj->fqij", mesh.points[facets], gradients, optimize=True)
+        # n dA without its length: (n . u)² dA is the square of (n dA . u) over dA.
+        cross = np.cross(tangents[..., 0], tangents[..., 1])
+        size = np.linalg.norm(cross, axis=2)
+        flux = np.einsum("nfai,qa,fqi->nfq", shapes[:, facets], values, cross, optimize=True)
+        on_skin += np.einsum("nfq,fq,q->n", flux**2, 1.0 / size, weights, optimize=True)
+        area += float((size @ weights).sum())
+    outside = ~velocity.caps
+    return TransferError(squares[outside].sum(axis=0), on_skin, float(surface.areas[outside].sum()), area)
+
+
+def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, sparse.csr_array]:
+    """Make a radiating surface of facets themselves, such as those of a flat face.
+
+    Facets are split into triangles between their nodes, and the normal velocity at each corner is that of its node.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    facets : tuple of ElementBlock
+        Outward.
+
+    Returns
+    -------
+    surface : RadiatingSurface
+        Open, if the facets are.
+    transfer : csr_array, shape (3 n_triangles, 3 n_nodes)
+        From nodal velocities to normal velocities at the corners.
+
+    Raises
+    ------
+    HousingError
+        Where there are no facets.
+    """
+    skin = skin_of(mesh, facets)
+    used, triangles = np.unique(skin.nodes, return_inverse=True)
+    surface = RadiatingSurface(mesh.points[used], triangles.reshape(-1, 3).astype(np.int64))
+    rows = np.repeat(np.arange(skin.nodes.size), 3)
+    columns = 3 * np.repeat(skin.nodes.ravel(), 3) + np.tile(np.arange(3), skin.nodes.size)
+    values = np.repeat(surface.normals, 3, axis=0).ravel()
+    shape = (skin.nodes.size, 3 * len(mesh.points))
+    return surface, sparse.csr_array((values, (rows, columns)), shape=shape)
+
+
+def _places(surface: RadiatingSurface) -> FloatArray:
+    """Places of the six points of each triangle [m], shape (6 n_triangles, 3)."""
+    return np.asarray(np.einsum("pc,eci->epi", _SHARES, surface.corners).reshape(-1, 3))
+
+
+def _triangle_skin(surface: RadiatingSurface) -> Skin:
+    """Return the triangles of a radiating surface as a skin."""
+    numbers = np.arange(len(surface.triangles))
+    places = np.tile(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), (len(numbers), 1, 1))
+    return Skin(surface.triangles, surface.corners, numbers, places)
+
+
+def _members(mesh: Mesh, surfaces: Sequence[str | Facets]) -> IntArray:
+    """Numbers of the boundary facets, block after block, that belong to surfaces."""
+    wanted = [block for one in surfaces for block in (mesh.surface(one) if isinstance(one, str) else one)]
+    found, first = [np.empty(0, dtype=np.int64)], 0
+    for block in mesh.boundary:
+        own = np.sort(block.corners, axis=1)
+        for other in wanted:
+            if other.of.n_corners == own.shape[1]:
+                both = np.concatenate([own, np.sort(other.corners, axis=1)])
+                _, number = np.unique(both, axis=0, return_inverse=True)
+                number = number.ravel()
+                found.append(first + np.flatnonzero(np.isin(number[: len(own)], number[len(own) :])))
+        first += len(block)
+    return np.unique(np.concatenate(found))
+
+
+def _direction(normal: FloatArray) -> str:
+    """Axis nearest to a normal, as ``+y``."""
+    axis = int(np.argmax(np.abs(normal)))
+    return f"{'+' if normal[axis] > 0.0 else '-'}{'xyz'[axis]}"

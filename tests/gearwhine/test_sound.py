@@ -1,0 +1,183 @@
+"""Sound of a case: parts that add up, two motions that sound alike, measurement by ISO 3744, and refusals."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.io import wavfile
+
+import gearwhine as gw
+from gearwhine.case import CaseError, swept_keys
+from gearwhine.cli.command_line import run_command
+from gearwhine.output.export import write_sounds
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.sweep.sound import add_sound
+
+COARSE = {"acoustics.mesh_size": "26 mm", "acoustics.highest_frequency": "3 kHz", "acoustics.lines": 8}
+
+
+@pytest.fixture(scope="module")
+def study():
+    found = gw.load("small-gearbox", COARSE | {"acoustics.floor": "-21 mm", "acoustics.microphone_box": "1 m"})
+    found._housing = solve_housing(found.case)
+    return found
+
+
+@pytest.fixture(scope="module")
+def sound(study):
+    return study.sound()
+
+
+def test_parts_add_up_to_the_power(sound):
+    assert sound.solved.lines
+    for line in sound.solved.lines:
+        one = line.sound
+        assert one.by_motion.sum() == pytest.approx(one.power, rel=1e-9)
+        assert one.by_mode.sum() == pytest.approx(one.surface_power, rel=1e-9)
+        assert sum(one.by_face.values()) == pytest.approx(one.surface_power, rel=1e-9)
+        assert 10.0 * abs(np.log10(one.surface_power / one.power)) < 0.25
+        assert one.radiation_efficiency == pytest.approx(10.0 ** (0.1 * (line.level_db - line.equivalent_db)), rel=1e-9)
+    powers = [line.sound.power for line in sound.solved.lines]
+    assert sound.solved.total_db == pytest.approx(10.0 * np.log10(sum(powers) / 1e-12))
+
+
+def test_sound_pressure_falls_by_six_decibels_for_twice_the_distance(sound):
+    loudest = max(sound.solved.lines, key=lambda line: line.sound.power).sound
+    near, far = np.array([[9.0, 9.0, 9.0], [18.0, 18.0, 18.0]])
+    levels = [20.0 * np.log10(abs(loudest.pressure_at(place[None])[0])) for place in (near, far)]
+    assert levels[0] - levels[0] == pytest.approx(6.02, abs=0.2)
+
+
+def test_document_and_arrays_hold_the_solution(sound):
+    document, dataset = sound.document, sound.dataset
+    assert document["method"] == "boundary-elements"
+    for entry, line in zip(document["lines"], sound.solved.lines, strict=True):
+        assert entry["frequency_hz"] == line.frequency_hz
+        assert entry["sound_power_db"] == pytest.approx(10.0 * np.log10(line.sound.power / 1e-12))
+        assert entry["microphones_db"]["box 5"] == pytest.approx(
+            20.0 * np.log10(abs(line.microphones[4]) / np.sqrt(2.0) / 20e-6)
+        )
+    assert dataset["sound_power"].values == pytest.approx([line.sound.power for line in sound.solved.lines])
+    assert dataset["sound_power"].attrs["units"] == "W"
+    pressure = dataset["sound_pressure"].values
+    assert pressure[-1, 3, 0] + 1j * pressure[-1, 3, 1] == pytest.approx(sound.solved.lines[-1].microphones[3])
+    assert sound.solved.box_level_db == pytest.approx(sound.solved.total_db, abs=4.0)  # of one tone, at nine places
+    by_number = {mode.number: mode.radiation_efficiency for mode in sound.solved.modes}
+    assert {entry["number"]: entry["radiation_efficiency"] for entry in document["modes"]} == by_number
+    assert document["total_db"] > document["total_db_a"] - 1.3  # A adds at most 1.3 dB, at 2.5 kHz
+
+
+@pytest.fixture(scope="module")
+def run(study):
+    return study.run()
+
+
+def test_transient_sounds_as_the_steady_state(study, sound, run):
+    lines = {round(line.order, 3): line.level_db for line in run.solved.sound.lines}
+    steady = {round(line.order, 3): line.level_db for line in sound.solved.lines}
+    loudest = max(steady, key=lambda order: steady[order])
+    assert lines[loudest] == pytest.approx(steady[loudest], abs=0.3)
+    assert run.document["sound"]["lines"]
+
+
+def test_a_tones_level_in_the_sound_file_is_that_of_its_line(run, tmp_path):
+    folder = tmp_path / "out"
+    run.write(folder, pictures=False)
+    line = max(run.solved.sound.lines, key=lambda one: one.sound.power)
+    (tmp_path / "wav").mkdir()
+    written = [one for one in write_sounds(folder, tmp_path / "wav") if "microphone" in one]
+    assert [one["microphone"] for one in written] == list(run.solved.sound.microphones)
+    for place, entry in enumerate(written):
+        rate, samples = wavfile.read(tmp_path / "wav" / entry["file"])
+        pressure = samples.astype(float) * entry["full_scale_pa"]
+        window = np.hanning(len(pressure))
+        times = np.arange(len(pressure)) / rate
+        tone = 2.0 * abs(np.sum(window * pressure * np.exp(-2j * np.pi * line.frequency_hz * times)) / window.sum())
+        assert 20.0 * np.log10(tone / abs(line.microphones[place])) == pytest.approx(0.0, abs=0.1)
+    assert run.document["sound"]["microphone_error"] < 0.06
+
+
+def test_rayleigh_of_the_top_is_near_boundary_elements_for_a_mode_of_the_top():
+    """A face in an infinite baffle radiates like the face of a box where the wavelength is short beside the box."""
+    modes = {}
+    for method in ("boundary-elements", "rayleigh"):
+        changes = {"acoustics.method": method, "acoustics.highest_frequency": "3 kHz"}
+        if method == "rayleigh":
+            changes["acoustics.faces"] = ["top"]
+        study = gw.load(
+            "small-gearbox",
+            changes | {"operation": "", "rotor": [], "bearing": [], "gear": [], "gear_pair": [], "transient": ""},
+        )
+        modes[method] = study.sound().document["modes"]
+    most = max(modes["boundary-elements"], key=lambda mode: mode["faces"].get("top", 0.0))
+    assert most["faces"]["top"] > 0.4
+    baffled = next(one for one in modes["rayleigh"] if one["number"] == most["number"])
+    assert 10.0 * abs(np.log10(baffled["radiation_efficiency"] / most["radiation_efficiency"])) < 3.0
+    assert baffled["faces"] == {"top": pytest.approx(1.0, abs=0.03)}
+
+
+def test_json_of_the_command(capsys, tmp_path):
+    changes = [f"--set={key}={value}" for key, value in COARSE.items()]
+    arguments = [
+        "sound",
+        "steel-box",
+        "--json",
+        "-q",
+        "--set=acoustics.method=erp",
+        *changes,
+        "-o",
+        str(tmp_path / "out"),
+    ]
+    assert run_command(arguments) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert {"method", "lines", "total_db", "total_db_a", "modes", "microphones"} <= set(document)
+    assert all(mode["radiation_efficiency"] == pytest.approx(1.0) for mode in document["modes"])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"acoustics.method": "rayleigh"}, "flat faces that radiate"),
+        ({"acoustics.faces": ["top"]}, "takes the whole surface"),
+        ({"acoustics.method": "erp", "acoustics.microphone_box": "1 m"}, "no microphones"),
+        ({"acoustics.method": "erp", "acoustics.floor": "0 mm"}, "no floor"),
+        ({"acoustics.speed_of_sound": "-3 m/s"}, "a velocity"),
+    ],
+)
+def test_refuses_choices_that_do_not_fit(changes, message):
+    with pytest.raises(CaseError, match=message):
+        gw.load("small-gearbox", changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"acoustics.still": ["sole"]}, r"acoustics.still\[0\].*surface of the housing"),
+        ({"acoustics.method": "rayleigh", "acoustics.faces": ["lid"]}, r"acoustics.faces\[0\].*surface of the housing"),
+        ({"acoustics.method": "rayleigh", "acoustics.faces": ["input-back"]}, "flat surface"),
+        (COARSE | {"acoustics.floor": "5 mm"}, "behind the hard plane"),
+        (COARSE | {"acoustics.microphone": [{"name": "in", "position": ["0 mm", "80 mm", "0 mm"]}]}, "inside"),
+        (COARSE | {"acoustics.mesh_size": "90 mm"}, "smaller triangles|too large for|mean-square"),
+    ],
+)
+def test_refuses_what_is_not_there(study, changes, message):
+    other = gw.load("small-gearbox", changes)
+    other._housing = study.housing
+    with pytest.raises(Exception, match=message) as caught:
+        other.sound()
+    assert type(caught.value).__name__ in ("CaseError", "HousingError")
+
+
+def test_sweep_sounds_as_its_points_do(tmp_path):
+    """Each point of a sweep has the power of a run at its speed."""
+    short = COARSE | {"transient.revolutions": 12, "transient.discard": 10, "transient.tolerance": 1e-3}
+    swept = gw.load("small-gearbox", short).sweep(["operation.speed=5500 rpm"], folder=tmp_path / "out", workers=1)
+    levels = swept.dataset["sound_power_level"].values
+    assert np.isfinite(levels).all()
+    alone = gw.load("small-gearbox", short)
+    found = alone.run().solved.sound
+    assert levels[0] == pytest.approx(found.total_db, abs=0.05)
+    loudest = max(found.lines, key=lambda line: line.sound.power)
+    assert swept.dataset["sound_line_frequency"].values[0, 0] == pytest.approx(loudest.frequency_hz)
+    keys = swept_keys(alone.case, ["housing.damping_ratio=0.01,0.02"])
+    assert "sound of a sweep is left out" in add_sound(alone.case, keys, [], None)[0]["message"]

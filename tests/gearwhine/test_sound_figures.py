@@ -1,0 +1,131 @@
+"""Figures of the sound show levels, directions and places as they were solved."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from sounding_box import sound_of_lines, sound_of_modes
+
+from gearwhine.figures import draw_sound
+from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_sound_pictures
+from gearwhine.solve.sound import SolvedSound
+from housing.acoustics.sound_levels import a_weighting
+
+
+@pytest.fixture(scope="module")
+def solved() -> SolvedSound:
+    return sound_of_lines()
+
+
+@pytest.fixture(scope="module")
+def figures(solved: SolvedSound) -> dict[str, Figure]:
+    return dict(draw_sound(sound_of_modes().case, solved))
+
+
+def test_there_are_figures_of_what_was_solved(figures: dict[str, Figure]) -> None:
+    assert list(figures) == ["sound-power", "sound-directivity", "sound-efficiency"]
+    assert [name for name, _ in sound_of_modes().figures()] == ["sound-efficiency"]
+
+
+def test_lines_stand_at_their_levels(solved: SolvedSound, figures: dict[str, Figure]) -> None:
+    above, below = figures["sound-power"].axes
+    powers = {line.frequency_hz: line.sound.power for line in solved.lines}
+    levels = {hertz: 10.0 * np.log10(power / 1e-12) for hertz, power in powers.items()}
+    shown = {hertz: level for hertz, level in levels.items() if level >= max(levels.values()) - 60.0}
+    drawn = {line.get_label(): np.asarray(line.get_xydata()) for line in above.lines}
+    assert 92.0 not in shown  # a box does not radiate there
+    assert dict(drawn["_lines"].tolist()) == pytest.approx(shown)
+    estimates = dict(drawn["_estimates"].tolist())
+    for line in solved.lines:
+        if line.frequency_hz in shown:
+            ratio = 10.0 ** (0.1 * (levels[line.frequency_hz] - estimates[line.frequency_hz]))
+            assert ratio == pytest.approx(line.sound.radiation_efficiency)
+    (stems,) = [one for one in above.collections if isinstance(one, LineCollection)]
+    assert sorted(path.vertices[1][0] for path in stems.get_paths()) == sorted(shown)
+    named = {text.get_text() for text in above.texts}
+    assert "2300 Hz 3× pinion→wheel" in named
+    # Those that nobody hears beside the others have no name.
+    assert not any(text.startswith(("92 ", "520 ", "1000 ")) for text in named)
+    assert (
+        f"together {solved.total_db:.1f} dB or {solved.total_db_a:.1f} dB(A)"
+        in figures["sound-power"].texts[1].get_text()
+    )
+    # Third octaves sum the powers of their lines: 1560 and 1645 Hz are in that of 1.6 kHz.
+    bars = {round(patch.get_x() + 0.4): patch.get_y() + patch.get_height() for patch in below.patches}
+    names = [text.get_text() for text in below.get_xticklabels()]
+    together = 10.0 * np.log10((powers[1560.0] + powers[1645.0]) / 1e-12)
+    place = names.index("1.6 k")
+    assert bars[place] == pytest.approx(together)
+    (weighted,) = [one for one in below.collections if isinstance(one, LineCollection)]
+    heights = {round(path.vertices[:, 0].mean()): path.vertices[0, 1] for path in weighted.get_paths()}
+    assert heights[place] == pytest.approx(together + float(a_weighting(1600.0)))
+
+
+def test_directivity_is_the_far_field_in_its_directions(solved: SolvedSound, figures: dict[str, Figure]) -> None:
+    """Held against the pressure a hundred metres off, at the angle where each plane's labels put its axis."""
+    loudest = max(solved.lines, key=lambda line: line.sound.power)
+    middle = loudest.sound.fields[0].surface.points.mean(axis=0)
+    axis = {"+x": (1, 0, 0), "−x": (-1, 0, 0), "+y": (0, 1, 0), "−y": (0, -1, 0), "+z": (0, 0, 1), "−z": (0, 0, -1)}
+    planes = []
+    for axes in figures["sound-directivity"].axes:
+        curve = np.asarray(axes.lines[0].get_xydata())
+        bottom = axes.get_ylim()[0]
+        labels = {text.get_text(): tick for text, tick in zip(axes.get_xticklabels(), axes.get_xticks(), strict=True)}
+        planes.append({name for name in labels if name})
+        for name, angle in labels.items():
+            if name:
+                pressure = loudest.sound.pressure_at(middle + 100.0 * np.array([axis[name]], dtype=float))
+                level = 20.0 * np.log10(100.0 * abs(pressure[0]) / np.sqrt(2.0) / 20e-6)
+                drawn = curve[np.argmin(np.abs(curve[:, 0] - angle)), 1]
+                assert drawn == pytest.approx(max(level, bottom), abs=0.1), name
+    assert planes == [{"+x", "−x", "+z", "−z"}, {"+x", "−x", "+y", "−y"}, {"+y", "−y", "+z", "−z"}]
+
+
+def test_efficiencies_are_those_of_modes_and_lines(solved: SolvedSound, figures: dict[str, Figure]) -> None:
+    (axes,) = figures["sound-efficiency"].axes
+    drawn = {line.get_label(): np.asarray(line.get_xydata()) for line in axes.lines}
+    assert drawn["_modes"] == pytest.approx(
+        np.array([(mode.frequency_hz, mode.radiation_efficiency) for mode in solved.modes])
+    )
+    assert dict(drawn["_lines"].tolist()) == pytest.approx(
+        {line.frequency_hz: line.sound.radiation_efficiency for line in solved.lines if line.frequency_hz > 92.0}
+    )
+    assert (axes.get_yscale(), drawn["_one"][:, 1].tolist()) == ("log", [1.0, 1.0])
+    low, high = axes.get_ylim()
+    assert low < drawn["_lines"][:, 1].min() < drawn["_modes"][:, 1].max() < high
+
+
+def test_intensities_are_drawn_where_they_are(solved: SolvedSound, tmp_path: Path) -> None:
+    """The mean over the surface is the power over the area, at the loudest lines and over all."""
+    shapes = {shape.name: shape for shape in _intensity_shapes(solved)}
+    loudest = sorted(solved.lines, key=lambda line: -line.sound.power)[:3]
+    assert list(shapes) == ["sound-faces-all", *(f"sound-faces-{line.frequency_hz:.1f}Hz" for line in loudest)]
+    surface = _radiating_surface(solved)
+    areas = solved.radiation.elements[0].surface.areas
+    share = np.bincount(surface.triangles.ravel(), np.repeat(areas, 3) / 3.0, len(surface.rest))
+    for line in loudest:
+        shape = shapes[f"sound-faces-{line.frequency_hz:.1f}Hz"]
+        assert shape.quantity == "Intensity [mW/m²]"
+        assert shape.values is not None
+        assert 1e-3 * shape.values @ share == pytest.approx(line.sound.surface_power)
+        assert not shape.at(0.0).any()
+    every = shapes["sound-faces-all"]
+    assert every.values is not None
+    assert 1e-3 * every.values @ share == pytest.approx(sum(line.sound.surface_power for line in solved.lines))
+    # Nothing radiates where no lines do, and nothing is drawn.
+    assert draw_sound_pictures(replace(solved, lines=()), tmp_path, lambda message, part=None: None) == []
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_estimate_has_neither_directivity_nor_efficiency(solved: SolvedSound) -> None:
+    estimate = replace(solved.radiation, method="erp")
+    lines = tuple(
+        replace(line, sound=estimate.solve(line.frequency_hz, line.sound.coordinates)) for line in solved.lines
+    )
+    case = sound_of_modes().case
+    figures = dict(draw_sound(case, replace(solved, radiation=estimate, lines=lines)))
+    assert list(figures) == ["sound-power"]
+    assert "ERP, an estimate" not in {text.get_text() for text in figures["sound-power"].legends[0].get_texts()}

@@ -1,0 +1,108 @@
+"""Wrapping of meshes in closed radiating surfaces."""
+
+import re
+
+import numpy as np
+import pytest
+from solids import cubes, hollow_box, spherical_shell
+
+from housing.acoustics.radiating_surface import RadiatingSurface
+from housing.acoustics.surface_velocity import surface_velocity
+from housing.acoustics.wrapping import least_angles, wrap
+from housing.errors import HousingError
+from meshes import Mesh
+
+
+def _least_angle(surface: RadiatingSurface) -> float:
+    return float(np.degrees(least_angles(surface.corners).min()))
+
+
+def _edges(surface: RadiatingSurface) -> np.ndarray:
+    return np.linalg.norm(surface.corners - np.roll(surface.corners, 1, axis=1), axis=2)
+
+
+def test_a_block_keeps_its_faces_edges_and_corners() -> None:
+    mesh = cubes(np.ones((6, 4, 5), dtype=bool), (0.05, 0.05, 0.05))
+    surface = wrap(mesh, 0.03, 0.05)
+    assert surface.area == pytest.approx(2 * (0.3 * 0.2 + 0.2 * 0.25 + 0.25 * 0.3), rel=1e-6)
+    assert surface.volume == pytest.approx(0.3 * 0.2 * 0.25, rel=1e-6)
+    assert np.abs(surface.normals).max(axis=1) == pytest.approx(1.0, abs=1e-6)
+    assert _edges(surface).mean() == pytest.approx(0.03, rel=0.15)
+    assert _least_angle(surface) > 25.0
+
+
+def test_a_turned_block_keeps_its_edges() -> None:
+    mesh = cubes(np.ones((6, 4, 5), dtype=bool), (0.05, 0.05, 0.05))
+    (a, b), c = (np.cos(0.5), np.sin(0.5)), np.cos(0.3)
+    about_z = np.array([[a, -b, 0.0], [b, a, 0.0], [0.0, 0.0, 1.0]])
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, c, -np.sin(0.3)], [0.0, np.sin(0.3), c]])
+    surface = wrap(mesh.rotated(about_x @ about_z), 0.03, 0.05)
+    assert surface.area == pytest.approx(2 * (0.3 * 0.2 + 0.2 * 0.25 + 0.25 * 0.3), rel=0.01)
+    assert surface.volume == pytest.approx(0.3 * 0.2 * 0.25, rel=0.01)
+    assert _least_angle(surface) > 12.0
+
+
+def test_a_hole_is_capped_flat_and_the_inside_left_out() -> None:
+    surface = wrap(hollow_box(6), 0.025, 0.09)
+    assert surface.volume == pytest.approx(0.3 * 0.24 * 0.2, rel=1e-6)
+    assert surface.area == pytest.approx(2 * (0.3 * 0.24 + 0.24 * 0.2 + 0.2 * 0.3), rel=1e-6)
+
+
+def test_a_concave_corner_is_not_filled() -> None:
+    cells = np.ones((6, 6, 6), dtype=bool)
+    cells[3:, 3:] = False
+    surface = wrap(cubes(cells, (0.04, 0.04, 0.04)), 0.03, 0.2)
+    assert surface.volume == pytest.approx(0.75 * 0.24**3, rel=1e-6)
+    assert surface.area == pytest.approx(4 * 0.24**2 + 2 * 0.75 * 0.24**2, rel=1e-6)
+
+
+def test_a_sphere_is_followed() -> None:
+    mesh = spherical_shell(0.13, 0.15, 16)
+    surface = wrap(mesh, 0.02, 0.02)
+    velocity = surface_velocity(mesh, surface)
+    assert surface.area == pytest.approx(4 * np.pi * 0.15**2, rel=0.01)
+    assert surface.volume == pytest.approx(4 / 3 * np.pi * 0.15**3, rel=0.015)
+    assert velocity.distances.max() < 0.05 * 0.02
+    assert _least_angle(surface) > 20.0
+
+
+def test_the_wrap_is_the_same_every_time(box: Mesh) -> None:
+    first, second = wrap(box, 0.03, 0.055), wrap(box, 0.03, 0.055)
+    assert np.array_equal(first.points, second.points)
+    assert np.array_equal(first.triangles, second.triangles)
+
+
+@pytest.mark.parametrize("hole", [10, 18])
+def test_a_leak_is_refused_with_the_diameter_that_closes_it(hole: int) -> None:
+    mesh = hollow_box(hole)
+    with pytest.raises(HousingError, match=r"near \(.*, 120, .*\) mm wider than close_holes of 65 mm") as caught:
+        wrap(mesh, 0.025, 0.065)
+    found = re.search(r"close_holes of about (\d+) mm", str(caught.value))
+    assert found is not None
+    assert wrap(mesh, 0.025, 1e-3 * float(found[1])).volume == pytest.approx(0.3 * 0.24 * 0.2, rel=0.01)
+
+
+def test_a_wide_bore_of_a_narrow_box_is_capped() -> None:
+    cells = np.ones((30, 30, 8), dtype=bool)
+    cells[1:-1, 1:-1, 1:-1] = False
+    x, y = np.mgrid[:30, :30]
+    cells[np.hypot(x - 14.5, y - 14.5) < 5.5] = False
+    surface = wrap(cubes(cells, (0.01, 0.01, 0.01)), 0.025, 0.12)
+    assert surface.volume == pytest.approx(0.3 * 0.3 * 0.08, rel=1e-6)
+
+
+@pytest.mark.parametrize(("edge", "close_holes"), [(0.0, 0.05), (-0.01, 0.05), (0.02, -0.01), (np.nan, 0.05)])
+def test_sizes_must_be_positive(edge: float, close_holes: float) -> None:
+    with pytest.raises(HousingError, match="expected"):
+        wrap(hollow_box(6), edge, close_holes)
+
+
+def test_too_fine_a_wrap_is_refused() -> None:
+    with pytest.raises(HousingError, match="cells"):
+        wrap(hollow_box(6), 0.0005, 0.05)
+
+
+def test_a_thin_plate_keeps_its_rim() -> None:
+    surface = wrap(cubes(np.ones((10, 8, 1), dtype=bool), (0.03, 0.03, 0.004)), 0.02, 0.0)
+    assert surface.volume == pytest.approx(0.3 * 0.24 * 0.004, rel=1e-6)
+    assert surface.area == pytest.approx(2 * (0.3 * 0.24 + 0.54 * 0.004), rel=1e-6)
