@@ -100,7 +100,7 @@ class Skin:
             difference is least.
         """
         points, owners = self.samples(spacing)
-        tree = cKDTree(np.hstack([points, turned * self.normals[owners]]))
+        tree = cKDTree(np.hstack([points, turned * self.normals[owners]]), balanced_tree=False)
         _, found = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
         candidates = owners[np.reshape(found, (len(places), -1))]
         shares = closest_on_triangles(self.corners[candidates], places[:, None])

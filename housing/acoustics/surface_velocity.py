@@ -31,7 +31,7 @@ _WEIGHTS = _RULE_WEIGHTS / _RULE_WEIGHTS.sum()
 # Corner values from values at the points: the inverse of the mass matrix area (1 + delta_ij) / 12, times the load.
 _PROJECTION = 12.0 * (np.eye(3) - 0.25) @ (_SHARES * _WEIGHTS[:, None]).T
 
-_SPACING = 0.25  # edges between the samples of a skin
+_SPACING = 0.35  # edges between the samples of a skin
 _TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
 _BESIDE = 0.1  # edges that a point of a cap lies beside the skin, across its normal
 _ON = 0.35  # edges that the skin and the wrap may lie apart where both are compared
