@@ -148,15 +148,15 @@ def microphone_histories(
     """
     interval = float(times[-1] - times[0]) / (len(times) - 1)
     length = len(times) if repeats else len(times) + int(np.ceil(_DECAY / interval))
-    lines = np.fft.rfftfreq(length, interval)
+    lines = np.asarray(np.fft.rfftfreq(length, interval), dtype=np.float64)
     kept = np.flatnonzero((lines >= transfer.frequencies[0]) & (lines <= transfer.frequencies[-1]))
     spectra = {name: np.fft.rfft(force - force.mean(axis=0), length, axis=0) for name, force in forces.items()}
     sound = np.zeros((len(lines), len(transfer.delays)), dtype=np.complex128)
     for start in range(0, len(kept), _BLOCK):
         some = kept[start : start + _BLOCK]
-        omega = _TWO_PI * lines[some]
+        omega = np.asarray(_TWO_PI * lines[some], dtype=np.float64)
         paths = housing_paths(machine, omega, {name: values[some] for name, values in spectra.items()})
         rates = paths.acceleration.sum(axis=1) / (1j * omega[:, None])
-        sound[some] = np.einsum("lmn,ln->lm", transfer.at(lines[some]), rates)
+        sound[some] = (transfer.at(lines[some]) @ rates[..., None])[..., 0]
     pressure = np.fft.irfft(sound, length, axis=0)[: len(times)]
     return MicrophoneHistories(np.asarray(times), np.ascontiguousarray(pressure.T), transfer.error)

@@ -325,7 +325,9 @@ def _represent(
     return field
 
 
-def surface_product(surface: RadiatingSurface, one: ComplexArray, other: ComplexArray) -> ComplexArray:
+def surface_product(
+    surface: RadiatingSurface, one: FloatArray | ComplexArray, other: FloatArray | ComplexArray
+) -> ComplexArray:
     """∫ ūᵢ wⱼ dS of fields that are linear on each triangle, given at its corners."""
     weighted = np.einsum("e,ab,ebn->ean", surface.areas, _MASS, other.reshape(len(surface.areas), 3, -1))
     return np.asarray(one.conj().T @ weighted.reshape(len(one), -1))

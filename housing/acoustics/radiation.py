@@ -360,6 +360,6 @@ class HousingRadiation:
     @cached_property
     def _grams(self) -> tuple[FloatArray, ...]:
         return tuple(
-            surface_product(one.surface, modal.astype(np.complex128), modal.astype(np.complex128)).real
+            surface_product(one.surface, modal, modal).real
             for one, modal in zip(self.elements, self.modal, strict=True)
         )

@@ -72,7 +72,7 @@ def third_octave_bands(frequencies_hz: FloatArray, powers: FloatArray) -> tuple[
     band = np.round(10.0 * np.log10(frequencies_hz / 1000.0)).astype(np.int64)
     bands = np.arange(band.min(), band.max() + 1)
     nominal = np.array([_NOMINAL[x % 10] * 10.0 ** (3 + x // 10) for x in bands])
-    return nominal, np.bincount(band - bands[0], powers, len(bands))
+    return nominal, np.asarray(np.bincount(band - bands[0], powers, len(bands)), dtype=np.float64)
 
 
 def measurement_box(low: FloatArray, high: FloatArray, distance: float) -> tuple[FloatArray, float]:

@@ -270,7 +270,7 @@ def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
                 corner[:, other] += step[1]
                 ring.append(number[tuple(corner.T)])
             faces.append(np.stack(ring if looks_up else ring[::-1], axis=1))
-    return np.argwhere(mixed) + 1.0, np.concatenate(faces)
+    return np.asarray(np.argwhere(mixed) + 1.0, dtype=np.float64), np.concatenate(faces)
 
 
 @dataclass(frozen=True)
@@ -321,9 +321,8 @@ def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) 
     weight = np.where(agree, share / cell**2, 0.0)
     rows = np.repeat(np.arange(len(faces)), faces.shape[1])
     incident = sparse.csr_array((np.ones(faces.size), (faces.ravel(), rows)), shape=(len(points), len(faces)))
-    matrix = (incident @ (weight[:, None, None] * direction[:, :, None] * direction[:, None]).reshape(-1, 9)).reshape(
-        -1, 3, 3
-    )
+    planes = (weight[:, None, None] * direction[:, :, None] * direction[:, None]).reshape(-1, 9)
+    matrix = np.asarray(incident @ planes).reshape(-1, 3, 3)
     side = incident @ ((weight * (plane * direction).sum(axis=1))[:, None] * direction)
     mean = (incident @ (share[:, None] * center)) / (incident @ share)[:, None]
     values, vectors = np.linalg.eigh(matrix)
