@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine, solve_pairs
-from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes
+from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.output.quantity import add_warnings, joined
@@ -199,6 +199,8 @@ def run(
             draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress)
             if load is not None:
                 draw_load_pictures(solved.housing, load, place, progress)
+            if solved.sound is not None:
+                draw_sound_pictures(solved.sound, place, progress)
             if solved.transient is not None and solved.signature is not None:
                 lines = highest_lines(solved.signature, solved.transient.trusted_limit, _DRAWN_LINES)
                 if lines:

@@ -43,7 +43,8 @@ _CHAPTERS = {
     "Coupled system": ("unstable mode",),
     "Motion": ("bearing load", "run signature"),
     "Steady state": ("superposition",),
-    "Sound": ("interior_pressure",),
+    "Sound": ("interior_pressure", "microphone_interpolation"),
+    "Sweep": ("sound_of_sweep",),
     "Updated numbers": ("shapes",),
     "Operating point": (
         "sensitivity",

@@ -22,6 +22,10 @@ _PICTURES = (
     Picture("sweep-rms", "Level of each sensor over the sweep: peaks are resonances of the machine."),
     Picture("sweep-mesh-force", "Largest and mean mesh force over the sweep, and the time that the flanks are apart."),
     Picture(
+        "sweep-sound",
+        "Sound power level over the sweep, and the frequencies of the loudest lines: where they meet a mode it rises.",
+    ),
+    Picture(
         "waterfall",
         "Spectra over the sweep: slanted lines are orders, upright ones modes; they meet in resonances.",
     ),

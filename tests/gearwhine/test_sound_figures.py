@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from sounding_box import sound_of_lines, sound_of_modes
 
-from gearwhine.figures import draw_sound
+from gearwhine.figures import draw_sound, draw_sweep
 from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_sound_pictures
 from gearwhine.solve.sound import SolvedSound
 from housing.acoustics.sound_levels import a_weighting
@@ -129,3 +130,53 @@ def test_an_estimate_has_neither_directivity_nor_efficiency(solved: SolvedSound)
     figures = dict(draw_sound(case, replace(solved, radiation=estimate, lines=lines)))
     assert list(figures) == ["sound-power"]
     assert "ERP, an estimate" not in {text.get_text() for text in figures["sound-power"].legends[0].get_texts()}
+
+
+def swept_sound() -> xr.Dataset:
+    """Four speeds in no order; two lines each, one of which is missing once."""
+    speeds = np.array([3000.0, 1000.0, 2000.0, 4000.0])
+    return xr.Dataset(
+        {
+            "done": ("speed", np.ones(4, dtype=bool)),
+            "sound_power_level": ("speed", np.array([70.0, 50.0, 80.0, 60.0])),
+            "sound_power_level_a": ("speed", np.array([71.0, 45.0, 80.0, 61.0])),
+            "sound_line_frequency": (("speed", "sound_line"), np.outer(speeds, [1.0, 0.5])),
+            "sound_line_level": (
+                ("speed", "sound_line"),
+                np.array([[70.0, 20.0], [50.0, np.nan], [80.0, 60.0], [60.0, 30.0]]),
+            ),
+        },
+        {"speed": ("speed", speeds, {"units": "rpm"})},
+    )
+
+
+def test_a_sweep_shows_levels_and_loudest_lines_over_speed() -> None:
+    figures = dict(draw_sweep("t", swept_sound()))
+    assert list(figures) == ["sweep-sound"]
+    above, below, bar = figures["sweep-sound"].axes
+    solid, dashed = (np.asarray(line.get_xydata()).tolist() for line in above.lines)
+    assert solid == [[1000.0, 45.0], [2000.0, 80.0], [3000.0, 71.0], [4000.0, 61.0]]
+    assert [level for _, level in dashed] == [50.0, 80.0, 70.0, 60.0]
+    (points,) = below.collections
+    found = dict(zip(map(tuple, np.asarray(points.get_offsets()).tolist()), points.get_array().tolist(), strict=True))
+    assert found == {
+        (3000.0, 3000.0): 70.0,
+        (3000.0, 1500.0): 20.0,
+        (1000.0, 1000.0): 50.0,
+        (2000.0, 2000.0): 80.0,
+        (2000.0, 1000.0): 60.0,
+        (4000.0, 4000.0): 60.0,
+        (4000.0, 2000.0): 30.0,
+    }
+    assert points.get_array().tolist() == sorted(found.values())  # quiet ones lie below loud ones
+    assert (below.get_xlabel(), bar.get_ylabel()) == ("speed [rpm]", "sound power level [dB re 1 pW]")
+
+
+def test_a_grid_of_several_keys_has_a_level_for_each_combination() -> None:
+    torques = xr.DataArray([10.0, 20.0], dims="torque", attrs={"units": "N m"})
+    dataset = xr.concat([swept_sound(), swept_sound() + 1.0], torques)
+    dataset["done"] = dataset["done"].astype(bool)
+    dataset["speed"].attrs["units"] = "rpm"
+    (axes,) = dict(draw_sweep("t", dataset))["sweep-sound"].axes
+    solid = [np.asarray(line.get_ydata()) for line in axes.lines if line.get_linestyle() == "-"]
+    assert [values.max() for values in solid if len(values)] == [80.0, 81.0]

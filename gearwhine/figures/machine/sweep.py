@@ -1,4 +1,4 @@
-"""Sweep figures: levels over the swept key, and a waterfall for each sensor."""
+"""Sweep figures: levels of sensors and of the sound over the swept key, and a waterfall for each sensor."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -26,6 +26,7 @@ from gearwhine.figures.style import (
 from gearwhine.output import file_stems
 
 _MOST_WATERFALLS = 12  # of a grid over several keys
+_LOUD = 40.0  # levels below the highest that have colours of their own [dB]
 _MARKS = 30  # points up to which each is marked
 _LEVELS, _LEVELS_GAP = 36.0, 8.0  # height of a sensor's panel, and between two for a title [mm of paper]
 _FORCES, _FORCES_GAP = 42.0, 8.0  # the same of a gear pair's panels
@@ -50,6 +51,8 @@ def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         yield from _waterfalls(title, dataset, along, places)
     if "mesh_force_mean" in dataset:
         yield "sweep-mesh-force", _mesh_forces(title, dataset, along, places)
+    if "sound_power_level" in dataset:
+        yield "sweep-sound", _sound_levels(title, dataset, along, places)
 
 
 def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
@@ -103,6 +106,36 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
                 axes.set_xlabel(_axis_label(dataset, along))
                 _name_values(axes.xaxis, dataset, along)
     _name_lines(figure, dataset, places)
+    return figure
+
+
+def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
+    """Draw the sound power level over the sweep; of one swept key also the frequencies of the loudest lines."""
+    alone = len(places) == 1
+    figure = Figure(figsize=(9.0, 6.2 if alone else 3.6), layout="constrained")
+    rows = figure.subplots(2 if alone else 1, 1, sharex=True, squeeze=False)[:, 0]
+    _draw_lines(rows[0], dataset["sound_power_level_a"], along, places)
+    _draw_lines(rows[0], dataset["sound_power_level"], along, places, dashed=True)
+    rows[0].set_ylabel("sound power level\n[dB re 1 pW]")
+    rows[0].set_title("A-weighted, and unweighted (dashed)", fontsize=10, loc="left")
+    if alone:
+        levels = dataset["sound_line_level"].transpose(along, "sound_line").values
+        frequencies = dataset["sound_line_frequency"].transpose(along, "sound_line").values
+        at = np.broadcast_to(_numbers(dataset, along)[:, None], levels.shape)
+        # The quiet ones first, below the loud ones.
+        order = np.argsort(levels, axis=None)[: int(np.isfinite(levels).sum())]
+        color = levels.ravel()[order]
+        low = max(float(color.min()), float(color.max()) - _LOUD)
+        drawn = rows[1].scatter(
+            at.ravel()[order], frequencies.ravel()[order], c=color, cmap="viridis_r", vmin=low, s=22.0, lw=0.0, zorder=3
+        )
+        figure.colorbar(drawn, ax=rows[1], label="sound power level [dB re 1 pW]", shrink=0.9)
+        rows[1].set_ylabel("frequency [Hz]")
+        rows[1].set_ylim(bottom=0.0)
+        rows[1].set_title("loudest lines of each point", fontsize=10, loc="left")
+        tidy(rows[1])
+    _finish(figure, dataset, along, places)
+    figure.suptitle(f"{title}: sound over {_axis_label(dataset, along)}", fontsize=11, parse_math=False)
     return figure
 
 
