@@ -455,6 +455,36 @@ def with_histories(solved: SolvedSound, transient: SolvedTransient, progress: Pr
     return replace(solved, histories=heard)
 
 
+def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray]:
+    """Return the frequencies of a motion's strongest lines and the rates of the housing's coordinates there.
+
+    Returns
+    -------
+    frequencies : ndarray, shape (l,)
+        [Hz]
+    rates : ndarray, shape (l, n, 2)
+        Real and imaginary part.
+    """
+    assert case.acoustics is not None
+    reactions = solved.histories.bearing_reaction
+    if solved.machine.housing is None or not reactions:
+        return np.zeros(0), np.zeros((0, 0, 2))
+    spectra = {
+        name: solved.record.spectrum(np.ascontiguousarray(force.T), solved.trusted_limit)
+        for name, force in reactions.items()
+    }
+    lines = next(iter(spectra.values())).frequencies
+    limit = case.acoustics.highest_frequency or solved.trusted_limit
+    kept = (lines >= AUDIBLE) & (lines <= limit * (1.0 + 1e-9))
+    forces = {name: one.lines[:, kept].T for name, one in spectra.items()}
+    paths = housing_paths(solved.machine, _TWO_PI * lines[kept], forces)
+    rates = paths.acceleration.sum(axis=1) / (1j * _TWO_PI * lines[kept, None])
+    # The surface is not known here: a body of a square metre stands for it.
+    estimate = (np.abs(rates) ** 2).sum(axis=1) * pulsating_efficiency(lines[kept], 1.0, case.acoustics.speed_of_sound)
+    chosen = np.sort(np.argsort(-estimate, kind="stable")[: case.acoustics.lines])
+    return lines[kept][chosen], np.stack([rates[chosen].real, rates[chosen].imag], axis=-1)
+
+
 def pulsating_efficiency(frequencies: FloatArray, area: float, speed_of_sound: float) -> FloatArray:
     """Radiation efficiency (k a)² / (1 + (k a)²) of a pulsating sphere of an area [m²], an estimate for any body.
 

@@ -10,9 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
-from coupling.signals.transfer_paths import housing_paths
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.sweep.solution import PointResult
@@ -21,46 +19,10 @@ from housing.acoustics.sound_levels import a_weighting, power_level, pressure_le
 if TYPE_CHECKING:
     from gearwhine.case import Case, SweptKey
     from gearwhine.solve.housing_modes import SolvedHousing
-    from gearwhine.solve.transient import SolvedTransient
     from gearwhine.sweep.run import SweptPoint
 
-FloatArray = npt.NDArray[np.float64]
-
-_TWO_PI = 2.0 * np.pi
 _FAINT = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
 _OF_THE_HOUSING = ("housing", "material", "acoustics")
-
-
-def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray]:
-    """Return the frequencies of a motion's strongest lines and the rates of the housing's coordinates there.
-
-    Returns
-    -------
-    frequencies : ndarray, shape (l,)
-        [Hz]
-    rates : ndarray, shape (l, n, 2)
-        Real and imaginary part.
-    """
-    from gearwhine.solve.sound import AUDIBLE, pulsating_efficiency
-
-    assert case.acoustics is not None
-    reactions = solved.histories.bearing_reaction
-    if solved.machine.housing is None or not reactions:
-        return np.zeros(0), np.zeros((0, 0, 2))
-    spectra = {
-        name: solved.record.spectrum(np.ascontiguousarray(force.T), solved.trusted_limit)
-        for name, force in reactions.items()
-    }
-    lines = next(iter(spectra.values())).frequencies
-    limit = case.acoustics.highest_frequency or solved.trusted_limit
-    kept = (lines >= AUDIBLE) & (lines <= limit * (1.0 + 1e-9))
-    forces = {name: one.lines[:, kept].T for name, one in spectra.items()}
-    paths = housing_paths(solved.machine, _TWO_PI * lines[kept], forces)
-    rates = paths.acceleration.sum(axis=1) / (1j * _TWO_PI * lines[kept, None])
-    # The surface is not known here: a body of a square metre stands for it.
-    estimate = (np.abs(rates) ** 2).sum(axis=1) * pulsating_efficiency(lines[kept], 1.0, case.acoustics.speed_of_sound)
-    chosen = np.sort(np.argsort(-estimate, kind="stable")[: case.acoustics.lines])
-    return lines[kept][chosen], np.stack([rates[chosen].real, rates[chosen].imag], axis=-1)
 
 
 def add_sound(

@@ -99,7 +99,7 @@ def sources(wavenumber):
 # Natural frequencies of the air inside the box, (c/2) √Σ(nᵢ/lᵢ)², and frequencies beside them.
 @pytest.mark.parametrize(
     ("hz", "bar"),
-    [(1040, 0.15), (1060.6, 0.15), (1075, 0.15), (2990, 0.15), (3000, 0.15), (3020, 0.15), (5000, 0.3), (5020, 0.3)],
+    [(1060.6, 0.15), (1075, 0.15), (3000, 0.15), (5000, 0.3), (5020, 0.3)],
 )
 def test_sources_inside_a_box(fine_box, hz, bar):
     wavenumber = 2.0 * np.pi * hz / 343.0
