@@ -49,7 +49,7 @@ def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float,
     """Arrays of the system and of its output rows."""
     # Writable as well: a kernel is compiled anew for rows that are not.
     rows = (
-        np.require(rows, requirements="CW") for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)
+        np.require(rows, requirements=("C", "W")) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)
     )
     bearings = bearing_arrays(system.nonlinear)
     return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))

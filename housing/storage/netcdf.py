@@ -1,8 +1,8 @@
 """NetCDF4 files of labelled arrays: values with dimensions, unit and name; and their SHA-256 digest.
 
 Files are written and read without xarray, whose import takes long; xarray opens them. They are HDF5 as the format of
-NetCDF4 (Unidata, *NetCDF File Format Specifications*) has it: a dimension is a dimension scale, of its coordinates or of
-none, and carries its number; an array carries the numbers of its dimensions.
+NetCDF4 (Unidata, *NetCDF File Format Specifications*) has it: a dimension is a dimension scale, of its coordinates or
+of none, and carries its number; an array carries the numbers of its dimensions.
 """
 
 import hashlib
