@@ -47,10 +47,9 @@ class KernelArrays(NamedTuple):
 
 def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float, gamma: float) -> KernelArrays:
     """Arrays of the system and of its output rows."""
+    given = outputs.displacement, outputs.velocity, outputs.acceleration
     # Writable as well: a kernel is compiled anew for rows that are not.
-    rows = (
-        np.require(rows, requirements="CW") for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)
-    )
+    rows = (np.require(one, requirements=("C", "W")) for one in given)
     bearings = bearing_arrays(system.nonlinear)
     return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
 

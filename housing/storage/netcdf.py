@@ -1,6 +1,8 @@
 """NetCDF4 files of labelled arrays: values with dimensions, unit and name; and their SHA-256 digest.
 
-Files are written and read without xarray, whose import takes long; xarray opens them.
+Files are written and read without xarray, whose import takes long; xarray opens them. They are HDF5 as the format of
+NetCDF4 (Unidata, *NetCDF File Format Specifications*) has it: a dimension is a dimension scale, of its coordinates or
+of none, and carries its number; an array carries the numbers of its dimensions.
 """
 
 import hashlib
@@ -123,16 +125,23 @@ def write_netcdf(
     OSError
         Where the file cannot be written.
     """
-    import h5netcdf
+    import h5py
 
     given = {**(coordinates or {}), **variables}
     arrays = {name: _array(values) for name, (_, values, _) in given.items()}
     dimensions = {name: _names(of) for name, (of, _, _) in given.items()}
     sizes = _sizes(arrays, dimensions)
+    numbers = {name: np.int32(number) for number, name in enumerate(sizes)}
+    along_itself = {name for name in sizes if dimensions.get(name) == (name,)}
     beside = {name: set(dimensions[name]) for name in coordinates or {} if name not in sizes}
-    with h5netcdf.File(path, "w") as file:
-        file.dimensions = sizes
-        file.attrs.update(attributes)
+    with h5py.File(path, "w", track_order=True) as file:
+        _tell(file.attrs, attributes)
+        scales: dict[str, Any] = {}
+        for name, size in sizes.items():
+            if name not in along_itself:
+                scales[name] = file.create_dataset(name, (size,), ">f4", track_order=True, **_open((size,)))
+                scales[name].make_scale(_NO_VARIABLE + f"{size:10}".encode())
+        datasets = {}
         for name, array in arrays.items():
             told = dict(given[name][2])
             if array.dtype.kind == "b":
@@ -140,9 +149,43 @@ def write_netcdf(
             if name in variables and name not in sizes:
                 near = sorted(other for other, among in beside.items() if among <= set(dimensions[name]))
                 told |= {"coordinates": " ".join(near)} if near else {}
-            missing = array.dtype.type(np.nan) if fill and array.dtype.kind == "f" else None
-            written = file.create_variable(name, dimensions[name], array.dtype, data=array, fillvalue=missing)
-            written.attrs.update(told)
+            stored = f"_nc4_non_coord_{name}" if name in scales else name
+            if fill and array.dtype.kind == "f":
+                told["_FillValue"] = missing = array.dtype.type(np.nan)
+                dataset = file.create_dataset(
+                    stored, data=array, fillvalue=missing, track_order=True, **_open(array.shape)
+                )
+            else:
+                dataset = file.create_dataset(stored, data=array, track_order=True, **_open(array.shape))
+            if name in along_itself:
+                dataset.make_scale(name)
+                scales[name] = dataset
+            datasets[name] = dataset
+            _tell(dataset.attrs, told)
+        for name, scale in scales.items():
+            scale.attrs["_Netcdf4Dimid"] = numbers[name]
+        for name, dataset in datasets.items():
+            if not dimensions[name]:
+                continue
+            dataset.attrs["_Netcdf4Coordinates"] = np.array([numbers[one] for one in dimensions[name]], dtype=np.int32)
+            if name not in along_itself:
+                dataset.attrs["_Netcdf4Dimid"] = numbers[dimensions[name][0]]
+                for axis, one in enumerate(dimensions[name]):
+                    dataset.dims[axis].attach_scale(scales[one])
+        file.attrs["_NCProperties"] = np.bytes_(f"version=2,hdf5={h5py.version.hdf5_version},h5py={h5py.__version__}")
+
+
+_NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable."
+
+
+def _open(shape: tuple[int, ...]) -> dict[str, Any]:
+    """Arguments of an array, of whose lengths those of 0 may grow: NetCDF knows no others of that length."""
+    return {"maxshape": tuple(size or None for size in shape)} if 0 in shape else {}
+
+
+def _tell(target: Any, attributes: Mapping[str, Any]) -> None:
+    for name, value in attributes.items():
+        target[name] = value if isinstance(value, str) else np.atleast_1d(value)
 
 
 def read_netcdf(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:

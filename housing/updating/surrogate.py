@@ -86,7 +86,7 @@ class Neighbour:
     @cached_property
     def slopes(self) -> FloatArray:
         """Slopes d ln ω of each mode by each coordinate, shape (n_parameters, n_modes)."""
-        return 0.5 * np.einsum("am,pam->pm", self.mixture, self.surrogate.rates @ self.mixture)
+        return np.asarray(0.5 * np.einsum("am,pam->pm", self.mixture, self.surrogate.rates @ self.mixture))
 
     def measured_slopes(self, modes: IntArray) -> FloatArray:
         """Rates of some modes' motions where shapes were measured, shape (n_parameters, n_modes, n_dofs) [1/√kg]."""

@@ -16,6 +16,8 @@ import pytest
 from pydantic import ValidationError
 
 from gearwhine.case import Case
+from gearwhine.from_case import mesh
+from meshes import mesh_box
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -126,6 +128,7 @@ def test_the_reducer_of_the_tutorial_is_the_bundled_one() -> None:
 
 def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(mesh, "mesh_box", lambda box, size, **how: mesh_box(box, max(size, 0.05), **how))
     names: dict[str, Any] = {"__name__": "__main__"}
     for block in blocks("docs/python.md"):
         exec(compile(block, "docs/python.md", "exec"), names)  # noqa: S102 - the page is ours
