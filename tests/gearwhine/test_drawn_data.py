@@ -237,6 +237,11 @@ def test_bars_with_and_without_load_have_the_curves_colours() -> None:
     for container, colour, values in zip(bars.containers, (GREY, BLUE), ([1.0, 2.0], [3.0, 4.0]), strict=True):
         assert [bar.get_height() for bar in container] == pytest.approx(values)
         assert {tuple(bar.get_facecolor()) for bar in container} == {to_rgba(colour)}
+    # Bars of nothing take no room beside the others.
+    harmonics["unloaded"] = np.array([1e-18, 0.0])
+    _, bars = draw_transmission_error("t", phases, 0.0 * phases, harmonics, loaded=loaded).axes
+    (container,) = bars.containers
+    assert [bar.get_x() + 0.5 * bar.get_width() for bar in container] == pytest.approx([1.0, 2.0])
 
 
 def test_the_driver_slides_backwards_where_it_begins() -> None:

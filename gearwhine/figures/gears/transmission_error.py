@@ -107,6 +107,7 @@ def _name(before: int) -> str:
 
 
 _CURVE, _HUNTING, _BARS, _CURVE_GAP = 58.0, 34.0, 36.0, 12.0  # heights and the room between [mm of paper]
+_NOTHING = 1e-6  # part of the largest harmonic
 _SLIM = 0.42  # width of a bar, in harmonics
 
 
@@ -163,6 +164,8 @@ def draw_transmission_error(
 
 def _draw_bars(axes: Axes, harmonics: dict[str, FloatArray]) -> None:
     largest = max((float(row.max(initial=0.0)) for row in harmonics.values()), default=0.0)
+    # Perfect involutes without load have no harmonics: the others' bars then stand at their numbers.
+    harmonics = {name: row for name, row in harmonics.items() if row.max(initial=0.0) > _NOTHING * largest} or harmonics
     shift = 0.5 * _SLIM * (len(harmonics) - 1)
     for number, (name, row) in enumerate(harmonics.items()):
         order = np.arange(1, row.size + 1) - shift + number * _SLIM

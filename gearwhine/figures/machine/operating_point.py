@@ -267,6 +267,8 @@ def _draw_force(
         ha="center",
         va="top" if sense > 0.0 else "bottom",
         zorder=7,
+        # A disc beside the bearing may stand behind its number.
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.3},
     )
 
 

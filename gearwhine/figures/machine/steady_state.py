@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from coupling.periodic.continuation import ResponseCurve
-from gearwhine.case import Case
+from gearwhine.case import Case, mesh_frequencies
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,
@@ -40,6 +40,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN = 46.0, 6.0  # of the panels of a branch, and between them [mm]
 _ROW, _ROW_GAP, _FIRST = 42.0, 18.0, 5.0  # rows of a motion, the room between them and above the first [mm]
+_MOST_TEETH, _FEW_TEETH = 40, 6  # mesh periods that are drawn at most, and where there are more
 _COLUMNS = 2  # of the names of excitations
 _UNSTABLE = (0, (3, 2))
 _MARKS = {  # marker, colour of its edge, and within: folds, where a machine jumps, stand out
@@ -140,7 +141,7 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
     # Names of excitations are long, and the same in all panels: they stand once, below.
     named = [] if solved.superposed is None else [arrowed(motion.excitation) for motion in solved.motions]
     below = legend_height(len(named), _COLUMNS)
-    rows = len(drives)
+    rows, meshes = len(drives), mesh_frequencies(case)
     figure = sheet(
         HEAD + _FIRST + rows * _ROW + (rows - 1) * _ROW_GAP + FOOT + below,
         "Periodic motion: gear-mesh force",
@@ -153,10 +154,14 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
             for motion in solved.motions:
                 color = BLUE if motion.response.stable else GREY
                 left.plot(MILLI * motion.histories.times, motion.histories.mesh_force[name], color=color, lw=0.9)
-            left.set(xlabel="time [ms]", xlim=(0.0, MILLI * float(solved.motions[0].histories.times[-1])))
+            end, what = float(solved.motions[0].histories.times[-1]), "one period"
+            # Hundreds of teeth in a row are an area.
+            if end * meshes[number] > _MOST_TEETH:
+                end, what = _FEW_TEETH / meshes[number], f"{_FEW_TEETH} mesh periods"
+            left.set(xlabel="time [ms]", xlim=(0.0, MILLI * end))
             _spectrum(right, (stable or list(solved.motions))[:1], name)
         else:
-            drawn = []
+            drawn, what = [], "one period"
             for motion, color in zip(solved.motions, SERIES * len(solved.motions), strict=False):
                 force = motion.histories.mesh_force[name]
                 part = np.arange(len(force)) / len(force)
@@ -166,7 +171,7 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
             left.set(xlabel="part of each motion's period", xlim=(0.0, 1.0))
             _spectrum(right, list(solved.motions), name)
         left.set_ylabel("mesh force [N]")
-        panel_title(left, f"{name}: one period")
+        panel_title(left, f"{name}: {what}")
     legend_below(figure, handles, _COLUMNS)
     return figure
 
