@@ -14,9 +14,12 @@ solve for each line gives the derivative of its amplitude by any parameter of th
 (Choi and Kim, *Structural Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the frequency response).
 
 *Housing*: dZ has dK + iω dC - ω² dM of its coordinates, projected, and the motions of its ports. Its modes and residual
-modes are a fixed basis for the derivative, so both fields must be exact in it: the motion is, by residual modes of the
-bearings, and the adjoint field needs those of the sensors. Modal damping of the ratios ζ follows the modes: C = g(A)
-with g(ω²) = 2ζω and A the projected M⁻¹K, so that
+modes are a fixed basis for the derivative. The amplitude errs by the product of what the basis lacks of the motion and
+of the adjoint field, the derivative by either. So both fields must be exact in it, which residual modes of bearings and
+sensors are nearly, and the harmonic responses of the housing's finite-element matrices to the loads of both fields make
+them (:func:`housing.modes.residual_modes.missing_harmonic_responses`). What is differentiated is then the line of these
+matrices, of which that of any other basis differs by second order. Modal damping of the ratios ζ follows the modes:
+C = g(A) with g(ω²) = 2ζω and A the projected M⁻¹K, so that
 
     dC_ab = [(g_a - g_b) dK_ab + (ω_a² g_b - ω_b² g_a) dM_ab] / (ω_a² - ω_b²),
 
@@ -233,6 +236,22 @@ class LineModel:
                 causes = next(causes for at, causes in self._harmonics(limit) if at == w)
                 found.append(SensorLine(sensor, w, causes, value, motions[w], adjoint))
         return tuple(sorted(found, key=lambda one: -one.amplitude))
+
+    def bearing_loads(self, line: SensorLine, bearing: str) -> tuple[ComplexArray, ComplexArray]:
+        """Return the loads of a bearing on its seat, x, y, z and about x, y, in the motion and in the adjoint field.
+
+        Returns
+        -------
+        load : ndarray of complex, shape (5,)
+            [N, N m].
+        adjoint : ndarray of complex, shape (5,)
+            Amplitude per unit of the seat's motion [(m/s²)/m, (m/s²)/rad].
+        """
+        law = self._connector(bearing)
+        loads = np.zeros((2, 5), dtype=np.complex128)
+        loads[0, list(law.axes)] = self._dynamic_force(law, line.frequency, line.motion)
+        loads[1, list(law.axes)] = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
+        return loads[0], loads[1]
 
     def by_static(self, line: SensorLine) -> FloatArray:
         """Differentiate a line's amplitude by the coordinates of the static machine, shape (n_static,)."""

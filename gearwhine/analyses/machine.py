@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, dump_case, require, swept_keys
+from gearwhine.case import Case, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.from_case.machine import basis_error, point_of_pairs, require_machine, solve_machine, solve_pairs
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
@@ -15,11 +15,11 @@ from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
-from gearwhine.results.operating_point import LOAD, kept_options, load_document, load_part
+from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.sound import SOUND, sound_document
-from gearwhine.results.steady_state import STEADY, steady_document
-from gearwhine.results.system import SYSTEM, system_document
+from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
+from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.solve.coupled_system import SolvedSystem, solve_system
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
@@ -189,7 +189,7 @@ def operating_point(
         _figures=figures,
         _files=files,
         _housing=housing,
-        _kept=lambda place, earlier: kept_options(dump_case(case), result.document, place, earlier),
+        _options=(LOAD_OPTIONS, LOAD_SAME),
     )
     return result
 
@@ -226,7 +226,13 @@ def system(
     coupling.ModesError
         Where the modes fail their certificate.
     """
-    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, folder=folder, fresh=fresh)
+    require(case, "rotor", "operation", command="system")
+    require_machine(case)
+    if housing is None and case.housing is not None:
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+    load, told = find_load(case, housing, progress)
+    point = None if load is None else load.point
+    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, point=point)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     solved = solve_system(
         case,
@@ -238,23 +244,28 @@ def system(
         sidebands=sidebands,
     )
     document = system_document(solved)
-    add_warnings(document, unstable_modes_warnings(solved.stability))
-    error = basis_error(case, machine, solved_housing, pairs, progress)
+    if load is not None:
+        document["load"] = load_part(load)
+    add_warnings(document, [*unstable_modes_warnings(solved.stability), *told])
+    error = basis_error(case, machine, solved_housing, pairs, progress, point=point)
     add_uncertainty(document, error, document["trusted_below_hz"])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_system
+        from gearwhine.figures import draw_load, draw_system
 
-        return draw_system(case, solved)
+        yield from draw_system(case, solved)
+        if load is not None:
+            yield from draw_load(case, load)
 
     return Result(
         "system",
         case,
         solved,
         joined(document, origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (SYSTEM, solved)),
+        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (LOAD, load), (SYSTEM, solved)),
         _figures=figures,
         _housing=solved_housing,
+        _options=(SYSTEM_OPTIONS, SYSTEM_SAME),
     )
 
 
@@ -332,6 +343,7 @@ def steady(
         _arrays=lambda: labelled(case, (HOUSING, solved_housing), (LOAD, load), (STEADY, solved)),
         _figures=figures,
         _housing=solved_housing,
+        _options=(STEADY_OPTIONS, STEADY_SAME),
     )
 
 

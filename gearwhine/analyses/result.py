@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from gearwhine.case import Case
 from gearwhine.output import COMMANDS, finite, json_text, staging
 from gearwhine.output.quantity import add_warnings
-from gearwhine.output.store import Kept, earlier_result, store_results
+from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
 from gearwhine.progress import Progress, silent
 from housing.storage.netcdf import Variables
 
@@ -76,7 +76,7 @@ class Result(Generic[Solved]):
     _housing: SolvedHousing | None = None
     _data_file: str = "results.nc"
     _started: float | None = None
-    _kept: Callable[[Path, Mapping[str, Any]], Kept] | None = None
+    _options: tuple[Sequence[Option], Sequence[str]] = ((), ())
 
     def __post_init__(self) -> None:
         """Give the document its list of warnings."""
@@ -168,8 +168,9 @@ class Result(Generic[Solved]):
         kept = Kept()
         for key in self.document.pop("kept", ()):  # of another folder
             del self.document[key]
-        if self._kept is not None and (earlier := earlier_result(Path(folder), self.command)) is not None:
-            kept = self._kept(*earlier)
+        options, same = self._options
+        if options and (earlier := earlier_result(Path(folder), self.command)) is not None:
+            kept = kept_options(options, same, self.case, self.document, *earlier)
             self.document.update(kept.document)
 
         def write(place: Path) -> None:

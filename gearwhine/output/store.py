@@ -5,8 +5,9 @@ those of ``run`` always stand in the folder itself, and what another command lef
 housing's modes are shared by all.
 """
 
+import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -24,7 +25,7 @@ from gearwhine.output.files import (
     staging,
 )
 from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, write_mode_cache
-from housing.storage.netcdf import Variables
+from housing.storage.netcdf import Variables, read_netcdf
 
 _FOREMOST = "run"
 _ADDING = "render"  # draws what it is asked for, beside what it drew before
@@ -47,6 +48,90 @@ class Kept:
     document: Mapping[str, Any] = field(default_factory=dict)
     variables: Variables = field(default_factory=dict)
     files: Sequence[Path] = ()
+
+
+@dataclass(frozen=True)
+class Option:
+    """Part of a result that an option of its command adds.
+
+    Attributes
+    ----------
+    keys : tuple of str
+        Of the document; the first one names the option.
+    dimensions : tuple of str
+        How the names of its dimensions in the file begin.
+    files : str
+        Pattern of the names of its drawings.
+    """
+
+    keys: tuple[str, ...]
+    dimensions: tuple[str, ...]
+    files: str
+
+    def has(self, dimensions: Sequence[str]) -> bool:
+        """Whether an array with these dimensions belongs to the option."""
+        return any(one.startswith(self.dimensions) for one in dimensions)
+
+
+def kept_options(
+    options: Sequence[Option],
+    same: Sequence[str],
+    case: Case,
+    document: Mapping[str, Any],
+    place: Path,
+    earlier: Mapping[str, Any],
+) -> Kept:
+    """Return what an earlier result in a folder has by options that a new one was not asked for.
+
+    Only of the same case and where what both have is the same, number for number.
+
+    Parameters
+    ----------
+    options : sequence of Option
+        Of the command.
+    same : sequence of str
+        Keys of the document that no option changes.
+    case : Case
+    document : mapping
+        Of the new result.
+    place : path
+        Folder of the earlier one.
+    earlier : mapping
+        Its document.
+    """
+    now = json.loads(json_text(finite(document)))
+    missing = [one for one in options if one.keys[0] in earlier and one.keys[0] not in document]
+    alike = all(now.get(key) == earlier.get(key) for key in same)
+    try:
+        if not missing or not alike or (place / "case.toml").read_text(encoding="utf-8") != dump_case(case):
+            return Kept()
+        arrays, _ = read_netcdf(place / "results.nc")
+    except (OSError, ValueError, KeyError):
+        return Kept()
+    names = [one.keys[0] for one in missing]
+    entries: dict[str, Any] = {key: earlier[key] for one in missing for key in one.keys if key in earlier}
+    told = [one for one in earlier.get("warnings", ()) if one["name"] in names]
+    variables = {
+        name: array.labelled for name, array in arrays.items() if any(one.has(array.dimensions) for one in missing)
+    }
+    files = [file for one in missing for file in sorted(place.glob(one.files))]
+    return Kept(entries | {"kept": [*entries], "warnings": [*document["warnings"], *told]}, variables, files)
+
+
+def kept_sentence(document: Mapping[str, Any], options: Sequence[Option], alike: str) -> Iterator[str]:
+    """Yield a sentence on the options that a document has from an earlier result in its folder, where it has any.
+
+    Parameters
+    ----------
+    document : mapping
+    options : sequence of Option
+        Of the command.
+    alike : str
+        What both results have in common.
+    """
+    kept = document.get("kept", ())
+    if names := [one.keys[0].replace("_", " ") for one in options if one.keys[0] in kept]:
+        yield f"Of the results that stood in the folder, of the same {alike}: {' and '.join(names)}"
 
 
 def store_results(

@@ -1,19 +1,15 @@
 """Operating point: quantities of bearings, gear pairs and shafts under the mean load, and how they are shown."""
 
-import json
 import math
-from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coupling.statics.operating_point import CAUSES, PairLoad
-from gearwhine.output.files import finite, json_text
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Row, Section, Table, columns_of, table_of
-from gearwhine.output.store import Kept
-from housing.storage.netcdf import read_netcdf
+from gearwhine.output.store import Option, kept_sentence
 
 if TYPE_CHECKING:
     from gearwhine.solve.bearing_lives import BearingLife
@@ -572,44 +568,14 @@ def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
     return {"title": title} | document_of(LOAD, solved)
 
 
-# Options of the operating point: their key in the document, their dimension in the file, names of their drawings.
-_OPTIONS = (
-    ("over_torque", "load_torque", "load-over-torque.png"),
-    ("sensitivity", "influence", "load-sensitivity-*.png"),
+LOAD_OPTIONS = (
+    Option(("over_torque",), ("load_torque",), "load-over-torque.png"),
+    Option(("sensitivity", "sensor_lines", "lines_without"), ("influence", "sensor_line"), "load-sensitivity-*.png"),
 )
+"""Of the operating point."""
 
-
-def kept_options(case: str, document: Mapping[str, Any], place: Path, earlier: Mapping[str, Any]) -> Kept:
-    """Return what an earlier operating point in a folder has by options that a new one was not asked for.
-
-    Only of the same case and, number for number, the same equilibrium.
-
-    Parameters
-    ----------
-    case : str
-        Text of the case.
-    document : mapping
-        Of the new one.
-    place : path
-        Folder of the earlier one.
-    earlier : mapping
-        Its document.
-    """
-    now = json.loads(json_text(finite(document)))
-    missing = [option for option in _OPTIONS if option[0] in earlier and option[0] not in document]
-    same = all(now[key] == earlier.get(key) for key in ("seats", "bearings", "gear_pairs", "shafts"))
-    try:
-        if not missing or not same or (place / "case.toml").read_text(encoding="utf-8") != case:
-            return Kept()
-        arrays, _ = read_netcdf(place / "results.nc")
-    except (OSError, ValueError, KeyError):
-        return Kept()
-    entries: dict[str, Any] = {key: earlier[key] for key, _, _ in missing} | {"kept": [key for key, _, _ in missing]}
-    told = [one for one in earlier.get("warnings", ()) if one["name"] == "sensitivity" and "sensitivity" in entries]
-    along = {dimension for _, dimension, _ in missing}
-    variables = {name: one.labelled for name, one in arrays.items() if along & set(one.dimensions)}
-    files = [file for _, _, name in missing for file in sorted(place.glob(name))]
-    return Kept(entries | {"warnings": [*document["warnings"], *told]}, variables, files)
+LOAD_SAME = ("seats", "bearings", "gear_pairs", "shafts")
+"""Keys of the operating point that no option changes."""
 
 
 def load_part(solved: "SolvedLoad") -> dict[str, Any]:
@@ -776,9 +742,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from _influences(document)
     yield from _lines(document)
     yield from table_of(columns_of(SHAFT), document["shafts"], "Deflection of the shafts")
-    if kept := document.get("kept"):
-        words = " and ".join(key.replace("_", " ") for key in kept)
-        yield f"Of the results that stood in the folder, of the same equilibrium: {words}"
+    yield from kept_sentence(document, LOAD_OPTIONS, "equilibrium")
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:
         yield f"Nothing holds, and no load drives: {_grouped(document['free_motions'])}"

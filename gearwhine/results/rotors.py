@@ -250,6 +250,14 @@ _PLANE = Quantity("", lambda _: ["x", "y"], "plane", ("plane",), common=True)
 _SAG = ("static_step",)
 STATIC = (
     Quantity("gravity_m_per_s2", lambda one: one.weight.deflection.gravity),
+    Rows(
+        "forces",
+        lambda one: one.weight.forces,
+        (
+            Quantity("at_m", lambda force: force.at),
+            Quantity("force_n", lambda force: [force.x, force.y, force.z]),
+        ),
+    ),
     Quantity("bearings_at_rpm", lambda one: None if one.rest_speed is None else _in_rpm(one.weight.speed)),
     Rows(
         "bearings",
@@ -275,7 +283,7 @@ STATIC = (
     ),
     _PLANE,
 )
-"""Bearing loads under gravity and the shaft's sag."""
+"""Bearing loads under gravity and constant forces, and the shaft's sag."""
 
 _PROBE = ("response_step",)
 PROBE = (
@@ -598,7 +606,7 @@ _PICTURES = {
     "campbell": "Campbell diagram: whirl frequencies over speed; a critical speed stands where an order meets one.",
     "critical-map": "Undamped critical speeds over the stiffness of the bearings: flat branches do not depend on it.",
     "unbalance": "Response to unbalance and bow over speed: peaks stand at critical speeds.",
-    "static": "Deflection of the rotor under its weight, and the forces that hold it.",
+    "static": "Deflection of the rotor under its weight and constant forces, and the forces that hold it.",
 }
 """Captions of a rotor's figures, by the last part of their names."""
 
@@ -773,15 +781,18 @@ def _orders(campbell: Document) -> Iterator[str | Table]:
 
 
 def _weight(static: Document) -> Iterator[str | Table]:
-    """Yield the bearing reactions to the rotor's weight, and its sag."""
+    """Yield the bearing reactions to the rotor's weight and constant forces, and its sag."""
     if static["bearings"] is None:
         yield f"No static deflection: {static['why_not']}"
         return
+    along = any(one["load_n"][2] for one in static["bearings"])
     columns = (
         Column("bearing carries", "name"),
-        *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xy")),
+        *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xyz" if along else "xy")),
     )
-    yield from table_of(columns, static["bearings"], f"Under its weight{_with_bearings_at(static['bearings_at_rpm'])}")
+    forces = counted(len(static["forces"]), "constant force")
+    under = f"Under its weight and {forces}" if static["forces"] else "Under its weight"
+    yield from table_of(columns, static["bearings"], f"{under}{_with_bearings_at(static['bearings_at_rpm'])}")
     sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
     yield f"It sags most at {place:.5g} mm, by {sag:.3g} µm"
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
+from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
 from gearwhine.results.operating_point import brief
 
@@ -284,6 +285,13 @@ STEADY = (
 """Of the steady state at the speed of operation, and of its branch over speed."""
 
 
+STEADY_OPTIONS = (Option(("curve",), ("branch_",), "steady-curve.png"),)
+"""Of the steady state."""
+
+STEADY_SAME = ("speed_rpm", "coordinates", "load")
+"""Keys of the steady state that no option changes: a branch may have several motions at the speed of operation."""
+
+
 def steady_document(title: str, solved: "SolvedSteady") -> dict[str, Any]:
     """Return the steady state as the command's JSON; warn where motions are superposed that should not be."""
     document = {"title": title} | document_of(STEADY, solved)
@@ -337,6 +345,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield from _motion(motion, f"Motion {number}: " if len(motions) > 1 else "")
     if curve := document.get("curve"):
         yield from curve_sentences(curve)
+    yield from kept_sentence(document, STEADY_OPTIONS, "case")
 
 
 def _motion(motion: Document, name: str) -> Iterator[str | Table]:

@@ -9,7 +9,9 @@ import numpy as np
 
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
+from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
+from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
     from gearwhine.solve.coupled_system import SolvedSystem
@@ -372,6 +374,19 @@ SYSTEM = (
 """Of the coupled system, linear about a contact."""
 
 
+SYSTEM_OPTIONS = (
+    Option(
+        ("campbell", "unbalance_response"),
+        ("system_speed", "system_branch", "system_crossing", "unbalance_"),
+        "system-campbell.png",
+    ),
+)
+"""Of the coupled system."""
+
+SYSTEM_SAME = ("speed_rpm", "mesh_phase", "mesh_stiffness", "modes")
+"""Keys of the coupled system that no option over speed changes."""
+
+
 def system_document(solved: "SolvedSystem") -> dict[str, Any]:
     """Return the coupled system as the command's JSON, without the curves of the results file."""
     return document_of(SYSTEM, solved)
@@ -416,6 +431,8 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _content(document: Document) -> Iterator[str | Table]:
+    if "load" in document:
+        yield from brief(document["load"])
     modes, trusted = document["modes"], document.get("trusted_below_hz")
     shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
     phase = document.get("mesh_phase")
@@ -442,6 +459,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield from _peaks(response)
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
+    yield from kept_sentence(document, SYSTEM_OPTIONS, "modes")
 
 
 def _mesh_sentence(mesh: Document) -> str:

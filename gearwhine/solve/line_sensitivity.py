@@ -1,7 +1,9 @@
 """Sensitivity of a case's sensor lines: the machine linear about its operating point, and its housing's derivatives.
 
-The gradients are those of :mod:`coupling.linear.sensor_lines`. Their adjoint fields need residual modes of the
-sensors, which the modes of a solved housing do not have; they are added here.
+The gradients are those of :mod:`coupling.linear.sensor_lines`, whose motion and adjoint fields must be exact in the
+housing's basis. Residual modes of the sensors, which the modes of a solved housing do not have, bring the fields close;
+then the responses of the housing's finite-element matrices at the lines' frequencies to the loads in both fields join
+the basis, and the lines are solved again.
 """
 
 from collections.abc import Sequence
@@ -9,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
 
 from coupling import Machine
 from coupling.linear.sensor_lines import HousingRates, LineModel, SensorLine
@@ -20,9 +21,9 @@ from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import driving, full_housing_component
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
-from housing import modal_damping
+from housing import ModeSet, modal_damping
 from housing.model.housing import RESPONSE_ORDERS
-from housing.modes.natural_modes import with_further_ports
+from housing.modes.natural_modes import ModeSetExtension
 from housing.updating import ModelSensitivity, modal_sensitivities
 from housing.updating.static_sensitivity import PortRates
 
@@ -45,7 +46,7 @@ class SolvedLines:
     lines : tuple of SensorLine
         The highest first.
     housing : SolvedHousing
-        With residual modes of the sensors.
+        With residual modes of the sensors, and the harmonic responses at the lines.
     """
 
     model: LineModel
@@ -146,16 +147,48 @@ def solve_lines(
         return None
     progress("residual modes of the sensors")
     matrices = attach_all(case, housing.mesh, describe_housing(case, housing.mesh).free_matrices())
-    ports = sparse.csr_array(sparse.vstack([one.matrix for one in housing.sensors.values()], format="csr"))
-    modes = with_further_ports(matrices, housing.modes, ports, orders=RESPONSE_ORDERS)
-    damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
-    extended = replace(housing, modes=modes, damping_matrix=damping)
-    about = replace(machine, housing=full_housing_component(case, extended, progress)).at_operating_point(point)
+    extension = ModeSetExtension(matrices, housing.modes)
+    ports = [one.matrix for one in housing.sensors.values()]
+    modes = extension.with_ports(housing.modes, ports, orders=RESPONSE_ORDERS)
+    about = machine.at_operating_point(point)
     pairs = solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
     components = about.rotor_components(progress=progress)
-    assembled = about.assemble(pairs, components, driving(case, components))
-    progress("lines of the sensors")
+    excitation = driving(case, components)
     found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
-    model = LineModel(assembled, point, pairs, found)
-    lines = model.lines(_TWO_PI * housing.trusted_limit_hz, count)
-    return SolvedLines(model, lines, extended) if lines else None
+
+    def solved(modes: ModeSet) -> SolvedLines:
+        damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
+        extended = replace(housing, modes=modes, damping_matrix=damping)
+        stands = replace(about, housing=full_housing_component(case, extended, progress))
+        model = LineModel(stands.assemble(pairs, components, excitation), point, pairs, found)
+        return SolvedLines(model, model.lines(_TWO_PI * housing.trusted_limit_hz, count), extended)
+
+    progress("lines of the sensors")
+    first = solved(modes)
+    if not first.lines:
+        return None
+    progress("responses of the housing at the lines")
+    return solved(extension.with_harmonic_responses(modes, _housing_loads(first)))
+
+
+def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:
+    """Return the loads on the housing's nodes in the motions and adjoint fields of lines, by frequency.
+
+    Returns
+    -------
+    list of (float, ndarray of shape (3 n_nodes, m))
+        Frequencies [rad/s], and real and imaginary parts of the loads.
+    """
+    found: dict[float, list[ComplexArray]] = {}
+    limit = solved.housing.modes.certificate.limit
+    # At the limit itself residual modes have the responses.
+    for line in (one for one in solved.lines if one.frequency < limit):
+        motion = np.zeros(3 * len(solved.housing.mesh.points), dtype=np.complex128)
+        against = line.weight * solved.housing.sensors[line.sensor].matrix.toarray()[0]
+        for name, port in solved.housing.loaded.items():
+            load, adjoint = solved.model.bearing_loads(line, name)
+            motion += port.T @ load
+            against = against + port.T @ adjoint
+        # The motion is the same for every sensor.
+        found.setdefault(line.frequency, [motion]).append(against)
+    return [(w, np.concatenate([np.array(one).real, np.array(one).imag]).T) for w, one in found.items()]

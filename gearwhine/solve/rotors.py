@@ -54,7 +54,7 @@ from rotors.analyses.campbell import Crossing
 from rotors.analyses.critical_speeds import CriticalSpeedMap, CriticalSpeeds, critical_speed_map
 from rotors.analyses.harmonic_response import orbit_of
 from rotors.analyses.rest_frequencies import RestFrequencies
-from rotors.analyses.statics import StaticDeflection
+from rotors.analyses.statics import StaticDeflection, StaticForce
 from rotors.analyses.torsional_response import Torque, TorsionalDashpot, TorsionalResponse
 from rotors.analyses.unbalance import SynchronousResponse
 from rotors.modes.lateral import LateralModes
@@ -79,10 +79,12 @@ _PLACES = 101  # along a rotor, of its shapes
 
 @dataclass(frozen=True)
 class SolvedWeight:
-    """A rotor in its bearings under gravity.
+    """A rotor in its bearings under gravity and constant forces.
 
     Attributes
     ----------
+    forces : tuple of StaticForce
+        Constant forces on the shaft.
     deflection : StaticDeflection
     speed : float
         Where tables over speed were read [rad/s].
@@ -92,6 +94,7 @@ class SolvedWeight:
         Over x and y [m].
     """
 
+    forces: tuple[StaticForce, ...]
     deflection: StaticDeflection
     speed: float
     places: FloatArray
@@ -155,18 +158,22 @@ class SolvedResponse:
 
 
 def solve_weight(
-    analysis: RotorAnalysis, rotor: Rotor, bearings: tuple[Bearing, ...], speed: float
+    analysis: RotorAnalysis,
+    rotor: Rotor,
+    bearings: tuple[Bearing, ...],
+    speed: float,
+    forces: tuple[StaticForce, ...] = (),
 ) -> SolvedWeight | str:
-    """Deflection and bearing loads under gravity, or why there are none: a free rotor falls, but may well whirl.
+    """Deflection and bearing loads under gravity and constant forces, or why there are none.
 
-    ``speed`` [rad/s] is where tables over speed are read.
+    A free rotor falls, but may well whirl. ``speed`` [rad/s] is where tables over speed are read.
     """
     try:
-        deflection = static_deflection(rotor, bearings, gravity=analysis.gravity, speed=speed)
+        deflection = static_deflection(rotor, bearings, forces, gravity=analysis.gravity, speed=speed)
     except RotorError as error:
         return str(error)
     places = np.union1d(np.linspace(0.0, rotor.length, _DEFLECTION_PLACES), rotor.stations)
-    return SolvedWeight(deflection, speed, places, deflection.evaluate(places)[:2])
+    return SolvedWeight(forces, deflection, speed, places, deflection.evaluate(places)[:2])
 
 
 def solve_response(
@@ -362,7 +369,7 @@ class SolvedRotor:
     operation : float or None
         Speed of operation [rad/s].
     weight : SolvedWeight or str
-        Deflection under gravity at operation, else at rest; or why there is none.
+        Deflection under gravity and constant forces at operation, else at rest; or why there is none.
     response : SolvedResponse or None
         To unbalance and bow; None where there is neither.
     torsion : SolvedTorsion or None
@@ -452,7 +459,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
         speeds = whirl_speeds(case, given.name)
         operation = speeds[0] if case.operation is not None else None
         reference = lowest if operation is None else operation
-        weight = solve_weight(analysis, rotor, bearings, reference)
+        weight = solve_weight(analysis, rotor, bearings, reference, _constant_forces(case, given.name))
         progress(f"rotor {given.name}: whirl over speed")
         diagram = campbell_speeds(case, given.name)
         solver = WhirlSolver(rotor, bearings)
@@ -489,6 +496,12 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
     return tuple(solved)
 
 
+def _constant_forces(case: Case, rotor: str) -> tuple[StaticForce, ...]:
+    """Return the constant forces of the operation on a rotor; those of its gears are not among them."""
+    forces = () if case.operation is None else case.operation.force
+    return tuple(StaticForce(one.at, one.x, one.y, one.z) for one in forces if one.rotor == rotor)
+
+
 def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -> FloatArray:
     """Natural frequencies along the axis: of those at rest where bearings tie it to the planes, else the rod's own."""
     along = rest.axial_share > MOSTLY_AXIAL
@@ -517,6 +530,8 @@ def _crossings(campbell: Campbell, order: float = 1.0) -> Crossings:
 
     Motions that are for the most part along the axis are left out: no unbalance drives them.
     """
+    if campbell.speeds.size < 2:
+        return "a Campbell diagram at one speed has no crossings; expected two or more different speeds"
     try:
         return tuple(one for one in campbell.crossings(order) if one.axial_share <= MOSTLY_AXIAL)
     except IncompleteModesError as error:

@@ -17,7 +17,13 @@ from housing.fem.factorization import Backend, Factorization, Factorizer
 from housing.fem.matrices import FreeSystem, Matrices
 from housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
 from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
-from housing.modes.residual_modes import ResidualModes, joined_residual_modes, port_motions, residual_attachment_modes
+from housing.modes.residual_modes import (
+    ResidualModes,
+    extended_residual_modes,
+    missing_harmonic_responses,
+    port_motions,
+    residual_attachment_modes,
+)
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -250,18 +256,10 @@ def add_residual_modes(
     return replace(modes, shapes=system.expand(vectors), residual_modes=residual_modes)
 
 
-def with_further_ports(
-    matrices: Matrices,
-    modes: ModeSet,
-    ports: Sequence[sparse.csr_array] | sparse.csr_array,
-    *,
-    orders: int,
-    backend: Backend | None = None,
-    threads: int = 2,
-) -> ModeSet:
-    """Extend a mode set by residual modes of further ports, such as sensors; those that it has stay in its span.
+class ModeSetExtension:
+    """Extension of a mode set by further residual modes; what it has stays in its span.
 
-    By one factor of K - σM, σ at the limit of the modes.
+    One factor of K - σM, σ at the limit of the modes, serves all of them.
 
     Parameters
     ----------
@@ -269,38 +267,98 @@ def with_further_ports(
         The matrices of the modes, supports included.
     modes : ModeSet
         Complete up to its limit.
-    ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-    orders : int
-        As `port_orders` of :func:`solve_modes`.
     backend, threads
         See :class:`housing.fem.factorization.Factorizer`.
-
-    Raises
-    ------
-    HousingError, ReductionError
-        See :func:`housing.modes.residual_modes.residual_attachment_modes`.
     """
-    system = FreeSystem(matrices, threads=threads)
-    shift = modes.certificate.limit**2
-    vectors = modes.shapes.reshape(len(modes.shapes), -1).T[system.free]
-    further, _ = residual_attachment_modes(
-        system.stiffness,
-        system.mass,
-        Factorizer(backend=backend, threads=threads).factor(system.shifted(shift)).solve,
-        modes.frequencies**2,
-        vectors,
-        stacked(ports)[:, system.free],
-        shift=shift,
-        floor=system.floor(modes.certificate.limit),
-        free=system.free,
-        n_nodes=system.n_nodes,
-        orders=orders,
-    )
-    if modes.residual_modes is not None:
-        further = joined_residual_modes(
-            system.stiffness, system.mass, modes.residual_modes, further, vectors, system.free
+
+    def __init__(self, matrices: Matrices, modes: ModeSet, *, backend: Backend | None = None, threads: int = 2) -> None:
+        self._system = FreeSystem(matrices, threads=threads)
+        self._shift = modes.certificate.limit**2
+        self._factor = Factorizer(backend=backend, threads=threads).factor(self._system.shifted(self._shift))
+        self._vectors = modes.shapes.reshape(len(modes.shapes), -1).T[self._system.free]
+
+    def with_ports(
+        self, modes: ModeSet, ports: Sequence[sparse.csr_array] | sparse.csr_array, *, orders: int
+    ) -> ModeSet:
+        """Add residual modes of further ports, such as sensors.
+
+        Parameters
+        ----------
+        modes : ModeSet
+            The modes of this extension, with whatever residual modes.
+        ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
+        orders : int
+            As `port_orders` of :func:`solve_modes`.
+
+        Raises
+        ------
+        HousingError, ReductionError
+            See :func:`housing.modes.residual_modes.residual_attachment_modes`.
+        """
+        system = self._system
+        further, _ = residual_attachment_modes(
+            system.stiffness,
+            system.mass,
+            self._factor.solve,
+            modes.frequencies**2,
+            self._vectors,
+            stacked(ports)[:, system.free],
+            shift=self._shift,
+            floor=system.floor(modes.certificate.limit),
+            free=system.free,
+            n_nodes=system.n_nodes,
+            orders=orders,
         )
-    return replace(modes, residual_modes=further)
+        if modes.residual_modes is None:
+            return replace(modes, residual_modes=further)
+        return self._joined(modes, further.shapes.reshape(len(further.shapes), -1).T[system.free])
+
+    def with_harmonic_responses(self, modes: ModeSet, loads: Sequence[tuple[float, FloatArray]]) -> ModeSet:
+        """Add to the residual modes what they lack of the responses to some harmonic loads, so that these are exact.
+
+        Parameters
+        ----------
+        modes : ModeSet
+            The modes of this extension, with residual modes.
+        loads : sequence of (float, ndarray of shape (3 n_nodes, m))
+            Frequencies ω below the limit [rad/s], and amplitudes of loads [N].
+
+        Raises
+        ------
+        HousingError
+            For a frequency at the limit or above.
+        ReductionError
+            Where the sweeps do not converge.
+        """
+        if modes.residual_modes is None:
+            raise HousingError("harmonic responses of modes without residual modes; add those of ports first")
+        beyond = [frequency for frequency, _ in loads if frequency**2 >= self._shift]
+        if beyond:
+            raise HousingError(f"a harmonic load at {beyond[0]:g} rad/s; expected one below the limit of the modes")
+        system, residual = self._system, modes.residual_modes
+        known = residual.shapes.reshape(len(residual.shapes), -1).T[system.free]
+        inertia = np.asarray(system.mass @ self._vectors)
+        found = [
+            missing_harmonic_responses(
+                system.shifted(frequency**2),
+                self._factor.solve,
+                load[system.free],
+                self._vectors,
+                inertia,
+                known,
+                residual.frequencies**2 - frequency**2,
+            )
+            for frequency, load in loads
+        ]
+        return self._joined(modes, np.hstack(found)) if found else modes
+
+    def _joined(self, modes: ModeSet, columns: FloatArray) -> ModeSet:
+        assert modes.residual_modes is not None
+        system = self._system
+        joined = extended_residual_modes(
+            system.stiffness, system.mass, modes.residual_modes, columns, self._vectors, system.free
+        )
+        return replace(modes, residual_modes=joined)
 
 
 def stacked(ports: Sequence[sparse.csr_array] | sparse.csr_array) -> sparse.csr_array:

@@ -83,6 +83,7 @@ Solve = Callable[[FloatArray], FloatArray]
 
 STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
+_HARMONIC_SETTLED = 1e-7  # the same of what a harmonic response lacks, part of the whole response
 _SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
 _ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
@@ -266,21 +267,22 @@ def residual_attachment_modes(
     return ResidualModes(np.sqrt(squared), full.reshape(len(squared), n_nodes, 3), proof), vectors
 
 
-def joined_residual_modes(
+def extended_residual_modes(
     stiffness: Operator,
     mass: Operator,
-    first: ResidualModes,
-    second: ResidualModes,
+    residual_modes: ResidualModes,
+    further: FloatArray,
     vectors: FloatArray,
     free: IntArray,
 ) -> ResidualModes:
-    """Join two sets of residual modes of the same kept modes into one that spans both.
+    """Extend residual modes so that they span further displacements of the discarded modes too.
 
     Parameters
     ----------
     stiffness, mass : matrix or operator, shape (n, n)
         On the free degrees of freedom.
-    first, second : ResidualModes
+    residual_modes : ResidualModes
+    further : ndarray, shape (n, m)
     vectors : ndarray, shape (n, p)
         Kept modes, orthonormal in M.
     free : ndarray of int, shape (n,)
@@ -289,14 +291,60 @@ def joined_residual_modes(
     Returns
     -------
     ResidualModes
-        With the proof of the first set, whose static compliance at its ports it keeps.
+        With the proof of the given ones, whose static compliance at their ports they keep.
     """
-    columns = [one.shapes.reshape(len(one.shapes), -1).T[free] for one in (first, second)]
-    span = _extended(stiffness, columns[0] / first.frequencies, columns[1])
-    squared, shapes = _orthonormal(stiffness, mass, span, vectors, np.asarray(mass @ vectors))
-    full = np.zeros((len(squared), first.shapes[0].size))
-    full[:, free] = shapes.T
-    return ResidualModes(np.sqrt(squared), full.reshape(len(squared), *first.shapes.shape[1:]), first.proof)
+    shapes, frequencies = residual_modes.shapes, residual_modes.frequencies
+    span = _extended(stiffness, shapes.reshape(len(shapes), -1).T[free] / frequencies, further)
+    squared, found = _orthonormal(stiffness, mass, span, vectors, np.asarray(mass @ vectors))
+    full = np.zeros((len(squared), shapes[0].size))
+    full[:, free] = found.T
+    return ResidualModes(np.sqrt(squared), full.reshape(len(squared), *shapes.shape[1:]), residual_modes.proof)
+
+
+def missing_harmonic_responses(
+    dynamic: Operator,
+    solve: Solve,
+    loads: FloatArray,
+    vectors: FloatArray,
+    inertia: FloatArray,
+    shapes: FloatArray,
+    apart: FloatArray,
+) -> FloatArray:
+    """Compute what residual modes lack of the undamped responses of the discarded modes to harmonic loads.
+
+    The response X of (K - ω²M) X = (I - M Φ Φᵀ) F in the complement of the kept modes, where K - ω²M is positive
+    definite with ω below the limit, less that by the residual modes. Conjugate gradients as at rest find it.
+
+    Parameters
+    ----------
+    dynamic : matrix or operator, shape (n, n)
+        K - ω²M on the free degrees of freedom [N/m].
+    solve : callable
+        X = A⁻¹ B with A = K - σM, σ between the kept and the discarded modes.
+    loads : ndarray, shape (n, m)
+        F [N].
+    vectors, inertia : ndarray, shape (n, p)
+        Φ and M Φ.
+    shapes : ndarray, shape (n, k)
+        Residual modes.
+    apart : ndarray, shape (k,)
+        Their ω_k² - ω² [rad²/s²].
+
+    Returns
+    -------
+    ndarray, shape (n, <= m)
+        Displacements that span the missing ones to a part of 1e-6 of the whole responses, in the norm of strain energy.
+
+    Raises
+    ------
+    ReductionError
+        Where the sweeps do not converge.
+    """
+    held = shapes @ ((shapes.T @ loads) / apart[:, None])
+    energy = np.einsum("ij,ij->j", loads, held)
+    left = loads - np.asarray(dynamic @ held)
+    missing, _ = _static_response(dynamic, solve, left, vectors, inertia, _HARMONIC_SETTLED, energy)
+    return _independent(dynamic, missing, energy)
 
 
 def _static_response(
@@ -308,7 +356,7 @@ def _static_response(
     settled: float,
     known: FloatArray | float = 0.0,
 ) -> tuple[FloatArray, int]:
-    """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took.
+    """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took; K or K - ω²M alike.
 
     Block conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹: each sweep minimises the
     energy of every column over all columns' directions D, with Dᵀ K D = I. The iteration ends where a sweep moves no

@@ -8,6 +8,13 @@ from typing import Any
 import pytest
 import xarray as xr
 
+FEW = (
+    "rotor.input.modes=2",
+    "rotor.output.modes=2",
+    "rotor.input.unbalance=",
+    "gear_pair.0.backlash='80 um'",
+    "sweep.speed=['5400 rpm', '5600 rpm']",
+)
 SHORT = ("--set", "transient.revolutions=3", "--set", "transient.discard=1")
 
 
@@ -73,3 +80,43 @@ def test_a_sub_folder_that_is_none_is_refused_before_the_work(
     outcome = gearwhine("gears", "spur-pair", "-q", "-o", "out")
     assert outcome.code == 2
     assert "'gears', where that command's go, is no folder" in outcome.err
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "settings", "key", "array", "picture"),
+    [
+        ("system", ("--campbell",), (), "campbell", "system_campbell_frequency", "system-campbell.png"),
+        ("steady", ("--curve", "--points", "8"), FEW, "curve", "branch_peak_force", "steady-curve.png"),
+    ],
+)
+def test_results_over_speed_outlive_the_command_without_the_option(
+    gearwhine: Callable[..., Any],
+    tmp_path: Path,
+    command: str,
+    option: tuple[str, ...],
+    settings: tuple[str, ...],
+    key: str,
+    array: str,
+    picture: str,
+) -> None:
+    out = tmp_path / "out"
+    shared = ("-q", "--json", "-o", "out", *(part for change in settings for part in ("--set", change)))
+    first = gearwhine(command, "spur-pair", *option, *shared)
+    assert first.code == 0, first.err
+    with xr.open_dataset(out / "results.nc") as data:
+        before = data[array].load()
+    drawn = (out / picture).read_bytes()
+    second = gearwhine(command, "spur-pair", *shared)
+    assert second.code == 0, second.err
+    document = second.document
+    assert document["kept"][0] == key
+    assert all(document[one] == first.document[one] for one in document["kept"])
+    assert json.loads((out / "summary.json").read_text(encoding="utf-8")) == document
+    assert picture in document["files"]
+    assert (out / picture).read_bytes() == drawn
+    with xr.open_dataset(out / "results.nc") as data:
+        xr.testing.assert_identical(data[array].load(), before)
+    # Those of another case go.
+    other = gearwhine(command, "spur-pair", *shared, "--set", "operation.torque=50 N*m").document
+    assert not {"kept", key} & set(other)
+    assert not (out / picture).exists()

@@ -108,6 +108,29 @@ def test_bearings_carry_the_weight_in_equal_shares_and_sag_by_it(solved_rotor: A
     assert "free to move" in free["static"]["why_not"]
 
 
+def test_constant_forces_load_the_bearings_by_the_lever(solved_rotor: Any, jeffcott: str) -> None:
+    pull = "{ rotor = 'shaft', at = '25 mm', x = '400 N', y = '-80 N' }"
+    static = solved_rotor(jeffcott, f"operation.force=[{pull}]")["static"]
+    share = MASS * 9.80665 / 2.0
+    for bearing, part in zip(static["bearings"], (0.75, 0.25), strict=True):
+        assert bearing["load_n"] == pytest.approx([400.0 * part, -share - 80.0 * part, 0.0], abs=1e-6)
+    assert static["forces"] == [{"at_m": 0.025, "force_n": [400.0, -80.0, 0.0]}]
+    # Nothing holds the shaft along its axis.
+    along = solved_rotor(jeffcott, f"operation.force=[{pull.replace('x', 'z')}]")["static"]
+    assert "free to move" in along["why_not"]
+
+
+def test_one_speed_makes_no_campbell_diagram(gearwhine: Any, jeffcott: str, tmp_path: Path) -> None:
+    same = "rotor_analysis.speed=['2000 rpm', '2000 rpm']"
+    outcome = gearwhine("rotors", jeffcott, "-q", "--json", "-o", "out", "--set", same)
+    assert outcome.code == 0, outcome.err
+    (rotor,) = outcome.document["rotors"]
+    assert "expected two or more different speeds" in rotor["campbell"]["why_no_critical_speeds"]
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert "rotor-shaft-modes.png" in names
+    assert not any("campbell" in name for name in names)
+
+
 def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(
     solved_rotor: Any, rotor_curves: Any, jeffcott: str
 ) -> None:

@@ -56,9 +56,9 @@ BALLS = {
 def case() -> Case:
     """The small gearbox on ball bearings whose stiffness follows the load, its gears out of the middle.
 
-    Its modes reach up to 15 kHz, so that the fields of the lines are exact to 1e-4 between them.
+    Its modes reach up to 8 kHz, the lines up to 5.1 kHz.
     """
-    overrides = ["housing.box.mesh_size=60 mm", "gear.*.at=70 mm", "housing.frequency_limit=15 kHz"]
+    overrides = ["housing.box.mesh_size=60 mm", "gear.*.at=70 mm", "housing.frequency_limit=8 kHz"]
     document = case_document(load_case("small-gearbox", overrides).case)
     document["material"]["iron"] = {"youngs_modulus": "110 GPa", "poisson_ratio": 0.25, "density": "7200 kg/m^3"}
     document["housing"]["material"] = "iron"
@@ -98,11 +98,16 @@ def amplitudes(solved: Solved) -> FloatArray:
 
 
 def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
-    """Walls, length with its seats, springs and a modulus together: to 5e-4 of the sum of their parts.
+    """Walls, length with its seats, springs and a modulus together: to 1e-4 of the sum of their parts.
 
-    Fourth-order differences of mesh, modes, equilibrium, assembly and line.
+    Fourth-order differences of mesh, modes, equilibrium, assembly and line; with steps of 1e-3 and 5e-4 they err by
+    2e-5, as smaller ones show. The flanks are given: those that follow the equilibrium add up to 2e-4, by teeth that
+    come into touch one by one.
     """
-    housing, point, found = solved
+    document = case_document(case)
+    document["gear_pair"][0]["misalignment"] = 0.0
+    case = parse_case(document)
+    housing, point, found = solve(case, solved[0].mesh)
     lines = chosen(found.lines)
     assert len(lines) == 4
     adjoints = [adjoint(point, found.model.by_static(one)) for one in lines]
@@ -115,14 +120,15 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
     meshed = MeshedParameters(fitted, fitted.start, case, housing.mesh)
     values = np.array([number.start for number in fitted.numbers])
     way = values * np.random.default_rng(1).normal(size=len(values))
-    step, either = 1e-3, []
+    step, either = 5e-4, []
     for size in (step, -step, 2.0 * step, -2.0 * step):
         there = fitted.at((values + size * way).tolist())
         geometry = geometry_of(there)
         assert geometry is not None
         either.append(amplitudes(solve(there, meshed.morph.moved(geometry))))
     expected = (8.0 * (either[0] - either[1]) - (either[2] - either[3])) / (12.0 * step)
-    assert (np.abs(own @ way - expected) < 5e-4 * np.abs(own * way).sum(axis=1)).all()
+    print((own @ way - expected) / np.abs(own * way).sum(axis=1))
+    assert (np.abs(own @ way - expected) < 1e-4 * np.abs(own * way).sum(axis=1)).all()
     # Each line answers to the step as its slope says.
     number = [number.given.name for number in fitted.numbers].index("bottom wall")
     small = 1e-6 / changes.slopes[number]
@@ -150,7 +156,7 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     # The basis of the shafts stays, so that the difference has no part by it.
     assembled = machine.assemble(pairs, found.model.machine.rotors)
     model = LineModel(assembled, point, pairs, found.model.found)
-    return np.array([one.amplitude for one in chosen(model.lines(2.0 * np.pi * 15e3, 9))])
+    return np.array([one.amplitude for one in chosen(model.lines(2.0 * np.pi * 8e3, 9))])
 
 
 def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved) -> None:

@@ -11,6 +11,7 @@ from housing import HousingError, Material, ModeSet, Seat, Support, assemble, so
 from housing.fem.matrices import Matrices
 from housing.model.seats import seat_matrix
 from housing.model.supports import fixed_freedoms
+from housing.modes.natural_modes import ModeSetExtension
 from housing.modes.residual_modes import leading_residual_modes
 from meshes import Mesh
 
@@ -122,3 +123,28 @@ def test_no_order_at_all_is_refused(port: sparse.csr_array, solved: dict[int, Mo
     assert attached is not None
     with pytest.raises(HousingError, match="0 orders of response; expected 1 or more"):
         leading_residual_modes(attached, port, LIMIT**2, 0)
+
+
+def test_harmonic_responses_are_exact_at_their_frequencies(
+    beam: tuple[Mesh, Matrices], clamped: npt.NDArray[np.int64], port: sparse.csr_array, solved: dict[int, ModeSet]
+) -> None:
+    """Of loads at any nodes, at every node, against dense solves; where nothing is missing, nothing joins."""
+    matrices, modes = beam[1].held(clamped), solved[1]
+    loads = sparse.csr_array(np.random.default_rng(4).normal(size=(3, port.shape[1])))
+    places = LIMIT * np.array([0.4, 0.93])
+    extension = ModeSetExtension(matrices, modes)
+    given = [(w, loads.toarray().T * (1.0, 1e-6, 0.0)) for w in places]
+    found = extension.with_harmonic_responses(modes, given)
+    for w in places:
+        assert errors(beam, clamped, loads, modes, w)[:2].min() > 1e-3
+        assert errors(beam, clamped, loads, found, w)[:2].max() < 2e-6
+        # What the residual modes had stays.
+        assert errors(beam, clamped, port, found, 0.0).max() < 1e-8
+    assert modes.residual_modes is not None
+    assert found.residual_modes is not None
+    assert len(found.residual_modes.frequencies) == len(modes.residual_modes.frequencies) + 4
+    again = extension.with_harmonic_responses(found, given)
+    assert again.residual_modes is not None
+    assert len(again.residual_modes.frequencies) == len(found.residual_modes.frequencies)
+    with pytest.raises(HousingError, match="below the limit"):
+        extension.with_harmonic_responses(modes, [(LIMIT, loads.toarray().T)])

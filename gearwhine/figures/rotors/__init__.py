@@ -115,7 +115,7 @@ def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
         figures.append(("whirl", draw_whirl_modes(assembly, one.whirl[0], most=_MODES)))
     critical, directions = _critical_speeds(one)
     name = f"Rotor {shortened(one.rotor.name, 20)}"
-    if one.campbell is not None and one.campbell.eigenvalues.size:
+    if one.campbell is not None and one.campbell.speeds.size > 1 and one.campbell.eigenvalues.size:
         crossed, senses, orders = _with_other_orders(one, critical, directions)
         campbell = draw_campbell(
             f"{name}: Campbell diagram",
