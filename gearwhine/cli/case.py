@@ -134,7 +134,12 @@ def export(
         ),
     ] = False,
     wav: Annotated[
-        bool, Parameter(name=["--wav"], negative=(), help="Accelerations of sensors and sound pressures of microphones as sound, with their full scale.")
+        bool,
+        Parameter(
+            name=["--wav"],
+            negative=(),
+            help="Accelerations of sensors and sound pressures of microphones as sound, with their full scale.",
+        ),
     ] = False,
     all_signals: Annotated[
         bool,

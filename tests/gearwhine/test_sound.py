@@ -5,12 +5,14 @@ import json
 import numpy as np
 import pytest
 from scipy.io import wavfile
+from scipy.signal import spectrogram
 
 import gearwhine as gw
 from gearwhine.case import CaseError, swept_keys
 from gearwhine.cli.command_line import run_command
 from gearwhine.output.export import write_sounds
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.microphones import microphone_histories, solve_transfer
 from gearwhine.sweep.sound import add_sound
 
 COARSE = {"acoustics.mesh_size": "26 mm", "acoustics.highest_frequency": "3 kHz", "acoustics.lines": 8}
@@ -95,6 +97,24 @@ def test_a_tones_level_in_the_sound_file_is_that_of_its_line(run, tmp_path):
         tone = 2.0 * abs(np.sum(window * pressure * np.exp(-2j * np.pi * line.frequency_hz * times)) / window.sum())
         assert 20.0 * np.log10(tone / abs(line.microphones[place])) == pytest.approx(0.0, abs=0.1)
     assert run.document["sound"]["microphone_error"] < 0.06
+
+
+def test_a_run_up_played_as_a_spectrogram_shows_the_order(run):
+    """Mesh force of a run-up from 10 to 30 rev/s: the loudest tone at every time is 28 times the speed."""
+    machine, radiation = run.solved.transient.machine, run.solved.sound.radiation
+    transfer = solve_transfer(radiation, np.array([[0.0, 1.2, 0.0]]), 20.0, 1000.0)
+    times = np.arange(16000) / 8000.0
+    speed = 10.0 + 10.0 * times  # rev/s
+    tone = np.cos(2.0 * np.pi * 28.0 * (10.0 * times + 5.0 * times**2))
+    forces = {
+        name: np.zeros((len(times), force.shape[1]))
+        for name, force in run.solved.transient.histories.bearing_reaction.items()
+    }
+    forces["input-back"][:, 1] = 100.0 * tone
+    heard = microphone_histories(machine, transfer, times, forces, repeats=False).pressure[0]
+    frequencies, at, power = spectrogram(heard, 8000.0, nperseg=1024, noverlap=0)
+    loudest = frequencies[power.argmax(axis=0)]
+    assert loudest[1:-1] == pytest.approx(28.0 * np.interp(at, times, speed)[1:-1], abs=1.5 * frequencies[1])
 
 
 def test_rayleigh_of_the_top_is_near_boundary_elements_for_a_mode_of_the_top():
