@@ -45,7 +45,7 @@ def test_run_leaves_the_promised_files(run_folder: Path, run_summary: dict) -> N
     assert any(name.startswith("mode-") for name in present)
     for path in run_folder.glob("*.png"):
         with Image.open(path) as image:
-            assert min(image.size) > 300
+            assert min(image.size) > 250  # the lowest is a bar of one gear pair
             assert len(image.convert("RGB").reduce(4).getcolors(maxcolors=1 << 24) or ()) > 50
 
 
