@@ -12,7 +12,7 @@ from gearwhine.interruption import interruptible
 app = App(
     name="gearwhine",
     version=__version__,
-    help="Gearbox vibration: from the geometry of housing, rotors and gears to the spectrum at an accelerometer and the sound.",
+    help="Gearbox vibration: from the geometry of housing, rotors and gears to spectra and sound.",
     help_epilogue="Try: gearwhine examples, then gearwhine run small-gearbox",
     help_format="plaintext",
     # An interruption unwinds to run_command, which has a sentence for it.

@@ -183,7 +183,9 @@ def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: flo
 def _meshing_limit(folder: Path) -> float:
     """Seconds in which the elements that the worker foresees are to be made."""
     foreseen = folder / FORESEEN
-    elements = float(foreseen.read_text(encoding="utf-8")) if foreseen.is_file() else 0.0
+    text = foreseen.read_text(encoding="utf-8") if foreseen.is_file() else ""
+    # The file may be there before its number is.
+    elements = float(text) if text.strip() else 0.0
     return min(_MESHING + _MESHING_PER_ELEMENT * elements, _LONGEST)
 
 

