@@ -33,17 +33,21 @@ def small_machine() -> CoupledSystem:
     return CoupledSystem((MASS,), (0.0,), contacts=(tooth,), load=np.ones(1))
 
 
-def turn_in_uneven_bearings() -> None:
-    """Whirl of a shaft in bearings that are not alike in x and y, which the case's are."""
+UNEVEN = np.diag([2e6, 1e6])
+COUPLED = np.diag([2e6, 2e6, 1e7, 1e4, 1e4]) + np.fliplr(np.diag(np.full(5, 1e3)))
+
+
+def turn_in_bearings() -> None:
+    """Whirl of a shaft in bearings that are not alike in x and y, which the case's are, and in some of five motions."""
     shaft = Rotor("shaft", [Segment(1.0, 0.05, 0.0, ShaftMaterial(2.1e11, 8.1e10, 7800.0))])
-    bearings = [
-        Bearing(name, at, np.diag([2e6, 1e6]), 10.0 * np.eye(2)) for name, at in (("left", 0.0), ("right", 1.0))
-    ]
-    solve_whirl(shaft, bearings, 1.0, count=2)
+    for stiffness in (UNEVEN, COUPLED):
+        damping = 10.0 * np.eye(len(stiffness))
+        bearings = [Bearing(name, at, stiffness, damping) for name, at in (("left", 0.0), ("right", 1.0))]
+        solve_whirl(shaft, bearings, 10.0, count=3)
 
 
 def rotors_and_gears() -> None:
-    turn_in_uneven_bearings()
+    turn_in_bearings()
     tell("rotors")
     tell("gears")
     short = ("transient.revolutions=1", "transient.discard=0", "gear_pair.0.friction=0.05")
