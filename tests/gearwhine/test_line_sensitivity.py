@@ -127,7 +127,6 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
         assert geometry is not None
         either.append(amplitudes(solve(there, meshed.morph.moved(geometry))))
     expected = (8.0 * (either[0] - either[1]) - (either[2] - either[3])) / (12.0 * step)
-    print((own @ way - expected) / np.abs(own * way).sum(axis=1))
     assert (np.abs(own @ way - expected) < 1e-4 * np.abs(own * way).sum(axis=1)).all()
     # Each line answers to the step as its slope says.
     number = [number.given.name for number in fitted.numbers].index("bottom wall")
