@@ -187,8 +187,8 @@ def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:
         against = line.weight * solved.housing.sensors[line.sensor].matrix.toarray()[0]
         for name, port in solved.housing.loaded.items():
             load, adjoint = solved.model.bearing_loads(line, name)
-            motion += port.T @ load
-            against = against + port.T @ adjoint
+            motion += np.asarray(port.T @ load)
+            against = against + np.asarray(port.T @ adjoint)
         # The motion is the same for every sensor.
         found.setdefault(line.frequency, [motion]).append(against)
     return [(w, np.concatenate([np.array(one).real, np.array(one).imag]).T) for w, one in found.items()]
