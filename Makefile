@@ -79,7 +79,9 @@ $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
 # The documentation site, from the pages in docs, the docstrings, the schema and the worked examples, which it runs.
 # It is read without a network: open build/site/index.html.
 docs: $(VENV)/.installed-docs install
+	@echo "Building the documentation site; the first time its worked examples run for some minutes ..."
 	$(BIN)/sphinx-build -W --keep-going -q -j 2 -b html -c docs . build/site
+	@echo "Open $(CURDIR)/build/site/index.html in a browser."
 
 # The validation page, from the tests against published values.
 validation: install-dev

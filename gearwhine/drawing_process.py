@@ -1,7 +1,8 @@
 """Drawing process: VTK in a process of its own, so that its crash is reported and the command goes on.
 
-The process is handed plain data, a file of arrays (``.npz``, without pickled objects) and a file of JSON, and answers
-in lines of JSON: what it draws now, and at last the names of the files, or what went wrong.
+The process is named folders, one a line, and finds in each plain data: a file of arrays (``.npz``, without pickled
+objects) and a file of JSON. It answers in lines of JSON: what it draws now, and at last the names of the files, or what
+went wrong.
 """
 
 import json
@@ -10,9 +11,11 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, Self
 
 import numpy as np
 
@@ -23,6 +26,23 @@ from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 
 _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
 _CAPTIONS = ("name", "title", "note", "quantity", "largest")
+
+
+@contextmanager
+def one_process() -> Iterator[None]:
+    """Draw all shapes of this block in one process, which takes longer to start than to draw a dozen shapes.
+
+    It starts with the first, and ends with the block, whatever ends that.
+    """
+    if _kept.get() is not None:
+        yield
+        return
+    with _DrawingProcess() as process:
+        token = _kept.set(process)
+        try:
+            yield
+        finally:
+            _kept.reset(token)
 
 
 def draw_in_process(
@@ -51,35 +71,89 @@ def draw_in_process(
         "sheet": sheet,
         "shapes": [{key: getattr(shape, key) for key in _CAPTIONS} for shape in shapes],
     }
-    with tempfile.TemporaryDirectory() as desk, tempfile.TemporaryFile("w+", encoding="utf-8") as troubles:
+    with one_process(), tempfile.TemporaryDirectory() as desk:
         arrays: dict[str, Any] = {f"motion_{i}": shape.motion for i, shape in enumerate(shapes)}
         arrays |= {f"values_{i}": shape.values for i, shape in enumerate(shapes) if shape.values is not None}
         np.savez(Path(desk) / "arrays.npz", rest=housing.rest, triangles=housing.triangles, **arrays)
         (Path(desk) / "task.json").write_text(json.dumps(task), encoding="utf-8")
-        process = subprocess.Popen(
-            [sys.executable, "-m", "gearwhine.drawing_process", desk],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=troubles,
-            text=True,
-            env=_environment(),
-        )
-        try:
-            assert process.stdout is not None
-            answer = _follow(process.stdout, progress)
-            code = process.wait()
-        finally:
-            process.kill()  # does nothing to one that has ended
-            process.wait()
-            if process.stdout is not None:
-                process.stdout.close()
+        process = _kept.get()
+        assert process is not None
+        answer = process.answer(desk, progress)
         if "failed" in answer:
             kind = {error.__name__: error for error in _ERRORS}[answer["failed"]]
             raise kind(answer["message"])
-        if "files" not in answer:
-            troubles.seek(0)
-            raise RendererUnavailableError(_how_it_died(code, troubles.read()))
     return [str(name) for name in answer["files"]]
+
+
+class _DrawingProcess:
+    """A process that starts when it is first asked, and is replaced where it has died; a context manager."""
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[str] | None = None
+        self._troubles: IO[str] | None = None
+
+    def __enter__(self) -> Self:
+        """Return the process itself, which need not run yet."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the process: all that it was asked is on file, or is not wanted any more."""
+        self._end()
+
+    def answer(self, desk: str, progress: Progress) -> dict[str, Any]:
+        """Have the task on a desk done.
+
+        Raises
+        ------
+        RendererUnavailableError
+            Where the process dies of it.
+        """
+        if self._process is None:
+            self._start()
+        process, troubles = self._process, self._troubles
+        assert process is not None
+        assert troubles is not None
+        assert process.stdin is not None
+        assert process.stdout is not None
+        with suppress(BrokenPipeError):  # of one that has died: it has no answer, and its last words are told
+            process.stdin.write(json.dumps(desk) + "\n")
+            process.stdin.flush()
+        found = _follow(process.stdout, progress)
+        if not found:
+            code = process.wait()
+            troubles.seek(0)
+            said = troubles.read()
+            self._end()
+            raise RendererUnavailableError(_how_it_died(code, said))
+        return found
+
+    def _start(self) -> None:
+        self._troubles = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115 - closed by _end
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "gearwhine.drawing_process"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._troubles,
+            text=True,
+            env=_environment(),
+        )
+
+    def _end(self) -> None:
+        process, troubles = self._process, self._troubles
+        self._process = self._troubles = None
+        if process is not None:
+            # Not asked to end by itself: to close its window takes longer than to draw a shape.
+            process.kill()
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    with suppress(BrokenPipeError):
+                        pipe.close()
+        if troubles is not None:
+            troubles.close()
+
+
+_kept: ContextVar[_DrawingProcess | None] = ContextVar("_kept", default=None)
 
 
 def _follow(lines: IO[str], progress: Progress) -> dict[str, Any]:
@@ -146,14 +220,15 @@ def _draw(desk: Path) -> list[str]:
     return [path.name for path in files]
 
 
-def _main(desk: Path) -> None:
+def _main() -> None:
     # An interruption of the command ends this process by the command's own hand.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        _tell({"files": _draw(desk)})
-    except _ERRORS as error:
-        _tell({"failed": type(error).__name__, "message": str(error)})
+    for line in sys.stdin:
+        try:
+            _tell({"files": _draw(Path(json.loads(line)))})
+        except _ERRORS as error:
+            _tell({"failed": type(error).__name__, "message": str(error)})
 
 
 if __name__ == "__main__":
-    _main(Path(sys.argv[1]))
+    _main()

@@ -37,7 +37,7 @@ _LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least pa
 _MOST_MODES = 5000
 _DOMINANT = 8
 _MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
-_BYTES, _BYTES_OF_TRIANGLE = 5e6, 20.0  # of all their models, compressed and in base64
+_BYTES, _BYTES_OF_TRIANGLE = 4e6, 20.0  # of all their models, compressed and in base64
 _TRIANGLES = 1500, 10000  # of each, at least and at most
 
 
@@ -207,14 +207,16 @@ def draw_load_pictures(
 
     Without a renderer numbers and figures are there, and a warning says so.
     """
+    from gearwhine.drawing_process import one_process
     from housing.errors import RendererUnavailableError
 
     if housing is None or solved.point.housing is None:
         return []
     try:
-        draw_deflection(housing, solved.point.housing, "iso", place, progress)
-        if solved.sensitivity is not None:
-            draw_sensitivity(housing, solved, "iso", place, progress)
+        with one_process():
+            draw_deflection(housing, solved.point.housing, "iso", place, progress)
+            if solved.sensitivity is not None:
+                draw_sensitivity(housing, solved, "iso", place, progress)
     except RendererUnavailableError as error:
         return [warning("pictures", f"no picture of the housing: {error}")]
     return []
@@ -303,7 +305,7 @@ def draw_sensitivity(
         )
         quantity = "Change [µrad/(mm·dm²)]"
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
-    # One process has one scale and one quantity.
+    # The shapes of one call have one scale and one quantity.
     groups = [group for group in (shapes, _line_shapes(solved.sensitivity, surface.nodes)) if group]
     return [name for group in groups for name in draw_in_process(surface, group, place, "png", view, progress)]
 

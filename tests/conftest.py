@@ -1,13 +1,14 @@
 """Shared by all tests: blocks of all elements, published values beside ours with their page, what runs first."""
 
 import gc
+from base64 import b64decode
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import combinations_with_replacement
 from math import floor, log10
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -171,6 +172,29 @@ def _line(row: Row) -> str:
     scale, sign = (100.0, " %") if row.relative else (1.0, "")
     difference, tolerance = f"{scale * row.difference:+.2g}{sign}", f"±{scale * row.tolerance:.2g}{sign}"
     return f"| {row.quantity} | {value} | {ours} | {row.unit} | {difference} | {tolerance} |"
+
+
+# A single white point, in place of a rendered figure.
+_POINT = b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg==")
+
+
+@pytest.fixture(scope="module")
+def unrendered() -> Iterator[None]:
+    """Build the figures of a module's results and leave files of one point each: to render them takes long."""
+    from matplotlib.figure import Figure
+
+    from gearwhine import drawing_process
+
+    def shapes_unrendered(housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None) -> list[str]:
+        names = [f"{shape.name}.png" for shape in shapes] + ([] if sheet is None else [sheet])
+        for name in names:
+            (folder / name).write_bytes(_POINT)
+        return names
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "savefig", lambda figure, path, **how: Path(path).write_bytes(_POINT))
+        patch.setattr(drawing_process, "draw_in_process", shapes_unrendered)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -282,9 +282,10 @@ class Integration:
     ) -> Checkpoint:
         """Integrate through one block, its samples written on the way."""
         settings, stepper, bounds = self.settings, self.stepper, self.bounds(number)
-        # An event may stand for the start of the record, when rounding alone holds the two apart.
-        first_record = int(np.searchsorted(bounds, settings.record_from - same_time(self.base)))
-        if bounds[0] > settings.record_from:
+        # An event or the start of a block may stand for the start of the record, where rounding alone separates them.
+        rounding = same_time(self.base)
+        first_record = int(np.searchsorted(bounds, settings.record_from - rounding))
+        if bounds[0] > settings.record_from + rounding:
             first_record = -1
         limit = self.limit(number, before)
         stepper.begin_block(before, bounds, samples, compiles=number == before.block == 0 and before.steps == 0)

@@ -47,7 +47,10 @@ class KernelArrays(NamedTuple):
 
 def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float, gamma: float) -> KernelArrays:
     """Arrays of the system and of its output rows."""
-    rows = (np.ascontiguousarray(rows) for rows in (outputs.displacement, outputs.velocity, outputs.acceleration))
+    # Writable as well: a kernel is compiled anew for rows that are not.
+    rows = (
+        np.require(rows, requirements="CW") for rows in (outputs.displacement, outputs.velocity, outputs.acceleration)
+    )
     bearings = bearing_arrays(system.nonlinear)
     return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
 

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, dump_case, require, swept_keys
@@ -31,7 +31,7 @@ from gearwhine.solve.plausibility import (
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
-from gearwhine.solve.sound import SolvedSound, highest_frequency, lines_of_steady, solve_sound
+from gearwhine.solve.sound import MotionLines, SolvedSound, highest_frequency, lines_of_steady, solve_sound
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 
 if TYPE_CHECKING:
@@ -365,7 +365,9 @@ def sound(
         case = case.model_copy(update={"acoustics": Acoustics()})
     if housing is None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    machine, motions, told = None, [], []
+    machine = None
+    motions: list[MotionLines] = []
+    told: list[dict[str, Any]] = []
     if case.rotor and case.operation is not None:
         require_machine(case)
         load, told = find_load(case, housing, progress)
@@ -444,7 +446,7 @@ def sweep(
     points = sweep_points(*source, keys)
     count = workers or default_workers()
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
-    told = []
+    told: list[dict[str, Any]] = []
     if case.acoustics is not None and case.housing is not None:
         from gearwhine.sweep.sound import add_sound
 

@@ -191,7 +191,11 @@ def run(
         write_shapes(place / "modes.vtu", solved.housing)
         if comparison is not None:
             write_comparison(place, comparison)
-        if pictures:
+        if not pictures:
+            return
+        from gearwhine.drawing_process import one_process
+
+        with one_process():
             draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress)
             if load is not None:
                 draw_load_pictures(solved.housing, load, place, progress)

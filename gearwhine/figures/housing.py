@@ -46,6 +46,7 @@ from gearwhine.figures.style import (
     draw_row,
     panel,
     sheet,
+    sheet_height,
     shortened,
 )
 from gearwhine.results.comparison import coordinate_names
@@ -431,18 +432,19 @@ def draw_measured_shapes(
     height = HEAD + rows * (tall + _CAPTION) + _MARGIN
     note = "left: measured, right: model; same camera and phase, shapes of one size; colours by part of the largest"
     figure = sheet(height, title, note)
+    whole = sheet_height(figure)
     near = (depth - depth.min()) / (np.ptp(depth) or 1.0)
     for number, pair in enumerate(pairs):
         row, column = divmod(number, _IN_A_ROW)
         left = _MARGIN + column * (2.0 * width + _GAP)
         up = height - HEAD - (row + 1) * (tall + _CAPTION)
         figure.text(
-            left / SHEET_WIDTH, (up + tall + 4.0) / height, shortened(pair.heading, _LONGEST), fontsize=NOTE + 0.5,
+            left / SHEET_WIDTH, (up + tall + 4.0) / whole, shortened(pair.heading, _LONGEST), fontsize=NOTE + 0.5,
             color=INK, parse_math=False,
         )  # fmt: skip
         largest = max(float(np.linalg.norm(shape, axis=1).max()) for shape in (pair.measured, pair.model)) or 1.0
         for side, (name, shape) in enumerate((("measured", pair.measured), ("model", pair.model))):
-            place = (left + side * width) / SHEET_WIDTH, up / height, width / SHEET_WIDTH, tall / height
+            place = (left + side * width) / SHEET_WIDTH, up / whole, width / SHEET_WIDTH, tall / whole
             axes = figure.add_axes(place)
             axes.set_axis_off()
             axes.set_xlim(low[0], high[0])

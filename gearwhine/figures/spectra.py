@@ -4,16 +4,39 @@ A waterfall shows spectra over speed, with mesh orders and the housing's natural
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from coupling.signals.spectrum import Spectrum
-from gearwhine.figures.style import BLUE, GREY, INK, NOTE, RED, tidy
+from gearwhine.figures.style import (
+    BLUE,
+    FOOT,
+    HEAD,
+    INK,
+    LEFT,
+    RED,
+    SERIES,
+    SHEET_WIDTH,
+    Label,
+    arrange,
+    column_width,
+    draw_column,
+    draw_row,
+    legend,
+    name_in_legend,
+    panel,
+    panel_size,
+    plain,
+    sheet,
+)
 
 _MOST_LINES = 1 << 12
+_DENSEST = 2.5  # lines to a millimetre of paper that are drawn one by one
 _DECADES = 5.0  # of the amplitude axis, below its highest line
 FloatArray = npt.NDArray[np.float64]
 
@@ -21,6 +44,7 @@ _ROW_DECADES = 4.0  # that a row shows, below the highest line of all
 _OVERLAP = 1.7  # height of a row over the distance to the next
 _MOST_HARMONICS = 12
 _MOST_ROWS = 40  # that one can still tell apart
+_LOWEST_PANEL, _ROW_HEIGHT, _HIGHEST_PANEL = 40.0, 3.4, 175.0  # of a waterfall [mm of paper]
 
 
 def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) -> None:
@@ -37,6 +61,13 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) 
         axes.set_yscale("log")
         axes.set_ylim(top * 10.0**-_DECADES, top * 3.0)
         floor = top * 10.0**-_DECADES
+        if np.count_nonzero(amplitude > floor) > _DENSEST * panel_size(axes)[0]:
+            # Lines so close are one blue area.
+            heights = np.maximum(amplitude, floor)
+            axes.fill_between(frequencies, floor, heights, color=color, alpha=0.22, lw=0.0)
+            axes.plot(frequencies, heights, color=color, lw=0.6)
+            axes.set_xlim(0.0, limit)
+            return
         # One broken line, which is drawn several times sooner than thousands of them.
         heights = np.stack(
             [np.full_like(amplitude, floor), np.maximum(amplitude, floor), np.full_like(amplitude, np.nan)]
@@ -53,7 +84,9 @@ def draw_waterfall(
     *,
     value_name: str,
     unit: str,
+    note: str = "",
     mesh_frequencies: npt.ArrayLike = (),
+    mesh_names: Sequence[str] = (),
     housing_frequencies: npt.ArrayLike = (),
 ) -> Figure:
     """Draw spectra as rows over the value they belong to, each on the same logarithmic scale.
@@ -61,7 +94,7 @@ def draw_waterfall(
     Parameters
     ----------
     title
-        Of the figure.
+        Of the sheet.
     values
         (s,): such as speeds, distinct.
     frequencies
@@ -70,8 +103,12 @@ def draw_waterfall(
         (s, m): peak amplitudes; NaN where a spectrum has no such line. Rows of NaN alone are left out.
     value_name, unit
         Names of the axis of values, and of the amplitudes.
+    note
+        Begin of the note below the title.
     mesh_frequencies
-        (s, p): of each gear pair, Hz; dashed with their harmonics.
+        (s, p): of each gear pair, Hz; dashed with their harmonics, which are numbered at the edge of the panel.
+    mesh_names
+        (p,): of the gear pairs.
     housing_frequencies
         (s, n): natural frequencies, Hz, NaN where there are fewer; marked under each row.
 
@@ -96,26 +133,73 @@ def draw_waterfall(
     limit = float(np.nanmax(np.where(np.isfinite(heights), lines, np.nan)))
     spacing = _spacing(at[rows])
 
-    figure = Figure(figsize=(9.0, min(3.2 + 0.28 * rows.size, 11.0)), layout="constrained")
-    axes = figure.subplots()
-    for depth, row in enumerate(rows):
-        _draw_row(
-            axes, lines[row], heights[row], float(at[row]), spacing, highest, zorder=3.0 + 0.01 * (rows.size - depth)
-        )
-        _mark_modes(axes, modes[row], float(at[row]), spacing, limit)
-    _draw_orders(axes, at[rows], meshes[rows], limit)
+    orders = _orders(at[rows], meshes[rows], list(mesh_names), limit)
+    above = [one.label for one in orders if one.at_top]
+    beside = [one.label for one in orders if not one.at_top]
+    width = SHEET_WIDTH - LEFT - column_width(beside)
+    row = arrange(above, [label.x / limit * width for label in above], width)
+    tall = min(_LOWEST_PANEL + _ROW_HEIGHT * rows.size, _HIGHEST_PANEL)
+    told = [note] if note else []
+    told.append(f"each row {plain(highest * 10.0**-_ROW_DECADES, 2)} to {plain(highest, 2)} {unit} peak, logarithmic")
+    figure = sheet(HEAD + row.height + 2.0 + tall + FOOT, title, "; ".join(told))
+    axes = panel(figure, FOOT, tall, width=width)
     axes.set(xlim=(0.0, limit), ylim=(at[rows[0]] - 0.35 * spacing, at[rows[-1]] + (_OVERLAP + 0.2) * spacing))
     axes.set(xlabel="frequency [Hz]", ylabel=value_name)
-    tidy(axes)
     axes.grid(visible=False, axis="y")
-    figure.suptitle(title, fontsize=11, parse_math=False)
-    note = f"each row: {highest * 10.0**-_ROW_DECADES:.2g} to {highest:.2g} {unit} peak, logarithmic"
-    if meshes.size:
-        note += "    dashed: mesh frequency and harmonics"
+    for depth, number in enumerate(rows):
+        place, zorder = float(at[number]), 3.0 + 0.01 * (rows.size - depth)
+        _draw_row(axes, lines[number], heights[number], place, spacing, highest, zorder=zorder)
+        _mark_modes(axes, modes[number], place, spacing, limit)
+    handles: dict[str, Line2D] = {}
+    for one in orders:
+        (drawn,) = axes.plot(
+            one.frequencies, one.values, color=one.color, lw=0.8, ls=(0, (4, 3)), zorder=4.5, label=one.name
+        )
+        handles.setdefault(one.name, drawn)
+    draw_row(axes, row, tall + 1.0)
+    draw_column(axes, beside)
     if modes.size:
-        note += "    |  housing modes"
-    axes.set_title(note, fontsize=8, loc="right", color=GREY)
+        handles["modes"] = Line2D([], [], color=INK, marker="|", ms=5, ls="", label="housing mode")
+    legend(figure, list(handles.values()))
     return figure
+
+
+@dataclass(frozen=True)
+class _Order:
+    """A multiple of a mesh frequency through the rows [Hz], and its label at the edge of the panel that it leaves."""
+
+    name: str
+    color: str
+    frequencies: FloatArray
+    values: FloatArray
+    label: Label
+    at_top: bool
+
+
+def _orders(values: FloatArray, meshes: FloatArray, names: list[str], limit: float) -> list[_Order]:
+    """Return the multiples of mesh frequencies that lie below a limit [Hz]; pairs of one frequency are one."""
+    found: list[_Order] = []
+    groups: dict[bytes, list[int]] = {}
+    for pair in range(meshes.shape[1]):
+        groups.setdefault(np.nan_to_num(meshes[:, pair]).round(9).tobytes(), []).append(pair)
+    for place, pairs in enumerate(groups.values()):
+        frequencies = meshes[:, pairs[0]]
+        known = np.isfinite(frequencies) & (frequencies > 0.0)
+        color = (RED, *SERIES[1:])[place % len(SERIES)]
+        told = ", ".join(names[pair] for pair in pairs if pair < len(names))
+        name = "mesh harmonics" if len(groups) == 1 or not told else f"harmonics of {name_in_legend(told, 26)}"
+        for harmonic in range(1, _MOST_HARMONICS + 1):
+            across, up = harmonic * frequencies[known], values[known]
+            inside = np.flatnonzero(across <= limit)
+            if not inside.size:
+                break
+            last = int(inside[-1])
+            x, y, at_top = float(across[last]), float(up[last]), last + 1 == across.size
+            if not at_top and across[last + 1] > x:
+                # It leaves the panel between two rows.
+                x, y = limit, float(np.interp(limit, across[last : last + 2], up[last : last + 2]))
+            found.append(_Order(name, color, across, up, Label(f"{harmonic}×", x, y, color), at_top))
+    return found
 
 
 def _draw_row(
@@ -133,33 +217,6 @@ def _mark_modes(axes: Axes, modes: FloatArray, base: float, spacing: float, limi
     inside = modes[np.isfinite(modes) & (modes <= limit)]
     if inside.size:
         axes.vlines(inside, base - 0.22 * spacing, base, color=INK, lw=0.7, zorder=5.0)
-
-
-def _draw_orders(axes: Axes, values: FloatArray, meshes: FloatArray, limit: float) -> None:
-    """Each mesh frequency with its harmonics through all rows, named at the highest row that it reaches."""
-    for pair in range(meshes.shape[1]):
-        frequencies = meshes[:, pair]
-        known = np.isfinite(frequencies) & (frequencies > 0.0)
-        if not known.any():
-            continue
-        for harmonic in range(1, _MOST_HARMONICS + 1):
-            inside = known & (harmonic * frequencies <= limit)
-            if not inside.any():
-                break
-            axes.plot(
-                harmonic * frequencies[known], values[known], color=RED, lw=0.8, ls=(0, (4, 3)), zorder=4.5, alpha=0.8
-            )
-            top = int(np.flatnonzero(inside)[-1])
-            axes.annotate(
-                f"{harmonic}×",
-                (harmonic * frequencies[top], values[top]),
-                (2.0, 3.0),
-                textcoords="offset points",
-                color=RED,
-                fontsize=NOTE,
-                zorder=6.0,
-                annotation_clip=True,
-            )
 
 
 def _table(values: npt.ArrayLike, rows: int) -> FloatArray:

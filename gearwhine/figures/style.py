@@ -1,4 +1,4 @@
-"""Figure style: colours, sizes on paper, axes, labels in a row without overlap, and saving to a file."""
+"""Figure style: colours, sizes on paper, axes, labels in a row or a column without overlap, and saving to a file."""
 
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,8 +16,11 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 from matplotlib.transforms import Affine2D
 from scipy.optimize import isotonic_regression
+
+from gearwhine.output.sections import arrowed
 
 FloatArray = npt.NDArray[np.float64]
 Kind = TypeVar("Kind")
@@ -26,20 +29,30 @@ INK, BLUE, RED, GREY, PALE = "#202428", "#1f5a96", "#b5382a", "#8a9097", "#e4e7e
 SERIES = (BLUE, "#c77d1e", "#3b7d4f", "#7a4f9a", "#5b6770", "#a3485f", "#2a8c8c", "#8c6d1f")
 SHEET_WIDTH = 160.0  # of a figure made for print [mm]
 LEFT, RIGHT = 15.0, 4.0  # margins of such a sheet beside its panels [mm]
-HEAD, FOOT = 13.0, 11.0  # ... for its title and note, and for an axis with its name [mm]
+HEAD, FOOT = 13.0, 11.0  # ... for its title and a note of two lines, and for an axis with its name [mm]
 PANEL_WIDTH = SHEET_WIDTH - LEFT - RIGHT
+HALF_GAP = 17.0  # between two panels side by side, for the second one's numbers and name [mm]
+HALF_WIDTH = 0.5 * (PANEL_WIDTH - HALF_GAP)
 NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
 MM_PER_INCH = 25.4
 RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
 HERTZ = 2.0 * pi  # rad/s of 1 Hz
 MILLI, MICRO, MEGA = 1e3, 1e6, 1e-6  # factors from m to mm, from m to µm, from Pa to MPa and from N/m to N/µm
 
+_SPARE = (5.4, 2.6, 0.0)  # of the head that a note of none, one and two lines leaves empty [mm]
 _IN_HEAD = 4  # entries of a legend beside the title at most
+_LEGEND_ROW, _LEGEND_MARGIN = 3.6, 1.5  # of a legend below the panels [mm]
 _NOTE_LETTERS = 124  # of a note in one line
 _NAME_OF_AXIS = 11.2  # left of a panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200
 _GAP = 2.0  # between neighbouring labels [mm]
 _RISE = 4.0  # of a leader between the last of what is drawn and the row [mm]
+_LEAD, _ASIDE = 1.6, 2.2  # end of a leader and begin of its label beside a panel [mm]
+_PANEL_TITLE = 48  # letters over half a sheet
+_NEAR = 0.3  # between labels one above the other [mm]
+_RIGHT_ANGLE = 90.0  # degrees
+_MILLION = 1e6
+_FEW_DECADES = 60.0  # ratio of the ends of a logarithmic axis below which powers of ten are too few marks
 _LONGEST_LABEL = 40  # letters of a label: a line's frequency and the names of two gears
 _MEASURING_DPI = 200
 
@@ -47,23 +60,31 @@ _MEASURING_DPI = 200
 def tidy(axes: Axes, *, size: float = 9.0) -> None:
     """Two spines, a pale grid below the data, ink of one colour."""
     axes.spines[["top", "right"]].set_visible(False)
-    axes.tick_params(colors=INK, labelsize=size)
+    axes.tick_params(which="both", colors=INK, labelsize=size)
     axes.grid(visible=True, color=PALE, lw=0.6)
     axes.set_axisbelow(True)
 
 
 def sheet(height: float, title: str, note: str = "") -> Figure:
-    """Return a sheet for print, 160 mm wide and ``height`` mm high, with a title and a grey note at its upper left.
+    """Return a sheet for print, 160 mm wide, with a title and a grey note at its upper left.
 
-    A title may share its line with a legend, so it is cut after 60 letters; a note takes two lines at most.
+    ``height`` [mm] holds a head of `HEAD`; the sheet is lower by what a short note leaves of it. A title may share its
+    line with a legend, so it is cut after 60 letters; a note takes two lines at most.
     """
+    wrapped = wrap(note, _NOTE_LETTERS, max_lines=2, placeholder=" …")
+    height -= _SPARE[len(wrapped)]
     figure = Figure(figsize=(SHEET_WIDTH / MM_PER_INCH, height / MM_PER_INCH), dpi=_PRINT_DPI)
     # Names are the user's: a dollar sign in one is no formula.
-    lines = "\n".join(wrap(note, _NOTE_LETTERS, max_lines=2, placeholder=" …"))
+    lines = "\n".join(wrapped)
     for text, size, color, down in ((shortened(title, 60), TITLE, INK, 1.5), (lines, NOTE, GREY, 6.2)):
         if text:
             figure.text(0.0125, 1.0 - down / height, text, size=size, color=color, va="top", parse_math=False)
     return figure
+
+
+def sheet_height(figure: Figure) -> float:
+    """Height of a sheet [mm]."""
+    return float(figure.get_size_inches()[1]) * MM_PER_INCH
 
 
 def panel(figure: Figure, bottom: float, height: float, *, left: float = LEFT, width: float = PANEL_WIDTH) -> Axes:
@@ -76,6 +97,43 @@ def panel(figure: Figure, bottom: float, height: float, *, left: float = LEFT, w
     # At one place on every sheet, clear of numbers of five digits.
     axes.yaxis.set_label_coords(-_NAME_OF_AXIS / width, 0.5)
     return axes
+
+
+def panel_pair(figure: Figure, bottom: float, height: float) -> tuple[Axes, Axes]:
+    """Return two panels side by side, ``bottom`` and ``height`` in mm."""
+    left, right = (
+        panel(figure, bottom, height, left=LEFT + side * (HALF_WIDTH + HALF_GAP), width=HALF_WIDTH) for side in (0, 1)
+    )
+    return left, right
+
+
+def panel_title(axes: Axes, text: str) -> None:
+    """Write what a panel shows at its upper left, a user's names as they stand."""
+    axes.set_title(
+        shortened(arrowed(text), _PANEL_TITLE), fontsize=LABEL, color=INK, loc="left", pad=3.0, parse_math=False
+    )
+
+
+def degree_axis(axes: Axes) -> None:
+    """Give an axis of phases [°] ticks at multiples of 45, 90, 180 or 360, and limits at such ticks."""
+    low, high = axes.get_ylim()
+    span = high - low
+    step = next((one for one in (45.0, 90.0, 180.0) if span <= 6.0 * one), 360.0)
+    first, last = step * np.floor(low / step + 1e-9), step * np.ceil(high / step - 1e-9)
+    if last - first < _RIGHT_ANGLE:
+        first, last = (first, first + _RIGHT_ANGLE) if high >= -low else (last - _RIGHT_ANGLE, last)
+    axes.set_ylim(first, last)
+    axes.yaxis.set_major_locator(MultipleLocator(step))
+
+
+def log_axis(axes: Axes, low: float, high: float) -> None:
+    """Give a panel a logarithmic axis with limits; over a decade or two it has plain numbers at 1, 2 and 5."""
+    axes.set_yscale("log")
+    axes.set_ylim(low, high)
+    if high < _FEW_DECADES * low:
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
+        axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def panel_size(axes: Axes) -> tuple[float, float]:
@@ -123,9 +181,35 @@ def legend_beside_title(figure: Figure, axes: Axes, handles: Sequence[Artist]) -
         axes.legend(handles=handles, loc="best", ncols=2, framealpha=0.9, edgecolor="none", fontsize=NOTE)
 
 
+def legend_below(figure: Figure, handles: Sequence[Artist], columns: int = 4) -> None:
+    """Explain many lines at the foot of a sheet, which has room for them by :func:`legend_height`."""
+    if handles:
+        figure.legend(
+            handles=handles,
+            loc="lower center",
+            ncols=min(columns, len(handles)),
+            frameon=False,
+            fontsize=NOTE,
+            handlelength=2.0,
+            columnspacing=1.6,
+            borderaxespad=0.2,
+        )
+
+
+def legend_height(entries: int, columns: int = 4) -> float:
+    """Height of a legend below the panels [mm]."""
+    return _LEGEND_MARGIN + _LEGEND_ROW * -(-entries // columns) if entries else 0.0
+
+
+def plain(value: float, digits: int = 3) -> str:
+    """Return a number of so many digits, without powers of ten up to a million."""
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < _MILLION else text
+
+
 def name_in_legend(text: str, most: int = 16) -> str:
     """Return a user's name on one line and cut, in which a dollar sign begins no formula."""
-    return shortened(text, most).replace("$", r"\$")
+    return shortened(arrowed(text), most).replace("$", r"\$")
 
 
 def shortened(text: str, most: int = 28) -> str:
@@ -280,6 +364,43 @@ def draw_row(axes: Axes, row: LabelRow, level: float, *, above: bool = True) -> 
             rotation=90.0 if row.upright else 0.0,
             ha="center",
             va="bottom" if above else "top",
+            parse_math=False,
+        )
+
+
+def column_width(labels: Iterable[Label]) -> float:
+    """Room that labels beside a panel take with their leaders, mm; `RIGHT` where there is none."""
+    return max([RIGHT, *(_ASIDE + 1.8 + _size(label.text)[0] for label in labels)])
+
+
+def draw_column(axes: Axes, labels: Sequence[Label]) -> None:
+    """Write labels beside the right edge of a panel, apart, each with a leader from its height there.
+
+    Parameters
+    ----------
+    axes
+        A panel with its final limits, and :func:`column_width` beside it.
+    labels
+        In any order.
+    """
+    width, height = panel_size(axes)
+    paper = Affine2D().scale(1.0 / width, 1.0 / height) + axes.transAxes
+    heights = [float(paper.inverted().transform(axes.transData.transform((label.x, label.y)))[1]) for label in labels]
+    order = np.argsort(heights, kind="stable")
+    sizes = np.array([_size(labels[index].text)[1] for index in order])
+    places = spread(np.array(heights)[order], sizes, 0.0, height, _NEAR)
+    for index, place in zip(order.tolist(), places.tolist(), strict=True):
+        label = labels[index]
+        ends = [(width, heights[index]), (width + _LEAD, place)]
+        axes.plot(*zip(*ends, strict=True), transform=paper, color=GREY, lw=0.5, clip_on=False, label="_leader")
+        axes.text(
+            width + _ASIDE,
+            place,
+            shortened(label.text, _LONGEST_LABEL),
+            transform=paper,
+            color=label.color,
+            fontsize=NOTE,
+            va="center_baseline",
             parse_math=False,
         )
 

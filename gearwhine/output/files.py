@@ -194,6 +194,7 @@ COMMANDS = (
 
 _STAGING = ".partial-"
 _DRAWN = (".png", ".glb", ".vtu")
+_JSON_LINE = 160  # letters of a document's line that holds a whole list or object
 _LONGEST = 60  # of a name in a file's [characters]
 
 
@@ -276,13 +277,31 @@ def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """Return a document as JSON, lists of numbers on one line, refusing values that JSON has no word for."""
-    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
-    return _NUMBERS.sub(lambda found: f"[{' '.join(found[1].split())}]", text)
+    """Return a document as JSON for reading, refusing values that JSON has no word for.
+
+    What fits on a line stands on one, such as a line of a spectrum, and so does any list of plain values.
+    """
+    return _json_lines(document, "")
 
 
-# Texts hold no line end as it stands, so that none of them is taken for a list.
-_NUMBERS = re.compile(r"\[\n\s+([^\[\]{}\"]*?)\n\s*\]")
+def _json_lines(value: Any, margin: str) -> str:
+    """Return a value of a document as JSON, its further lines behind a margin."""
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    inner = (
+        list(value.values()) if isinstance(value, Mapping) else list(value) if isinstance(value, list | tuple) else []
+    )
+    nested = any(isinstance(one, Mapping | list | tuple) for one in inner)
+    if not inner or len(margin) + len(text) <= _JSON_LINE or not (nested or isinstance(value, Mapping)):
+        return text
+    further = f"{margin} "
+    if isinstance(value, Mapping):
+        entries = [
+            f"{json.dumps(str(key), ensure_ascii=False)}: {_json_lines(one, further)}" for key, one in value.items()
+        ]
+        opening, closing = "{}"
+    else:
+        entries, (opening, closing) = [_json_lines(one, further) for one in inner], "[]"
+    return f"{opening}\n{further}" + f",\n{further}".join(entries) + f"\n{margin}{closing}"
 
 
 def finite(value: Any) -> Any:

@@ -220,6 +220,11 @@ def table_of(
     return (Table(columns, tuple(rows), caption, anchor),) if rows else ()
 
 
+def arrowed(text: str) -> str:
+    """Return a text for reading, in which an arrow stands between the gears of a pair."""
+    return text.replace(" -> ", " → ")
+
+
 def counted(number: int, what: str) -> str:
     """Return a number of things in words, such as ``1 mode`` and ``2 modes``."""
     return f"{number} {what}{'' if number == 1 else 's'}"

@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING
 
 from gearwhine.case import Case, applied_torques
 from gearwhine.output.quantity import RPM
-from gearwhine.output.sections import Column, Document, Finding, Picture, Section, Table, counted, percent, table_of
+from gearwhine.output.sections import (
+    Column,
+    Document,
+    Finding,
+    Picture,
+    Section,
+    Table,
+    arrowed,
+    counted,
+    percent,
+    table_of,
+)
 from gearwhine.results.comparison import LINKED_PAIR
 from gearwhine.results.motion import leading_lines, path_place, shape_column
 from gearwhine.results.run import SPECTRUM
@@ -27,7 +38,7 @@ _PERIODIC = 1e-3  # part by which a periodic motion may miss itself, or change w
 
 _CHAPTERS = {
     "Housing modes": ("geometry", "size", "load", "modes file"),
-    "Gears": ("thin tip", "undercut", "backlash", "runout", "overload"),
+    "Gears": ("thin tip", "undercut", "backlash", "gear faces", "runout", "overload"),
     "Rotors": ("rotating damping", "ross"),
     "Coupled system": ("unstable mode",),
     "Motion": ("bearing load", "run signature"),
@@ -77,7 +88,7 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
     """
     sections = (
         machine_section(case, documents),
-        Section("Is it sound?", _findings(documents, stale)),
+        Section("Are the results sound?", _findings(documents, stale)),
         Section("Highest lines", _lines(documents)),
         Section("Loudest lines", _sound(documents)),
         Section("", pictures=_PICTURES),
@@ -97,6 +108,7 @@ def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Se
     content: list[str | Finding | Table] = [_paragraph(case, rotors, pairs, documents)]
     if case.operation is not None and case.rotor:
         content.append(_operation(case))
+    content += _under_load(documents)
     content += table_of(SHAFT_COLUMNS, [_shaft(case, rotor) for rotor in rotors], "Shafts")
     content += table_of(PAIR_COLUMNS, [_pair(pair) for pair in pairs], "Gear pairs")
     return Section("Machine", tuple(content))
@@ -141,6 +153,30 @@ def _operation(case: Case) -> str:
     power = case.operation.speed * abs(case.operation.torque)
     given = ", ".join(f"{torque.torque:+.4g} N·m on {torque.shaft}" for torque in torques)
     return f"Operation: {speed}, {given}; {power / 1e3:.4g} kW."
+
+
+def _under_load(documents: Sequence[Document]) -> list[str]:
+    """Return the largest face load factor, and the shortest bearing life of the newest operating point."""
+    load = next((found for document in documents if (found := _load_of(document))), {})
+    said = []
+    if pairs := [pair for pair in load.get("gear_pairs", ()) if pair.get("k_h_beta") is not None]:
+        worst = max(pairs, key=lambda pair: float(pair["k_h_beta"]))
+        out_of_line = abs(worst["misalignment_over_face_m"]) * 1e6
+        said.append(
+            f"K_Hβ {worst['k_h_beta']:.3g} of {worst['driver']} → {worst['driven']}, whose flanks stand "
+            f"{out_of_line:.3g} µm out of line over the face"
+        )
+    if bearings := [bearing for bearing in load.get("bearings", ()) if bearing.get("life_h")]:
+        shortest = min(bearings, key=lambda bearing: float(bearing["life_h"]))
+        hours = f"{float(format(shortest['life_h'], '.3g')):,.0f}".replace(",", " ")
+        said.append(f"shortest bearing life L10 {hours} h, of {shortest['name']}")
+    return [f"Under load: {'; '.join(said)}."] if said else []
+
+
+def _load_of(document: Document) -> Document:
+    """Return the operating point of a document, which that of ``load`` is itself."""
+    found = document.get("load", document if "gear_pairs" in document and "seats" in document else {})
+    return found if isinstance(found, dict) else {}
 
 
 SHAFT_COLUMNS = (
@@ -246,8 +282,7 @@ def _proofs(document: Document) -> Iterator[Finding]:
         growing = len(stability["growing"])
         said = "no mode grows" if stability["stable"] else f"{counted(growing, 'mode')} grow{'s' * (growing == 1)}"
         yield Finding(f"Stability: {said}.", passed=bool(stability["stable"]), link=("section Coupled system",))
-    load = document.get("load", document if "gear_pairs" in document and "seats" in document else {})
-    if (residual := load.get("residual")) is not None:
+    if (residual := _load_of(document).get("residual")) is not None:
         yield Finding(
             f"Operating point: forces balance to {residual:.0e} of the largest load.",
             passed=residual < _BALANCED,
@@ -296,13 +331,26 @@ def _basis(document: Document) -> Iterator[Finding]:
         )
 
 
-def _lines(documents: Sequence[Document]) -> tuple[Table, ...]:
+def _lines(documents: Sequence[Document]) -> tuple[str | Table, ...]:
     """Return the highest lines of each sensor of the newest motion, with their cause."""
     for document in documents:
         for sensors, key in _of_motion(document):
             if rows := leading_lines(sensors, key, _LINES):
-                return table_of(_CAUSES, rows)
+                return (*_highest(rows), *table_of(_CAUSES, rows))
     return ()
+
+
+def _highest(rows: Sequence[Document]) -> list[str]:
+    """Return the highest line of all sensors and its cause as a sentence, which a narrow screen shows whole."""
+    row = max(rows, key=lambda line: float(line["amplitude_m_per_s2"]))
+    if not row.get("name"):
+        return []
+    near = f", near a mode of the coupled machine ({_near(row)})" if _near(row) else ""
+    by = f"; largest part by {row['by']}" if row["by"] else ""
+    return [
+        f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {row['amplitude_m_per_s2']:.3g} m/s² peak: "
+        f"{arrowed(str(row['name']))}{near}{by}."
+    ]
 
 
 def _sound_of(document: Document) -> Document:
@@ -340,11 +388,20 @@ def _through(row: Document) -> str:
     return f"{bearings[0]['name']}{cancelled}{opposed}"
 
 
+def _near(row: Document) -> str:
+    """Return the mode of the coupled machine that a line is near enough to be raised by it."""
+    if not (mode := row.get("near_mode")):
+        return ""
+    where = "" if mode["where"] in ("", mode["kind"]) else f": {mode['where']}"
+    return f"{mode['frequency_hz']:.0f} Hz, {mode['kind']}{where}"
+
+
 _CAUSES = (
     Column("sensor", "sensor"),
     Column("frequency [Hz]", "frequency_hz", ".1f", link=_paths_of),
     Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
     Column("what it is", "name"),
+    Column("coupled mode near it", _near),
     Column("mostly through bearing", _through),
     shape_column("mostly by"),
 )

@@ -301,14 +301,24 @@ TRANSMISSION_ERROR = (
     Quantity("unloaded_peak_to_peak", lambda pair: float(np.ptp(pair.unloaded))),
     Part("over_hunting_period", lambda pair: pair.solved.hunting, HUNTING),
 )
+_PATH = ("path_step",)
 LOAD_SHARING = (
     Quantity("pairs_in_contact", lambda pair: pair.pairs_in_contact),
     Quantity("loaded_contact_ratio", lambda pair: pair.loaded_contact_ratio),
     Quantity("largest_share", lambda pair: pair.shares[1].max()),
     Quantity("corner_force_n", lambda pair: pair.corner_force),
-    Quantity("position_base_pitches", lambda pair: pair.shares[0]),
-    Quantity("driver_roll_angle_rad", lambda pair: pair.solved.geometry.driver_roll_angle(pair.shares[0])),
-    Quantity("share", lambda pair: pair.shares[1]),
+    Quantity(
+        "", lambda pair: pair.shares[0], "path_position", _PATH, "1", "place on the path of contact in base pitches"
+    ),
+    Quantity(
+        "",
+        lambda pair: pair.solved.geometry.driver_roll_angle(pair.shares[0]),
+        "path_roll_angle",
+        _PATH,
+        "rad",
+        "roll angle of the driver there",
+    ),
+    Quantity("", lambda pair: pair.shares[1], "path_load_share", _PATH, "1", "part of the load on a tooth pair there"),
 )
 """How many pairs of teeth carry for how long, and the part of the load that one has along its path."""
 PRESSURE = (
@@ -432,9 +442,6 @@ PAIR = (
         lambda pair: 2.0 * np.pi * pair.solved.static.phases / pair.solved.geometry.driver.teeth,
     ),
     Quantity("stiffness", lambda pair: pair.stiffness),
-    Quantity("loaded_stiffness", lambda pair: pair.solved.static.tangent_stiffness),
-    Quantity("transmission_error", lambda pair: pair.solved.static.transmission_error),
-    Quantity("unloaded_transmission_error", lambda pair: pair.unloaded),
 )
 """Of one gear pair under the case's torque; angles in rad, positions in base pitches."""
 

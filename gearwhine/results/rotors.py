@@ -28,19 +28,52 @@ def _in_rpm(speed: float | None) -> float | None:
     return None if speed is None else speed * RPM
 
 
-def _strain_energy(one: "SolvedRotor") -> dict[str, Any]:
-    """Shares of each planar mode's strain energy in the segments and the bearings, a row for each mode."""
-    segments, bearings = one.lateral.strain_energy_shares(one.rotor.joints)
-    return {"frequency_hz": one.lateral.frequencies / HERTZ, "segments": segments, "bearings": bearings}
-
-
-def _whirl_strain(row: tuple["SolvedRotor", Any]) -> dict[str, Any]:
-    """Shares of each whirl mode's strain energy, in the mean of a cycle, a row for each mode."""
+def _strain_shares(row: tuple["SolvedRotor", Any]) -> dict[str, Any]:
+    """Shares of each whirl mode's strain energy, in the mean of a cycle, a row for each mode, by kind of part."""
     one, whirl = row
     shares = whirl.strain_energy_shares(one.rotor.joints)
-    parts = {"segments": shares.lengths, "bearings": shares.bearings}
+    parts = {"segment": shares.lengths, "bearing": shares.bearings}
     pedestals = any(bearing.pedestal is not None for bearing in one.bearings)
-    return parts | ({"pedestals": shares.pedestals} if pedestals else {})
+    return parts | ({"pedestal": shares.pedestals} if pedestals else {})
+
+
+def _most_strained(row: tuple["SolvedRotor", Any]) -> Any:
+    """Part with the largest share of the strain energy of each whirl mode; None for a mode that strains nothing.
+
+    It stands at the one speed that terminal and report show: operation, or else the last of the sweep.
+    """
+    one, whirl = row
+    if whirl is not one.whirl[0 if one.operation is not None else -1]:
+        return ABSENT
+    held = [bearing.name for bearing in one.bearings]
+    names = {
+        "segment": [f"segment {number}" for number in range(1, len(one.rotor.segments) + 1)],
+        "bearing": held,
+        "pedestal": [f"pedestal of {name}" for name in held],
+    }
+    shares = _strain_shares(row)
+    found = []
+    for mode in range(len(shares["segment"])):
+        parts = [
+            (float(share), name)
+            for kind, of in shares.items()
+            for share, name in zip(of[mode], names[kind], strict=True)
+        ]
+        share, name = max(parts)
+        found.append({"part": name, "share": share} if share > 0.0 else None)
+    return found
+
+
+def _strain(kind: str) -> Quantity:
+    """Declare the shares of one kind of part in the strain energy of whirl modes."""
+    return Quantity(
+        "",
+        lambda row: _strain_shares(row).get(kind),
+        f"whirl_{kind}_strain_share",
+        ("whirl_number", f"strained_{kind}"),
+        "1",
+        f"share of a {kind} in the strain energy of the whirl mode",
+    )
 
 
 def _crossings(key: str, of: Any) -> tuple[Rows, Quantity]:
@@ -67,14 +100,25 @@ CROSSING = (
 """Of a damped critical speed: the rotor, and the crossing of its Campbell diagram."""
 
 WHIRL = (
-    Quantity("speed_rpm", lambda row: row[1].speed * RPM),
-    Quantity("frequency_hz", lambda row: row[1].frequencies / HERTZ),
+    Quantity("", lambda row: f"{row[0].rotor.name} at {row[1].speed * RPM:.6g} rpm", "whirl_state"),
+    Quantity("speed_rpm", lambda row: row[1].speed * RPM, "whirl_speed", (), "rpm", "speed of the rotor"),
+    Quantity(
+        "frequency_hz",
+        lambda row: row[1].frequencies / HERTZ,
+        "whirl_frequency",
+        ("whirl_number",),
+        "Hz",
+        "natural frequency of whirl",
+    ),
     Quantity("damping_ratio", lambda row: row[1].damping_ratios),
     Quantity("log_decrement", lambda row: row[1].log_decrements),
     Quantity("direction", lambda row: row[1].direction),
     Quantity("axial_share", lambda row: row[1].axial_share),
     Quantity("stable", lambda row: row[1].stable),
-    Quantity("strain_energy", _whirl_strain),
+    Quantity("most_strained", _most_strained),
+    _strain("segment"),
+    _strain("bearing"),
+    _strain("pedestal"),
 )
 """Of the rotor and its whirl modes at one speed."""
 
@@ -84,7 +128,7 @@ CAMPBELL = (
         "speed_rpm", lambda one: one.campbell.speeds * RPM, "campbell_speed", _STEPS[:1], "rpm", "speed of the rotor"
     ),
     Quantity(
-        "frequency_hz",
+        "",
         lambda one: one.campbell.frequencies / HERTZ,
         "campbell_frequency",
         _STEPS,
@@ -92,7 +136,7 @@ CAMPBELL = (
         "natural frequency of whirl",
     ),
     Quantity(
-        "log_decrement",
+        "",
         lambda one: one.campbell.log_decrements,
         "campbell_log_decrement",
         _STEPS,
@@ -100,14 +144,21 @@ CAMPBELL = (
         "log decrement of whirl",
     ),
     Quantity(
-        "direction",
+        "",
         lambda one: one.campbell.direction,
         "campbell_direction",
         _STEPS,
         "1",
         "1 counter-clockwise, -1 clockwise",
     ),
-    Quantity("axial_share", lambda one: one.campbell.axial_share),
+    Quantity(
+        "",
+        lambda one: one.campbell.axial_share,
+        "campbell_axial_share",
+        _STEPS,
+        "1",
+        "share of motion along the axis in the kinetic energy of whirl",
+    ),
     Quantity("unstable_from_rpm", lambda one: _in_rpm(one.campbell.unstable_from)),
     Quantity("proved_at_rpm", lambda one: one.campbell.speeds[one.campbell.proved] * RPM),
     *_crossings("critical_speeds", lambda one: (one, one.crossings)),
@@ -195,6 +246,8 @@ ROLLING = (
 )
 """Of a rotor and the name of one of its rolling bearings, under its load."""
 
+_PLANE = Quantity("", lambda _: ["x", "y"], "plane", ("plane",), common=True)
+_SAG = ("static_step",)
 STATIC = (
     Quantity("gravity_m_per_s2", lambda one: one.weight.deflection.gravity),
     Quantity("bearings_at_rpm", lambda one: None if one.rest_speed is None else _in_rpm(one.weight.speed)),
@@ -211,8 +264,16 @@ STATIC = (
     ),
     Quantity("largest_deflection_m", lambda one: one.weight.largest[0]),
     Quantity("largest_deflection_at_m", lambda one: one.weight.largest[1]),
-    Quantity("place_m", lambda one: one.weight.places),
-    Quantity("deflection_m", lambda one: one.weight.displacement),
+    Quantity("", lambda one: one.weight.places, "static_place", _SAG, "m", "distance from the rotor's left end"),
+    Quantity(
+        "",
+        lambda one: one.weight.displacement,
+        "static_deflection",
+        ("plane", *_SAG),
+        "m",
+        "deflection of the shaft under its weight, x and y",
+    ),
+    _PLANE,
 )
 """Bearing loads under gravity and the shaft's sag."""
 
@@ -224,7 +285,7 @@ PROBE = (
     Quantity("at_m", lambda row: row[0].probe.at),
     Quantity("angle_deg", lambda row: math.degrees(row[0].probe.angle)),
     Quantity(
-        "amplitude_m",
+        "",
         lambda row: np.abs(row[0].amplitude),
         "probe_amplitude",
         _PROBE,
@@ -232,17 +293,14 @@ PROBE = (
         "reading of the probe, zero to peak",
     ),
     Quantity(
-        "phase_lag_deg",
+        "",
         lambda row: row[0].phase_lag,
         "probe_phase_lag",
         _PROBE,
         "rad",
         "lag of the reading behind the mark",
-        document=np.degrees,
     ),
-    Quantity(
-        "major_axis_m", lambda row: row[0].major_axis, "orbit_major_axis", _PROBE, "m", "half the length of the orbit"
-    ),
+    Quantity("", lambda row: row[0].major_axis, "orbit_major_axis", _PROBE, "m", "half the length of the orbit"),
     Quantity("largest_amplitude_m", lambda row: row[0].largest[0]),
     Quantity("largest_at_rpm", lambda row: row[0].largest[1] * RPM),
     Quantity("operation_amplitude_m", lambda row: None if row[1] is None else np.abs(row[1].amplitude[0])),
@@ -256,20 +314,47 @@ def _readings(response: Any) -> list[tuple[Any, Any]]:
     return list(zip(response.readings, response.at_operation or [None] * len(response.readings), strict=True))
 
 
+def _range(unit: str, of: Any) -> tuple[Quantity, Quantity]:
+    """Declare the ends of the abscissa of curves that the file holds."""
+    return Quantity(f"from_{unit}", lambda solved: of(solved)[0]), Quantity(f"to_{unit}", lambda solved: of(solved)[-1])
+
+
 RESPONSE = (
-    Quantity("speed_rpm", lambda solved: solved.response.speeds * RPM),
+    *_range("rpm", lambda solved: solved.response.speeds * RPM),
     Quantity("amplitude_convention", lambda solved: "zero to peak"),
     Rows("probes", _readings, PROBE, "probe"),
     Rows(
         "bearings",
         lambda solved: [
-            (name, np.abs(solved.response.bearing_forces[:, place, :2]).T)
+            (solved, name, np.abs(solved.response.bearing_forces[:, place, :2]).T)
             for place, name in enumerate(solved.response.bearings)
         ],
-        (Quantity("name", lambda row: row[0]), Quantity("force_n", lambda row: row[1])),
+        (
+            Quantity("", lambda row: row[1], "unbalance_bearing"),
+            Quantity("name", lambda row: row[1]),
+            Quantity("largest_force_n", lambda row: row[2].max(axis=1)),
+            Quantity(
+                "",
+                lambda row: row[2],
+                "unbalance_bearing_force",
+                ("plane", *_PROBE),
+                "N",
+                "force on the bearing along x and y, zero to peak",
+            ),
+            Quantity(
+                "",
+                lambda row: row[0].response.speeds * RPM,
+                "unbalance_bearing_speed",
+                _PROBE,
+                "rpm",
+                "speed of the rotor",
+            ),
+            _PLANE,
+        ),
+        "unbalance_bearing",
     ),
 )
-"""Readings of probes over speed under unbalance and bow; forces on the bearings over x and y."""
+"""Readings of probes over speed under unbalance and bow; forces on the bearings along x and y."""
 
 _TORSION = ("torsion_step",)
 TORSION_PROBE = (
@@ -284,20 +369,10 @@ TORSION_PROBE = (
     ),
     Quantity("name", lambda reading: reading.probe.name),
     Quantity("at_m", lambda reading: reading.probe.at),
+    Quantity("", lambda reading: np.abs(reading.angle), "torsion_angle", _TORSION, "rad", "angle, zero to peak"),
+    Quantity("", lambda reading: np.angle(reading.angle), "torsion_angle_phase", _TORSION, "rad", "phase of the angle"),
     Quantity(
-        "angle_rad", lambda reading: np.abs(reading.angle), "torsion_angle", _TORSION, "rad", "angle, zero to peak"
-    ),
-    Quantity(
-        "angle_phase_deg",
-        lambda reading: np.angle(reading.angle),
-        "torsion_angle_phase",
-        _TORSION,
-        "rad",
-        "phase of the angle",
-        document=np.degrees,
-    ),
-    Quantity(
-        "torque_n_m",
+        "",
         lambda reading: np.abs(reading.torque),
         "torsion_torque",
         _TORSION,
@@ -305,13 +380,12 @@ TORSION_PROBE = (
         "torque in the shaft, zero to peak",
     ),
     Quantity(
-        "torque_phase_deg",
+        "",
         lambda reading: np.angle(reading.torque),
         "torsion_torque_phase",
         _TORSION,
         "rad",
         "phase of that torque",
-        document=np.degrees,
     ),
     Quantity("largest_angle_rad", lambda reading: reading.largest_angle[0]),
     Quantity("largest_angle_at_hz", lambda reading: reading.largest_angle[1] / HERTZ),
@@ -321,7 +395,7 @@ TORSION_PROBE = (
 """Of a probe: angle and torque over frequency."""
 
 TORSION = (
-    Quantity("frequency_hz", lambda solved: solved.response.frequencies / HERTZ),
+    *_range("hz", lambda solved: solved.response.frequencies / HERTZ),
     Quantity("damping_ratio", lambda solved: solved.response.damping_ratio),
     Quantity("amplitude_convention", lambda solved: "zero to peak"),
     Rows("probes", lambda solved: solved.readings, TORSION_PROBE, "torsion_probe"),
@@ -330,6 +404,18 @@ TORSION = (
     Quantity("largest_torque_at_hz", lambda solved: solved.worst[2] / HERTZ),
 )
 """Torsional response to torques that swing."""
+
+
+def _rest_strain(kind: str, place: int) -> Quantity:
+    """Declare the shares of one kind of part in the strain energy of planar modes."""
+    return Quantity(
+        "",
+        lambda one: one.lateral.strain_energy_shares(one.rotor.joints)[place],
+        f"rotor_{kind}_strain_share",
+        ("lateral_mode", f"strained_{kind}"),
+        "1",
+        f"share of a {kind} in the strain energy of the lateral mode",
+    )
 
 
 def _critical_speed_map(whirl: str, direction: int) -> Quantity:
@@ -406,10 +492,11 @@ ROTOR = (
         "kg-0.5 m-1",
         "orthonormal torsional mode shapes",
     ),
-    Quantity("strain_energy", _strain_energy),
+    _rest_strain("segment", 0),
+    _rest_strain("bearing", 1),
     Quantity("rest_bearings_at_rpm", lambda one: _in_rpm(one.rest_speed)),
     Quantity("operation_rpm", lambda one: _in_rpm(one.operation)),
-    Rows("whirl", lambda one: [(one, whirl) for whirl in one.whirl], WHIRL),
+    Rows("whirl", lambda one: [(one, whirl) for whirl in one.whirl], WHIRL, "whirl_state"),
     Quantity(
         "",
         lambda one: one.whirl_deflection,
@@ -582,7 +669,12 @@ _WHIRL_COLUMNS = (
     Column("whirl", lambda row: _whirl_name(math.copysign(1.0, row["speed_rpm"]) * row["direction"], row)),
     Column("log decrement", lambda row: "0" if _state(row) == "undamped" else f"{row['log_decrement']:.3g}"),
     Column("", lambda row: _state(row)),
-    Column("most strain energy", "strained"),
+    Column(
+        "most strain energy",
+        lambda row: (
+            "" if row["strained"] is None else f"{100.0 * row['strained']['share']:.0f} % {row['strained']['part']}"
+        ),
+    ),
 )
 
 
@@ -592,7 +684,7 @@ def _whirl(rotor: Document) -> tuple[Table, ...]:
         return ()
     whirl = rotor["whirl"][0 if rotor["operation_rpm"] is not None else -1]
     keys = ("frequency_hz", "direction", "axial_share", "log_decrement", "damping_ratio")
-    values = zip(*(whirl[key] for key in keys), _strained_most(rotor["bearings"], whirl["strain_energy"]), strict=True)
+    values = zip(*(whirl[key] for key in (*keys, "most_strained")), strict=True)
     rows = [{"speed_rpm": whirl["speed_rpm"]} | dict(zip((*keys, "strained"), row, strict=True)) for row in values]
     return table_of(_WHIRL_COLUMNS, rows[:_MOST], f"Turning at {whirl['speed_rpm']:.6g} rpm")
 
@@ -600,19 +692,6 @@ def _whirl(rotor: Document) -> tuple[Table, ...]:
 def _state(row: Document) -> str:
     damping = row["damping_ratio"]
     return "GROWS" if damping < -_NEUTRAL else "undamped" if damping <= _NEUTRAL else "decays"
-
-
-def _strained_most(bearings: Sequence[str], shares: dict[str, Any]) -> Iterator[str]:
-    """For each mode the part with the largest share of its strain energy; nothing for one that strains nothing."""
-    names = {
-        "segments": [f"segment {number}" for number in range(1, len((shares["segments"] or [[]])[0]) + 1)],
-        "bearings": list(bearings),
-        "pedestals": [f"pedestal of {name}" for name in bearings],
-    }
-    for mode in range(len(shares["segments"])):
-        parts = [part for kind, rows in shares.items() for part in zip(rows[mode], names[kind], strict=True)]
-        share, name = max(parts)
-        yield f"{100.0 * share:.0f} % {name}" if share > 0.0 else ""
 
 
 _CRITICAL_COLUMNS = (
@@ -743,8 +822,7 @@ def _torsion(response: Document) -> Iterator[str | Table]:
             ),
         ),
     )
-    low, high = response["frequency_hz"][0], response["frequency_hz"][-1]
-    title = f"Response to torques from {low:.5g} to {high:.5g} Hz"
+    title = f"Response to torques from {response['from_hz']:.5g} to {response['to_hz']:.5g} Hz"
     yield from table_of(columns, response["probes"][:_MOST], title)
     yield (
         f"The shaft carries most at {1e3 * response['largest_torque_at_m']:.5g} mm: "

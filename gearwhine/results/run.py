@@ -63,7 +63,6 @@ NAMED = (
 CONTRIBUTION = (
     Quantity("name", lambda part: part.name),
     Quantity("amplitude_m_per_s2", lambda part: abs(part.value)),
-    Quantity("phase_rad", lambda part: np.angle(part.value)),
     Quantity("share", lambda part: part.share),
     Quantity("number", lambda part: ABSENT if part.mode is None else part.mode),
 )

@@ -17,37 +17,46 @@ if TYPE_CHECKING:
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}
 
 
-def _of_components(key: str, name: str, unit: str, what: str, of: Any, document: Any = None) -> Quantity:
-    """Declare a quantity of every component in a mode; ``of`` takes the values of a mode."""
+def _of_components(name: str, what: str, of: Any) -> Quantity:
+    """Declare a quantity of every component in a mode, for the file; ``of`` takes the values of all modes."""
 
     def taken(row: Any) -> dict[str, float]:
         solved, mode = row
         names = [component.name for component in solved.machine.system.components]
         return dict(zip(names, of(solved.modes)[mode].tolist(), strict=True))
 
-    return Quantity(key, taken, f"system_{name}", ("machine_component",), unit, what, document=document)
+    return Quantity("", taken, f"system_{name}", ("machine_component",), "1", what)
 
 
-def _of_parts(key: str, name: str, what: str, of: Any) -> Quantity:
-    """Declare a quantity of every component, connector and contact in a mode, in these groups."""
+def _of_parts(name: str, what: str, of: Any) -> Quantity:
+    """Declare a quantity of every component, connector and contact in a mode, for the file."""
 
     def taken(row: Any) -> dict[str, float]:
         solved, mode = row
         names = [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts]
         return dict(zip(names, of(solved.modes.shares)[mode].tolist(), strict=True))
 
-    def grouped(values: dict[str, float]) -> dict[str, dict[str, float]]:
-        found: dict[str, dict[str, float]] = {group: {} for group in _GROUPS.values()}
-        for label, value in values.items():
-            kind, _, part = label.partition(": ")
-            found[_GROUPS[kind]][part] = value
-        return found
-
-    return Quantity(key, taken, f"system_{name}", ("machine_part",), "1", what, document=grouped)
+    return Quantity("", taken, f"system_{name}", ("machine_part",), "1", what)
 
 
-def _known(values: dict[str, float]) -> dict[str, float]:
-    return {name: value for name, value in values.items() if not np.isnan(value)}
+def _strained_most(row: Any) -> Any:
+    """Return the part with the most strain energy in a mode; none in a rigid one, which strains nothing."""
+    solved, mode = row
+    if solved.modes.kinds[mode] == "rigid":
+        return None
+    shares = solved.modes.shares
+    part, share = max(zip(shares.parts, shares.strain[mode].tolist(), strict=True), key=lambda one: one[1])
+    return {"kind": _GROUPS[part.kind], "name": part.name, "share": share}
+
+
+def _sense(row: Any) -> Any:
+    """Return the circularity of the rotor that a mode bends; absent from a mode of something else."""
+    solved, mode = row
+    names = [component.name for component in solved.machine.system.components]
+    if solved.modes.kinds[mode] != "rotor" or solved.modes.where[mode] not in names:
+        return ABSENT
+    whirl = float(solved.modes.whirl[mode][names.index(solved.modes.where[mode])])
+    return ABSENT if np.isnan(whirl) else whirl
 
 
 MODE = (
@@ -85,19 +94,12 @@ MODE = (
     ),
     Quantity("where", lambda row: row[0].modes.where[row[1]], "system_where", (), "", "where it moves most"),
     Quantity("energy", lambda row: row[0].modes.energy[row[1]]),
-    _of_components(
-        "kinetic_energy", "kinetic_share", "1", "share of the kinetic energy", lambda modes: modes.shares.kinetic
-    ),
-    _of_parts("strain_energy", "strain_share", "share of the strain energy", lambda shares: shares.strain),
-    _of_parts("damping", "damping_share", "part of the damping ratio", lambda shares: shares.damping),
-    _of_components(
-        "whirl",
-        "whirl",
-        "1",
-        "bending: 1 counter-clockwise, -1 clockwise circles",
-        lambda modes: modes.whirl,
-        _known,
-    ),
+    Quantity("strained_most", _strained_most),
+    Quantity("whirl", _sense),
+    _of_components("kinetic_share", "share of the kinetic energy", lambda modes: modes.shares.kinetic),
+    _of_parts("strain_share", "share of the strain energy", lambda shares: shares.strain),
+    _of_parts("damping_share", "part of the damping ratio", lambda shares: shares.damping),
+    _of_components("whirl", "bending: 1 counter-clockwise, -1 clockwise circles", lambda modes: modes.whirl),
 )
 """Of the solved system and the number of one of its modes."""
 
@@ -472,18 +474,15 @@ def _named(mode: Document) -> str:
     kind, where = mode["kind"], mode.get("where")
     if not where or where == kind or kind in ("rigid", "mesh", "residual"):
         return str(kind)
-    whirl = mode.get("whirl", {}).get(where, 0.0) if kind == "rotor" else 0.0
+    whirl = mode.get("whirl", 0.0)
     sense = "" if abs(whirl) < _WHIRL else " ↺" if whirl > 0.0 else " ↻"
     return f"{kind}: {where}{sense}"
 
 
 def _strained(mode: Document) -> str:
     """Return the part with the most strain energy."""
-    if mode["kind"] == "rigid" or "strain_energy" not in mode:
-        return ""
-    parts = [(share, _NAMES[group] + name) for group, of in mode["strain_energy"].items() for name, share in of.items()]
-    share, name = max(parts)
-    return f"{name} {100 * share:.0f} %"
+    most = mode.get("strained_most")
+    return "" if most is None else f"{_NAMES[most['kind']]}{most['name']} {100 * most['share']:.0f} %"
 
 
 def _stability(stability: Document) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Fits of a case's parts: bearings in the bores of their seats and on their shafts, gears on their shafts.
+"""Fits of a case's parts: bearings in seats and on shafts, gears on shafts and face to face, sensors on the surface.
 
 Only where the case gives both sizes. A part that does not fit is no error: the model takes neither diameter from the
 other, so that one of them is a slip of the pen or stands for a sleeve that the case leaves out.
@@ -7,21 +7,25 @@ other, so that one of them is a slip of the pen or stands for a sleeve that the 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from gearwhine.case import Bearing, Case, RollingStiffness
 from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.check_housing import box_geometry
 from gearwhine.case.housing import Seat
 from gearwhine.output.quantity import warning
+from housing.model.seats import sensor_port
 from meshes import Mesh, find_bores
 from meshes.bores import CylindricalBore
 from rotors import Rotor, Segment
 
 _FIT = 1e-4  # difference of two diameters, or of a place and an end, that is a fit and no other size [m]
+_BESIDE = 0.01  # distance of a sensor from the surface that is no rounding, as a part of the housing's diagonal
 _TOUCHING = 1e-6  # overlap of a part and a shaft segment that is none [m]
 
 
 def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = None) -> list[dict[str, Any]]:
-    """Warn of diameters that do not fit, and of bearings beside the bores of their seats.
+    """Warn of diameters that do not fit, bearings beside seats, gears beside their mates, sensors off the surface.
 
     Parameters
     ----------
@@ -35,6 +39,8 @@ def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = No
     return [
         *(found for one in case.bearing for found in _of_bearing(case, one, rotors[one.rotor], bores)),
         *_of_gears(case, rotors),
+        *_of_faces(case),
+        *(() if mesh is None else _of_sensors(case, mesh)),
     ]
 
 
@@ -110,6 +116,46 @@ def _of_gears(case: Case, rotors: Mapping[str, Rotor]) -> Iterator[dict[str, Any
     for gear in case.gear:
         if gear.bore and gear.rotor is not None and gear.at is not None:
             yield from _on_shaft(f'gear "{gear.name}"', gear.bore, rotors[gear.rotor], gear.at, gear.face_width or 0.0)
+
+
+def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
+    """Warn of gears so far apart along z that less than the narrower face meets the other, which the model takes."""
+    gears = {gear.name: gear for gear in case.gear}
+    for pair in case.gear_pair:
+        ends = []
+        for gear in (gears[pair.driver], gears[pair.driven]):
+            if gear.rotor is None or gear.at is None or gear.face_width is None:
+                break
+            middle = case.rotor_named(gear.rotor).start + gear.at
+            ends.append((middle - 0.5 * gear.face_width, middle + 0.5 * gear.face_width))
+        else:
+            common = min(end for _, end in ends) - max(start for start, _ in ends)
+            whole = min(end - start for start, end in ends)
+            if whole - common > _FIT:
+                shown = " and ".join(f"{_mm(start)} to {_mm(end)}" for start, end in ends)
+                yield warning(
+                    "gear faces",
+                    f'gear pair "{pair.driver}" to "{pair.driven}": the faces, z = {shown}, have {_mm(common)} in '
+                    f"common; the model takes {_mm(whole)}, the whole of the narrower one",
+                    common_m=common,
+                    taken_m=whole,
+                )
+
+
+def _of_sensors(case: Case, mesh: Mesh) -> Iterator[dict[str, Any]]:
+    """Warn of sensors that are given beside the surface of a drawing or mesh, with the point where they sit."""
+    far = _BESIDE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    for sensor in () if case.housing is None else case.housing.sensor:
+        place = sensor_port(mesh, sensor.build()).position
+        off = float(np.linalg.norm(place - sensor.position))
+        if off > far:
+            at = ", ".join(f"{round(1e3 * float(value), 3) + 0.0:.6g}" for value in place)
+            yield warning(
+                "sensor place",
+                f'sensor "{sensor.name}": its position is {1e3 * off:.3g} mm from the surface; it sits at ({at}) mm',
+                sensor=sensor.name,
+                beside_m=off,
+            )
 
 
 def _on_shaft(label: str, bore: float, rotor: Rotor, at: float, width: float) -> Iterator[dict[str, Any]]:

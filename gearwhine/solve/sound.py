@@ -186,7 +186,7 @@ class SolvedSound:
         if self.box_area is None or not self.lines:
             return None
         levels = list(self.microphone_levels().values())[-9:]
-        return sum_of_levels(levels) - 10.0 * np.log10(9.0) + 10.0 * np.log10(self.box_area)
+        return float(sum_of_levels(levels) + 10.0 * np.log10(self.box_area / 9.0))
 
     @property
     def by_face(self) -> dict[str, float]:
@@ -340,7 +340,8 @@ def microphones_of(case: Case, housing: SolvedHousing) -> tuple[dict[str, FloatA
     found = {one.name: np.array(one.position) for one in case.acoustics.microphone}
     if case.acoustics.microphone_box is None:
         return found, None
-    positions, area = measurement_box(*housing.mesh.bounds, case.acoustics.microphone_box)
+    low, high = housing.mesh.bounds
+    positions, area = measurement_box(low, high, case.acoustics.microphone_box)
     return found | {f"box {number}": place for number, place in enumerate(positions, start=1)}, area
 
 

@@ -172,11 +172,11 @@ def _reduced(
     add_warnings(document, told)
     add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved), known=told))
     forces = solved.histories.bearing_load
-    drive = {}
+    frequencies, rates = np.empty(0), np.empty((0, 0, 2))
     if case.acoustics is not None and solved.machine.housing is not None:
         from gearwhine.sweep.sound import strongest_lines
 
-        drive = dict(zip(("line_frequencies", "line_rates"), strongest_lines(case, solved), strict=True))
+        frequencies, rates = strongest_lines(case, solved)
     return PointResult(
         document=document,
         orders=lines[:count] / turning_hz,
@@ -186,7 +186,8 @@ def _reduced(
         bearing_force_rms={name: force.std(axis=0) for name, force in forces.items()},
         housing_frequencies_hz=np.empty(0) if housing is None else housing.frequencies_hz,
         window=spectra[0].window if spectra else "uniform",
-        **drive,
+        line_frequencies=frequencies,
+        line_rates=rates,
     )
 
 
@@ -286,7 +287,7 @@ def _arrays(result: PointResult) -> Variables:
 
 
 def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> PointResult:
-    named = {
+    named: dict[str, Any] = {
         group: dict(zip(map(str, arrays[dimension]), arrays[group], strict=True))
         for group, dimension in (
             *((group, labels[0]) for group, labels in _SPECTRA.items()),
@@ -299,6 +300,7 @@ def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> 
         orders=arrays["order"],
         housing_frequencies_hz=arrays["housing_frequencies_hz"],
         window=attributes["window"],
+        line_frequencies=arrays.get("line_frequencies", np.empty(0)),
+        line_rates=arrays.get("line_rates", np.empty((0, 0, 2))),
         **named,
-        **{name: arrays[name] for name in ("line_frequencies", "line_rates") if name in arrays},
     )

@@ -19,7 +19,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linear_sum_assignment
 
 from housing.correlation.modal_assurance_criterion import ShapeArray, modal_assurance_criterion, two_sets
 from housing.correlation.subspaces import close_modes, span_mac
@@ -43,6 +42,8 @@ def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:
     list of (row, column)
         Ascending in the rows.
     """
+    from scipy.optimize import linear_sum_assignment
+
     rows, columns = linear_sum_assignment(scores, maximize=True)
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True) if scores[i, j] > 0.0]
 
@@ -272,6 +273,8 @@ def _blocks(
 
 def _told_apart(own: FloatArray, shared: FloatArray) -> IntArray | None:
     """For each measured mode (columns) its model mode (rows), where own MACs are most of the shared ones."""
+    from scipy.optimize import linear_sum_assignment
+
     if own.shape == (1, 1):
         return np.zeros(1, dtype=np.int64)
     columns, rows = linear_sum_assignment(own.T, maximize=True)
@@ -280,6 +283,8 @@ def _told_apart(own: FloatArray, shared: FloatArray) -> IntArray | None:
 
 def _in_order(distance: FloatArray) -> IntArray:
     """Return the model modes (rows) nearest in frequency to the measured ones (columns), in ascending order."""
+    from scipy.optimize import linear_sum_assignment
+
     _, rows = linear_sum_assignment(distance.T)
     return np.sort(rows)
 

@@ -179,44 +179,112 @@ class NearestOnSurface:
 
     def point(self, place: FloatArray) -> SurfacePoint:
         """Return the point of the surface nearest to a place [m], shape (3,)."""
-        points, target = self._points, self._across @ place
-        nearest: tuple[float, IntArray, FloatArray, FloatArray] | None = None
-        for distance, block, member, start in self._candidates(target):
-            nodes = block.nodes[member]
-            corners = points[nodes] @ self._across
-            bulge, slack = _bulge(corners, block), _ROUNDING * float(np.ptp(points[nodes], axis=0).max())
-            # Where facets are equally near, as at their common edge, the first is taken, whatever the rounding.
-            if nearest is not None and distance - bulge > nearest[0] - slack:
+        (found,) = self.points(place[None])
+        return found
+
+    def points(self, places: FloatArray) -> list[SurfacePoint]:
+        """Return the points of the surface nearest to places [m], shape (n, 3)."""
+        most = max(_AT_ONCE // max(len(triangles.centers) for triangles in self._triangles), 1)
+        chunks = (places[first : first + most] for first in range(0, len(places), most))
+        return [point for chunk in chunks for point in self._nearest(chunk)]
+
+    def _nearest(self, places: FloatArray) -> list[SurfacePoint]:
+        targets = places @ self._across
+        candidates = self._candidates(targets)
+        found = [
+            self._chosen(target, candidates, slice(first, end))
+            for target, first, end in zip(targets, candidates.bounds[:-1], candidates.bounds[1:], strict=True)
+        ]
+        points: list[SurfacePoint | None] = [None] * len(found)
+        for number, triangles in enumerate(self._triangles):
+            mine = [place for place, (one, _) in enumerate(found) if candidates.sets[one] == number]
+            if not mine:
                 continue
-            coordinates = _closest_on_facet(corners, block, start, target) if bulge > slack else start
-            values, gradients = shape_functions(block.kind, coordinates[:, None])
-            gap = float(np.linalg.norm(values[0] @ corners - target))
-            if nearest is None or gap < nearest[0] - slack:
-                tangents = points[nodes].T @ gradients[0]
-                nearest = (gap, nodes, values[0], np.cross(tangents[:, 0], tangents[:, 1]))
-        assert nearest is not None
-        _, nodes, weights, normal = nearest
-        return SurfacePoint(
-            nodes=nodes,
-            weights=weights,
-            position=weights @ points[nodes],
-            normal=normal / np.linalg.norm(normal),
+            of = triangles.block.nodes[candidates.members[[found[place][0] for place in mine]]]
+            values, gradients = shape_functions(triangles.block.kind, np.array([found[place][1] for place in mine]).T)
+            corners = self._points[of]
+            positions = np.einsum("pn,pni->pi", values, corners)
+            tangents = np.einsum("pni,pnd->pdi", corners, gradients)
+            normals = np.cross(tangents[:, 0], tangents[:, 1])
+            normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+            for place, *parts in zip(mine, of, values, positions, normals, strict=True):
+                points[place] = SurfacePoint(*parts)
+        return [point for point in points if point is not None]
+
+    def _chosen(self, target: FloatArray, candidates: "_Candidates", which: slice) -> tuple[int, FloatArray]:
+        """Return the candidate whose facet is nearest to a target, and the reference coordinates of its nearest point.
+
+        Where facets are equally near, as at their common edge, the first is taken, whatever the rounding.
+        """
+        best, least, place = -1, np.inf, candidates.starts[which.start]
+        for number in range(which.start, which.stop):
+            distance, bulge, slack = candidates.distances[number], candidates.bulges[number], candidates.slacks[number]
+            if distance - bulge > least - slack:
+                continue
+            start, gap = candidates.starts[number], distance
+            if bulge > slack:
+                block = self._triangles[candidates.sets[number]].block
+                corners = self._points[block.nodes[candidates.members[number]]] @ self._across
+                start = _closest_on_facet(corners, block, start, target)
+                gap = float(np.linalg.norm(shape_functions(block.kind, start[:, None])[0][0] @ corners - target))
+            if gap < least - slack or best < 0:
+                best, least, place = number, gap, start
+        return best, place
+
+    def _candidates(self, targets: FloatArray) -> "_Candidates":
+        """Find the facets nearest to each target by the plane triangles between their corners, nearest first."""
+        found = [triangles.candidates(number, targets) for number, triangles in enumerate(self._triangles)]
+        rows, distances, sets, members, starts = (np.concatenate(column) for column in zip(*found, strict=True))
+        order = np.lexsort((distances, rows))
+        first = np.searchsorted(rows[order], np.arange(len(targets)))
+        order = order[np.arange(len(order)) - first[rows[order]] < _NEIGHBOURS]
+        sets, members = sets[order], members[order]
+        bulges, slacks = np.zeros(len(order)), np.zeros(len(order))
+        for number, triangles in enumerate(self._triangles):
+            mine = sets == number
+            nodes = self._points[triangles.block.nodes[members[mine]]]
+            bulges[mine] = _bulges(nodes @ self._across, triangles.block)
+            slacks[mine] = _ROUNDING * np.ptp(nodes, axis=1).max(axis=1, initial=0.0)
+        return _Candidates(
+            np.searchsorted(rows[order], np.arange(len(targets) + 1)).tolist(),
+            distances[order].tolist(),
+            sets.tolist(),
+            members,
+            starts[order],
+            bulges.tolist(),
+            slacks.tolist(),
         )
 
-    def _candidates(self, target: FloatArray) -> list[tuple[float, ElementBlock, int, FloatArray]]:
-        """Return the facets nearest to the target by the plane triangles between their corners, nearest first.
 
-        Each with its distance, block, number in the block, and the reference coordinates of the triangle's nearest
-        point.
-        """
-        found: list[tuple[float, int, ElementBlock, int, FloatArray]] = []
-        for triangles in self._triangles:
-            near = triangles.near(target)
-            shares, distance = _closest_on_triangles(triangles.corners[near], target)
-            for place in np.argsort(distance, kind="stable")[:_NEIGHBOURS].tolist():
-                start = shares[place] @ triangles.places
-                found.append((float(distance[place]), len(found), triangles.block, int(near[place]), start))
-        return [(one[0], *one[2:]) for one in sorted(found, key=lambda one: one[:2])[:_NEIGHBOURS]]
+@dataclass(frozen=True)
+class _Candidates:
+    """Facets that may be nearest to places, those of one place together, nearest by their plane triangles first.
+
+    Attributes
+    ----------
+    bounds : list of int
+        Where those of each place begin, and the end.
+    distances : list of float
+        Of the plane triangles [m].
+    sets : list of int
+        Numbers of their sets of triangles.
+    members : ndarray of int
+        Numbers of the facets in their blocks.
+    starts : ndarray, shape (n, 2)
+        Reference coordinates of the triangles' nearest points.
+    bulges : list of float
+        Upper bounds on the distance of a facet from its plane triangles [m].
+    slacks : list of float
+        Rounding of distances [m].
+    """
+
+    bounds: list[int]
+    distances: list[float]
+    sets: list[int]
+    members: IntArray
+    starts: FloatArray
+    bulges: list[float]
+    slacks: list[float]
 
 
 @dataclass(frozen=True)
@@ -249,12 +317,30 @@ class _Triangles:
         places = np.array(block.of.places, dtype=np.float64)[list(triangle)]
         return cls(block, places, corners, centers, radii)
 
-    def near(self, target: FloatArray) -> IntArray:
-        """Return the triangles that may be among the nearest: their ball is as near as the few nearest centres."""
-        apart = np.linalg.norm(self.centers - target, axis=1)
-        few = min(_NEIGHBOURS, len(apart)) - 1
-        reach = np.partition(apart, few)[few] * (1.0 + _ROUNDING)
-        return np.flatnonzero(apart - self.radii * (1.0 + _ROUNDING) <= reach)
+    def candidates(
+        self, number: int, targets: FloatArray
+    ) -> tuple[IntArray, FloatArray, IntArray, IntArray, FloatArray]:
+        """Pair targets with triangles that may be among the nearest: their ball is as near as the few nearest centres.
+
+        Returns
+        -------
+        rows : ndarray of int, shape (n,)
+            The targets.
+        distances : ndarray, shape (n,)
+            Of the triangle's nearest point [m].
+        sets : ndarray of int, shape (n,)
+            The `number` given.
+        members : ndarray of int, shape (n,)
+            The triangles.
+        starts : ndarray, shape (n, 2)
+            Reference coordinates of the nearest point.
+        """
+        apart = np.linalg.norm(self.centers - targets[:, None], axis=2)
+        few = min(_NEIGHBOURS, apart.shape[1]) - 1
+        reach = np.partition(apart, few, axis=1)[:, few, None] * (1.0 + _ROUNDING)
+        rows, members = np.nonzero(apart - self.radii * (1.0 + _ROUNDING) <= reach)
+        shares, distances = _closest_on_triangles(self.corners[members], targets[rows])
+        return rows, distances, np.full(len(rows), number), members, shares @ self.places
 
 
 def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint:
@@ -276,13 +362,16 @@ def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint
     return NearestOnSurface(mesh, facets).point(place)
 
 
-def _bulge(nodes: FloatArray, block: ElementBlock) -> float:
-    """Upper bound on the distance of a facet from the plane triangles between its corners [m]; 0 where it is flat."""
+def _bulges(nodes: FloatArray, block: ElementBlock) -> FloatArray:
+    """Upper bounds on the distance of facets from the plane triangles between their corners [m]; 0 where they are flat.
+
+    `nodes` are those of n facets of a block, shape (n, n_nodes, 3).
+    """
     first = block.of.n_corners
-    offset = np.linalg.norm(nodes - _corner_shares(block.of) @ nodes[:first], axis=1).max()
-    twist = np.linalg.norm(nodes[0] - nodes[1] + nodes[2] - nodes[3]) if first == 4 else 0.0
+    offset = np.linalg.norm(nodes - _corner_shares(block.of) @ nodes[:, :first], axis=2).max(axis=1)
+    twist = nodes[:, 0] - nodes[:, 1] + nodes[:, 2] - nodes[:, 3] if first == 4 else np.zeros((len(nodes), 3))
     # The shape functions of middle nodes add up to at most 3 in size, and a twisted facet bends by a quarter.
-    return float(3.0 * offset + twist)
+    return np.asarray(3.0 * offset + np.linalg.norm(twist, axis=1))
 
 
 @cache
@@ -297,6 +386,7 @@ _NEIGHBOURS = 6  # facets looked at: as many as meet in a node of a usual mesh
 _STEPS = 20
 _SHORTENINGS = (1.0, 0.5, 0.25, 0.125)
 _ROUNDING = 1e-12
+_AT_ONCE = 2**18  # pairs of places and facets that are compared at once: some megabytes
 
 
 def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray, target: FloatArray) -> FloatArray:
@@ -332,7 +422,7 @@ def _clipped(coordinates: FloatArray, block: ElementBlock) -> FloatArray:
 
 
 def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Barycentric coordinates of the nearest point of each triangle, and its distance.
+    """Barycentric coordinates of the point of each triangle (n, 3, 3) nearest to its place (n, 3), and its distance.
 
     Triangles that a projection made flat (zero area) are measured by their edges.
     """

@@ -8,12 +8,11 @@ degrees of freedom.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import permutations, product
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
 
 from housing.errors import MeasuredDataError
 from housing.fem.surface import NearestOnSurface, SurfaceSamples, outer_facets, sample_surface
@@ -21,6 +20,9 @@ from housing.measured.survey_data import MeasuredGeometry
 from housing.model.patches import point_matrix
 from meshes import Mesh
 from meshes.lengths import UNITS, length_text
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -192,6 +194,8 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
     MeasuredDataError
         Where the survey has fewer than six points, too few to determine a position by distances from a surface.
     """
+    from scipy.spatial import cKDTree
+
     points = geometry.positions
     if len(points) < 6:
         raise MeasuredDataError(f"a survey of {len(points)} points cannot be aligned by the surface; give landmarks")
@@ -235,7 +239,7 @@ def size_hint(geometry: MeasuredGeometry, mesh: Mesh, part: float = 2.5) -> str 
 class _Surface:
     """The surface as samples, and a tree to find the nearest."""
 
-    tree: cKDTree
+    tree: "cKDTree"
     samples: SurfaceSamples
 
     def gaps(self, points: FloatArray) -> tuple[FloatArray, RigidMotion, FloatArray]:
@@ -254,6 +258,8 @@ class _Surface:
 
 def _starts(points: FloatArray, centers: FloatArray) -> Iterator[FloatArray]:
     """Rotations to start from: axes onto axes, main axes onto main axes, and others spread over all there are."""
+    from scipy.spatial.transform import Rotation
+
     onto = [
         np.eye(3)[list(order)] * np.array(signs)[:, None]
         for order in permutations(range(3))
@@ -330,6 +336,8 @@ def _remarks(fits: list[RigidMotion], firmness: FloatArray, points: FloatArray, 
 
 
 def _turn_text(motion: RigidMotion) -> str:
+    from scipy.spatial.transform import Rotation
+
     vector = Rotation.from_matrix(motion.rotation).as_rotvec(degrees=True)
     angle = float(np.linalg.norm(vector))
     if angle < 1.0:
@@ -424,8 +432,7 @@ def map_survey(
     if len(geometry.labels) > 2 and (hint := size_hint(geometry, mesh, _SMALLEST)):
         raise MeasuredDataError(f"the survey is not as large as the housing: {hint}")
     facets = outer_facets(mesh)
-    nearest = NearestOnSurface(mesh, facets)
-    found = [nearest.point(position) for position in geometry.positions]
+    found = NearestOnSurface(mesh, facets).points(geometry.positions)
     positions = np.array([point.position for point in found]).reshape(-1, 3)
     distances = np.linalg.norm(positions - geometry.positions, axis=1)
     if np.count_nonzero(distances > limit) > len(found) / 2:

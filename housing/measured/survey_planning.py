@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
-from scipy.spatial import cKDTree
 
 from housing.errors import HousingError
 from housing.fem.surface import NearestOnSurface, outer_facets, sample_surface
 from housing.measured.survey_data import MeasuredGeometry
+from housing.model.patches import points_matrix
 from meshes import Mesh
 from meshes.elements import Facets, facet_centers, facet_normals, pick_facets
 
@@ -99,29 +99,28 @@ def survey_grid(
     facing = facet_normals(mesh.points, boundary)
     centers = facet_centers(mesh.points, boundary)
     middle = box.mean(axis=0)
-    points = []
+    points, normals = [], []
     for face, (columns, rows) in counts.items():
         normal_axes, column_axis, row_axis = _FACES[face]
         normal = np.array(normal_axes, dtype=np.float64)
         outer = pick_facets(boundary, (facing @ normal > _FACING) & ((centers - middle) @ normal > 0.0))
         if not outer:  # as on a cone: the facets that come nearest to that direction
             outer = pick_facets(boundary, facing @ normal > _FACING * (facing @ normal).max())
-        nearest = NearestOnSurface(mesh, outer, along=normal)
-        for column in (np.arange(columns) + 0.5) / columns:
-            for row in (np.arange(rows) + 0.5) / rows:
-                place = middle.copy()
-                place[column_axis] = box[0, column_axis] + column * (box[1] - box[0])[column_axis]
-                place[row_axis] = box[0, row_axis] + row * (box[1] - box[0])[row_axis]
-                points.append((nearest.point(place), normal))
-    entries = sparse.lil_array((3 * len(points), 3 * len(mesh.points)))
-    for number, (point, _) in enumerate(points):
-        for component in range(3):
-            entries[3 * number + component, 3 * point.nodes + component] = point.weights
+        places = np.tile(middle, (columns, rows, 1))
+        places[..., column_axis] = (box[0] + _middles(columns)[:, None] * (box[1] - box[0]))[:, column_axis, None]
+        places[..., row_axis] = (box[0] + _middles(rows)[:, None] * (box[1] - box[0]))[:, row_axis]
+        points += NearestOnSurface(mesh, outer, along=normal).points(places.reshape(-1, 3))
+        normals += [normal] * (columns * rows)
     return Survey(
-        positions=np.array([point.position for point, _ in points]),
-        normals=np.array([normal for _, normal in points]),
-        matrix=sparse.csr_array(entries),
+        positions=np.array([point.position for point in points]),
+        normals=np.array(normals),
+        matrix=points_matrix(mesh, points),
     )
+
+
+def _middles(count: int) -> FloatArray:
+    """Middles of equal parts of the range from 0 to 1."""
+    return np.asarray((np.arange(count) + 0.5) / count)
 
 
 _PLACES = 3  # for the hammer
@@ -250,6 +249,8 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     HousingError
         Where the surface has no room for that number.
     """
+    from scipy.spatial import cKDTree
+
     facets = outer_facets(mesh)
     samples = sample_surface(mesh, facets)
     free = np.ones(len(samples.points), dtype=np.bool_)
@@ -267,7 +268,7 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     labels = tuple(str(number) for number in range(1, count + 1))
     # Samples lie between the corners of facets, off a curved surface.
     surface = NearestOnSurface(mesh, facets)
-    found = [surface.point(place) for place in points[chosen]]
+    found = surface.points(points[chosen])
     normals = np.array([point.normal for point in found]) + 0.0  # zeros without a sign
     return MeasuredGeometry(labels, np.array([point.position for point in found]), np.arange(count), normals)
 
@@ -277,6 +278,8 @@ def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbo
 
     Points are numbered from 1 in the order given.
     """
+    from scipy.spatial import cKDTree
+
     points = candidates.points[sensors]
     positions = candidates.positions[points]
     count = len(sensors)

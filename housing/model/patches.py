@@ -3,6 +3,7 @@
 Rigid motions of points, with a mass matrix, give mass, centre of gravity and inertia of the body.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -203,6 +204,16 @@ def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
     """Assemble the translations of a surface point, shape (3, 3 n_nodes); a point of a solid has no rotation."""
     columns = (3 * point.nodes[:, None] + np.arange(3)).ravel()
     return _port(np.asarray(np.kron(point.weights, np.eye(3)), dtype=np.float64), columns, mesh)
+
+
+def points_matrix(mesh: Mesh, points: Sequence[SurfacePoint]) -> sparse.csr_array:
+    """Assemble the translations of n surface points, shape (3 n, 3 n_nodes): rows of :func:`point_matrix` in turn."""
+    axes = np.arange(3)
+    rows = 3 * np.repeat(np.arange(len(points)), [len(point.nodes) for point in points])[:, None] + axes
+    columns = 3 * np.concatenate([point.nodes for point in points])[:, None] + axes
+    values = np.repeat(np.concatenate([point.weights for point in points]), 3)
+    shape = (3 * len(points), 3 * len(mesh.points))
+    return sparse.csr_array((values, (rows.ravel(), columns.ravel())), shape=shape)
 
 
 def spread(mesh: Mesh, facets: Facets, amounts: Point) -> NodeBlocks:

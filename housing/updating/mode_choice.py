@@ -191,7 +191,7 @@ def choose_modes(
     noise : ndarray, shape (n,)
         Relative standard deviation of each.
     strengths : Dominance
-        Of all modes, of which more than ``n`` are in the band.
+        Of all modes, of which ``n`` or more are in the band.
     band, gap, margin, firmness
         See :func:`choice_shortfall`.
 
@@ -202,6 +202,8 @@ def choose_modes(
     known = _strengths(strengths, band, gap, margin, firmness)
     inside = np.flatnonzero(known.beyond <= 0.0)
     n = len(logarithms)
+    if len(inside) == n:
+        return inside
     # Initial thresholds: between the n strongest and the rest, and some places up and down.
     ranked = np.sort(known.logarithms[:, inside], axis=1)[:, ::-1]
     places = np.arange(max(n - _PLACES, 1), min(n + _PLACES + 1, len(inside)))
@@ -209,9 +211,11 @@ def choose_modes(
         return strengths.strongest(n, band)
     thresholds = 0.5 * (ranked[:, places - 1] + ranked[:, places]).T
     errors = ((np.log(strengths.frequencies[inside]) - logarithms[:, None]) / noise[:, None]) ** 2
-    best, least = inside[:n], np.inf
+    best, least, taken = inside[:n], np.inf, np.zeros((0, 0), dtype=bool)
     for _ in range(_TURNS):
-        taken = _best_choices(known, inside, errors, thresholds)
+        before, taken = taken, _best_choices(known, inside, errors, thresholds)
+        if np.array_equal(taken, before):
+            break  # the same thresholds and costs again
         thresholds, (below, above, edge) = _settled(known, taken)
         numbers = np.nonzero(taken[:, inside])[1].reshape(-1, n)
         costs = (
@@ -236,7 +240,7 @@ def _settled(known: _Strengths, taken: BoolArray) -> tuple[FloatArray, _Shortfal
     thresholds = np.where(np.isfinite(strongest), 0.5 * (weakest + strongest), weakest - 0.5 * known.asked)
     for _ in range(_TURNS):
         shortfalls = below, above, _ = known.split(taken, thresholds)
-        active = np.count_nonzero(below, axis=-1) + np.count_nonzero(above, axis=-1)
+        active = (below > 0.0).sum(axis=-1) + (above > 0.0).sum(axis=-1)
         step = known.scale * (above.sum(axis=-1) - below.sum(axis=-1)) / np.maximum(active, 1)
         if not step.any():
             return thresholds, shortfalls

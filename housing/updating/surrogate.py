@@ -11,6 +11,7 @@ that is a power of a parameter is reproduced exactly where that parameter's coor
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -69,8 +70,6 @@ class Neighbour:
     Attributes
     ----------
     state : ModalState
-    slopes : ndarray, shape (n_parameters, n_modes)
-        d ln ω of each mode by each coordinate.
     surrogate : Surrogate
         The surrogate that it belongs to.
     step : ndarray, shape (n_parameters,)
@@ -80,10 +79,14 @@ class Neighbour:
     """
 
     state: ModalState
-    slopes: FloatArray
     surrogate: "Surrogate"
     step: FloatArray
     mixture: FloatArray
+
+    @cached_property
+    def slopes(self) -> FloatArray:
+        """Slopes d ln ω of each mode by each coordinate, shape (n_parameters, n_modes)."""
+        return 0.5 * np.einsum("am,pam->pm", self.mixture, self.surrogate.rates @ self.mixture)
 
     def measured_slopes(self, modes: IntArray) -> FloatArray:
         """Rates of some modes' motions where shapes were measured, shape (n_parameters, n_modes, n_dofs) [1/√kg]."""
@@ -116,7 +119,7 @@ class Neighbour:
         # Modes of one frequency have no shapes of their own, and those of each do not turn into themselves.
         inverse = np.divide(1.0, apart, out=np.zeros_like(apart), where=np.abs(apart) > _TOGETHER)
         turned = mixture @ ((mixture.T @ (surrogate.rates @ mixture[:, modes])) * inverse)
-        whole = turned - 0.5 * np.tensordot(self.step, surrogate.mass, axes=1) @ turned
+        whole = turned - 0.5 * _weighted(self.step, surrogate.mass) @ turned
         whole -= 0.5 * surrogate.mass @ mixture[:, modes]
         return np.asarray(whole.transpose(0, 2, 1))
 
@@ -155,12 +158,11 @@ class Surrogate:
     def at(self, coordinates: FloatArray) -> Neighbour:
         """Modes at other coordinates."""
         step = coordinates - self.center
-        whole = np.tensordot(step, self.rates, axes=1)
+        whole = _weighted(step, self.rates)
         diagonal = np.arange(len(whole))
         whole[diagonal, diagonal] += 2.0 * np.log(self.state.frequencies)
         values, mixture = np.linalg.eigh(whole)
-        slopes = 0.5 * np.einsum("am,pam->pm", mixture, self.rates @ mixture)
-        carried = mixture - 0.5 * np.tensordot(step, self.mass, axes=1) @ mixture
+        carried = mixture - 0.5 * _weighted(step, self.mass) @ mixture
         state = self.state
         n = len(carried)
         moved = ModalState(
@@ -169,4 +171,9 @@ class Surrogate:
             skin=carried.T @ state.skin,
             measured=None if state.measured is None else carried.T @ state.measured,
         )
-        return Neighbour(moved, slopes, self, step, mixture)
+        return Neighbour(moved, self, step, mixture)
+
+
+def _weighted(weights: FloatArray, matrices: FloatArray) -> FloatArray:
+    """Weighted sum of matrices (n, m, m), shape (m, m); `tensordot` takes several times as long for small ones."""
+    return np.asarray((weights @ matrices.reshape(len(weights), -1)).reshape(matrices.shape[1:]))

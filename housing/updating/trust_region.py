@@ -6,7 +6,7 @@ the best end point is solved in full. Where that lessens the misfit it is the ne
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, Protocol, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from scipy.optimize import lsq_linear
 from housing.errors import HousingError
 from housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
 from housing.updating.parameters import Parameter, coordinate_bounds
-from housing.updating.surrogate import ModalState, Surrogate
+from housing.updating.surrogate import ModalState, Neighbour, Surrogate
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -170,23 +170,37 @@ def search_surrogate(
     low, high = region
     center = np.clip(surrogate.center, low, high)
     points = [center, *(low + (high - low) * generator.random((starts, len(low))))]
-    valued = [(measure(target, surrogate.at(point).state, point).value, place) for place, point in enumerate(points)]
-    best_point, best = center, valued[0][0]
+    first, *others = (_Place.on(surrogate, target, point) for point in points)
+    best_point, best = center, first.misfit.value
     # The surrogate's own centre, and the better half of the others, since most of those reach the same minima.
-    for _, place in [valued[0], *sorted(valued[1:])[: max(1, starts // 2)]]:
-        point, value = descend(surrogate, target, points[place], region)
+    for start in [first, *sorted(others, key=lambda place: place.misfit.value)[: max(1, starts // 2)]]:
+        point, value = descend(surrogate, target, start, region)
         if value < best:
             best_point, best = point, value
     return best_point, best
 
 
+@dataclass(frozen=True)
+class _Place:
+    """A point of the surrogate with its modes and its misfit."""
+
+    point: FloatArray
+    near: Neighbour
+    misfit: Misfit
+
+    @classmethod
+    def on(cls, surrogate: Surrogate, target: Target, point: FloatArray) -> Self:
+        near = surrogate.at(point)
+        return cls(point, near, measure(target, near.state, point))
+
+
 def descend(
-    surrogate: Surrogate, target: Target, point: FloatArray, region: FloatArray, steps: int = _STEPS
+    surrogate: Surrogate, target: Target, start: FloatArray | _Place, region: FloatArray, steps: int = _STEPS
 ) -> tuple[FloatArray, float]:
     """Descend from a start by Gauss-Newton steps on the surrogate, within the region."""
     low, high = region
-    near = surrogate.at(point)
-    misfit = measure(target, near.state, point)
+    place = start if isinstance(start, _Place) else _Place.on(surrogate, target, start)
+    point, near, misfit = place.point, place.near, place.misfit
     for _ in range(steps):
         if (misfit.pairs == UNPAIRED).all():
             break
@@ -195,15 +209,13 @@ def descend(
         room = np.stack([low - point, high - point]) + np.array([[-1e-12], [1e-12]])
         step = lsq_linear(np.vstack(rows), np.concatenate(right), bounds=room, method="bvls").x
         for part in _SHORTENED:
-            trial = np.clip(point + part * step, low, high)
-            at_trial = surrogate.at(trial)
-            found = measure(target, at_trial.state, trial)
-            if found.value < misfit.value:
+            trial = _Place.on(surrogate, target, np.clip(point + part * step, low, high))
+            if trial.misfit.value < misfit.value:
                 break
         else:
             break
-        settled = misfit.value - found.value < 1e-3 * misfit.value
-        point, near, misfit = trial, at_trial, found
+        settled = misfit.value - trial.misfit.value < 1e-3 * misfit.value
+        point, near, misfit = trial.point, trial.near, trial.misfit
         if settled:
             break
     return point, misfit.value

@@ -5,6 +5,7 @@ The unit of length is stated by the file or given by the user, and checked again
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -299,9 +300,9 @@ def conforming(gmsh: Any, solids: list[int], *, glue: bool = True) -> Shape:
     parts = {name: [tag for d, tag in own if d == 3] for name, own in zip(names, pieces[: len(names)], strict=True)}
     for i, first in enumerate(names):
         for j, second in enumerate(names[:i]):
-            shared = sum(gmsh.model.occ.getMass(3, tag) for tag in set(parts[first]) & set(parts[second]))
-            if shared > _OVERLAP * min(abs(volumes[i]), abs(volumes[j])):
-                raise _overlapping(second, first, shared)
+            shared = sorted(set(parts[first]) & set(parts[second]))
+            if _volume(gmsh, shared) > _OVERLAP * min(abs(volumes[i]), abs(volumes[j])):
+                raise _overlapping(gmsh, second, first, shared)
     faces = {}
     for entity, own in zip(named, pieces[len(names) :], strict=True):
         faces[labels[entity]] = [tag for d, tag in own if d == 2]
@@ -314,18 +315,28 @@ def _check_apart(gmsh: Any, solids: dict[str, int]) -> None:
     for i, (first, one) in enumerate(parts):
         for second, other in parts[:i]:
             shared, _ = gmsh.model.occ.intersect([(3, one)], [(3, other)], removeObject=False, removeTool=False)
-            volume = sum(gmsh.model.occ.getMass(3, tag) for dimension, tag in shared if dimension == 3)
+            common = [tag for dimension, tag in shared if dimension == 3]
+            if _volume(gmsh, common) > _OVERLAP * min(gmsh.model.occ.getMass(3, one), gmsh.model.occ.getMass(3, other)):
+                raise _overlapping(gmsh, second, first, common)
             if shared:
                 gmsh.model.occ.remove(shared, recursive=True)
-            if volume > _OVERLAP * min(gmsh.model.occ.getMass(3, one), gmsh.model.occ.getMass(3, other)):
-                raise _overlapping(second, first, volume)
     gmsh.model.occ.synchronize()
 
 
-def _overlapping(first: str, second: str, volume: float) -> GeometryError:
+def _volume(gmsh: Any, solids: Sequence[int]) -> float:
+    return float(sum(gmsh.model.occ.getMass(3, tag) for tag in solids))
+
+
+def _overlapping(gmsh: Any, first: str, second: str, shared: Sequence[int]) -> GeometryError:
+    """Return the refusal of two solids by the ones that they share, with the corners of the box around these."""
+    boxes = np.array([gmsh.model.occ.getBoundingBox(3, tag) for tag in shared])
+    low, high = (
+        ", ".join(f"{round(float(value), 6) + 0.0:.6g}" for value in corner)
+        for corner in (boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0))
+    )
     return GeometryError(
-        f"its solids {first!r} and {second!r} overlap in a volume of {volume:.4g} (in its own unit cubed); cut one "
-        "from the other in the CAD program"
+        f"its solids {first!r} and {second!r} overlap in a volume of {_volume(gmsh, shared):.4g}, between ({low}) and "
+        f"({high}), in its own unit; cut one from the other in the CAD program, or take a solid out that is left over"
     )
 
 

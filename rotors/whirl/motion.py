@@ -209,6 +209,12 @@ class ShaftMotion:
         transfer_matrices = self.rod.transfer_matrices_to(numbers, fractions, -(self.eigenvalues**2))
         return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, self.axial[:, numbers]))
 
+    def evaluate_axial(self, z: npt.ArrayLike) -> ComplexArray:
+        """Complex displacement along the axis (m) at positions z (m), (w, len(z)); zero without axial motion."""
+        if self.rod is None:
+            return np.zeros((len(self.axial), np.size(z)), dtype=np.complex128)
+        return np.asarray(self.axial_at(z)[:, :, 0] * self.rod.displacement_unit[0])
+
     def _inside(self, block: int, states: ComplexArray, numbers: IntArray, fractions: FloatArray) -> ComplexArray:
         transfer_matrices = self.shaft.transfer_matrices_to(numbers, fractions, *self._squared(block))
         return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, states[:, numbers]))
@@ -283,9 +289,7 @@ def _in_springs(motion: ShaftMotion, bearing: Bearing) -> tuple[FloatArray, Floa
     """Four times the mean strain energy in a bearing and in its pedestal, (w,) each, J."""
     x, y = (part[:, 0] for part in motion.evaluate([bearing.at]))
     slope_x, slope_y = (part[:, 0] for part in motion.evaluate_slopes([bearing.at]))
-    along = np.zeros_like(x)
-    if motion.rod is not None:
-        along = motion.axial_at([bearing.at])[:, 0, 0] * motion.rod.displacement_unit[0]
+    along = motion.evaluate_axial([bearing.at])[:, 0]
     # The slope in x is the rotation about y, that in y minus the rotation about x.
     deflection = np.stack([x, y, along, -slope_y, slope_x], axis=1)
     stiffness, pedestal = bearing.spatial_stiffness, bearing.pedestal

@@ -128,6 +128,18 @@ class WhirlModes(ComplexFrequencies):
         """Complex x and y of every mode at positions z (m), both (w, len(z)), by the exact field."""
         return self.motion.evaluate(z)
 
+    def evaluate_axial(self, z: npt.ArrayLike) -> ComplexArray:
+        """Complex displacement along the axis of every mode at positions z (m), (w, len(z)), by the exact field.
+
+        Zeros where no bearing couples axial and lateral motion.
+
+        Raises
+        ------
+        RotorError
+            A position is not on the shaft.
+        """
+        return self.motion.evaluate_axial(z)
+
     def section_loads(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
         """Complex shear forces and bending moments of every mode at positions z (m), both (2, w, len(z)) over x and y.
 

@@ -12,7 +12,7 @@ from coupling import Machine, MountedBearing
 from coupling.machine import description
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
-from coupling.statics.static_model import ConnectorLaw, StaticBearing, static_bearing
+from coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
 from rotors import Pedestal
 from rotors.rolling_bearings import BallRow, paired
 
@@ -67,7 +67,12 @@ def scaled(machine: Machine, number: int, size: float) -> OperatingPoint:
 
     def stiffer(mounted: MountedBearing, speed: float) -> StaticBearing:
         made = static_bearing(mounted, speed)
-        return replace(made, law=Scaled(made.law, 1.0 + size)) if mounted.bearing.name == name else made
+        if mounted.bearing.name != name:
+            return made
+        # A linear one stays such: its part without energy is known as that.
+        linear = isinstance(made.law, LinearLaw)
+        factor = 1.0 + size
+        return replace(made, law=LinearLaw(factor * made.law.stiffness) if linear else Scaled(made.law, factor))
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(description, "static_bearing", stiffer)

@@ -13,7 +13,7 @@ from coupling.machine.components import Component
 from coupling.machine.connectors import ContactConnector, LinearConnector
 from coupling.machine.coupled_system import HarmonicLoad
 from coupling.time.integration import Checkpoint
-from coupling.time.transient import integrate_blocks, integration_key
+from coupling.time.transient import integrate_blocks, integration_key, transient_figures
 
 BLOCK = 64
 RECORD = ("times", "displacement", "velocity", "acceleration", "compression", "force")
@@ -74,6 +74,18 @@ def test_blocks_change_no_more_than_the_tolerance() -> None:
     assert np.concatenate([block.times for block in blocks]) == pytest.approx(whole.times)
     together = np.concatenate([block.displacement for block in blocks])
     assert together == pytest.approx(whole.displacement, abs=1e-3 * np.abs(whole.displacement).max())
+
+
+@pytest.mark.parametrize("record_from", [np.nextafter(18.0, 0.0), 18.0, np.nextafter(18.0, 20.0)])
+def test_contact_figures_begin_with_the_record_where_a_block_does(record_from: float) -> None:
+    """A block begins at 18 s, the tenth part of 60 s taken three times; rounding may put the record beside it."""
+    settings = replace(SETTINGS, record_from=float(record_from))
+    blocks = list(integrate_blocks(SYSTEM, settings, ROWS, samples_per_block=60))
+    assert len(blocks) == 10
+    figures = transient_figures(settings, blocks[-1].after)
+    force = np.concatenate([block.force for block in blocks])
+    assert figures.mean_force == pytest.approx(force.mean(axis=0), rel=5e-3)
+    assert (figures.peak_force >= figures.mean_force).all()
 
 
 def test_a_cache_that_forgets_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,43 +5,23 @@ import os
 import signal
 import subprocess
 import sys
-from base64 import b64decode
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
+import xarray as xr
 
+import gearwhine as gw
 from gearwhine.cli import run_command
-
-# A single white point, in place of a rendered figure.
-_POINT = b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg==")
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _figures_unrendered(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Build the figures of a command and leave their files, of one point each: to render them takes most of its time.
-
-    A module marked ``rendered`` is of the pictures themselves, and has them as users have them.
-    """
-    if request.node.get_closest_marker("rendered"):
-        yield
-        return
-    from matplotlib.figure import Figure
-
-    from gearwhine import drawing_process
-
-    def shapes_unrendered(housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None) -> list[str]:
-        names = [f"{shape.name}.png" for shape in shapes] + ([] if sheet is None else [sheet])
-        for name in names:
-            (folder / name).write_bytes(_POINT)
-        return names
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Figure, "savefig", lambda figure, path, **how: Path(path).write_bytes(_POINT))
-        patch.setattr(drawing_process, "draw_in_process", shapes_unrendered)
-        yield
+def _figures_unrendered(request: pytest.FixtureRequest) -> None:
+    """Render no figures, but in a module marked ``rendered``: that is of the pictures, and has them as users do."""
+    if not request.node.get_closest_marker("rendered"):
+        request.getfixturevalue("unrendered")
 
 
 @dataclass(frozen=True)
@@ -84,6 +64,16 @@ def solved_rotor(gearwhine: Command) -> Callable[..., dict[str, Any]]:
         assert outcome.code == 0, outcome.err
         (rotor,) = outcome.document["rotors"]
         return rotor
+
+    return solve
+
+
+@pytest.fixture
+def rotor_curves() -> Callable[..., xr.Dataset]:
+    """``rotor_curves(case, *settings)``: the arrays of the same, where its curves stand."""
+
+    def solve(case: str, *settings: str) -> xr.Dataset:
+        return gw.load(case, list(settings)).rotors().dataset
 
     return solve
 

@@ -1,6 +1,7 @@
 """The commands and programs of tutorials and how-to pages run in their order; commands of all other pages are read.
 
-A page runs in an empty folder, as a reader would follow it. Only the effort is less: coarser meshes and shorter runs.
+A page runs in an empty folder, as a reader would follow it. Only the effort is less: boxes of larger elements, drawings
+of linear ones, and shorter runs.
 """
 
 import re
@@ -9,9 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from chromium import Browser, find_chromium
+from looked_at import HOSTILE, is_clean, look_at, with_hostile_names
 
 from gearwhine.case import bundled_case
 from gearwhine.cli.command_line import app
+from gearwhine.from_case import mesh
+from meshes import mesh_box, mesh_cad
 
 ROOT = Path(__file__).parents[2]
 RUN = [*sorted((ROOT / "docs" / "tutorials").glob("*.md")), *sorted((ROOT / "docs" / "how-to").glob("*.md"))]
@@ -22,15 +27,19 @@ READ = [
 
 _SHORT = ("transient.revolutions=2", "transient.discard=1", "transient.tolerance=5e-3")
 LESS_EFFORT = {
-    "nasa-gear-noise-rig": ("housing.box.mesh_size=45 mm", *_SHORT),
-    "small-gearbox": ("housing.box.mesh_size=45 mm", *_SHORT),
+    "nasa-gear-noise-rig": _SHORT,
+    "small-gearbox": _SHORT,
     "two-stage-reducer": ("housing.cad.mesh_size=18 mm", "housing.frequency_limit=600 Hz", *_SHORT),
     "steel-box": (),
     "friswell-rotor": (),
 }
 """Settings that are added to the commands on a case."""
+COARSE = 0.05
+"""Least size of the elements of a box [m]."""
 FEWER_POINTS = {"rpm:19": "rpm:2", "N*m:10": "N*m:2"}
 """Ranges of a sweep that are cut."""
+REPORTED = {"rig": "rig", "reducer": "reducer"}
+"""Folders of pages whose reports are looked at in a browser, by the pages' names."""
 _WITHOUT_A_CASE = ("examples",)
 
 
@@ -54,13 +63,37 @@ def with_less_effort(words: list[str]) -> list[str]:
     changes = [part for setting in settings for part in ("--set", setting)]
     for many, few in FEWER_POINTS.items():
         words = [word.replace(many, few) for word in words]
+    if words[0] == "sweep":
+        words = [*words, "--workers", "1"]  # each takes seconds to start
     return [*words, *changes]
+
+
+def _look_at_reports(gearwhine: Any, folder: Path, place: Path) -> None:
+    """Both forms of the report of a folder in a browser, and the interactive one where all names are hostile."""
+    if (program := find_chromium()) is None:
+        return
+    with_hostile_names(folder, place / "hostile")
+    for one in (folder, place / "hostile"):
+        outcome = gearwhine("report", str(one), "--interactive", "-q")
+        assert outcome.code == 0, outcome.err
+    with Browser(program, place / "profile") as browser:
+        look_at(browser, folder / "report.html", interactive=False)
+        look_at(browser, folder / "report-interactive.html", interactive=True)
+        browser.open(place / "hostile" / "report-interactive.html")
+        assert browser.value("document.body.textContent").count(HOSTILE) > 20
+        is_clean(browser)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
-def test_a_page_runs_from_its_first_line_to_its_last(gearwhine: Any, tmp_path: Path, page: Path) -> None:
+def test_a_page_runs_from_its_first_line_to_its_last(
+    gearwhine: Any, tmp_path: Path, page: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import matplotlib.pyplot as plt
+
+    monkeypatch.setattr(mesh, "mesh_box", lambda box, size, **how: mesh_box(box, max(size, COARSE), **how))
+    # The bolts of a drawing, not its mesh_size, say how many elements there are.
+    monkeypatch.setattr(mesh, "mesh_cad", lambda *drawing, **how: mesh_cad(*drawing, **how | {"order": 1}))
 
     names: dict[str, Any] = {"__name__": "__main__"}
     done = 0
@@ -85,6 +118,8 @@ def test_a_page_runs_from_its_first_line_to_its_last(gearwhine: Any, tmp_path: P
 
         modulus = gw.load("fit/updated.toml").case.material["steel"].youngs_modulus
         assert modulus == pytest.approx(196e9, rel=2e-3)
+    if page.stem in REPORTED:
+        _look_at_reports(gearwhine, tmp_path / REPORTED[page.stem], tmp_path)
     for named in re.findall(r"`((?:rig|reducer|plan|fit|small-gearbox-results)/[\w.-]+)`", page.read_text("utf-8")):
         assert (tmp_path / named).exists(), named
 

@@ -75,25 +75,26 @@ def two_discs(hertz: float, ratio: float, spring: float = 0.0, dashpot: float = 
 
 
 @pytest.mark.parametrize("held", [False, True])
-def test_two_discs_answer_a_torque_as_they_must(solved_rotor: Any, shaft: str, held: bool) -> None:
+def test_two_discs_answer_a_torque_as_they_must(solved_rotor: Any, rotor_curves: Any, shaft: str, held: bool) -> None:
     springs = "springs=[{rotor='shaft', at='800 mm', stiffness='900 N*m/rad', damping='2 N*m*s/rad'}]"
     probes = "probes=[{name='l', rotor='shaft', at='0 mm'}, {name='r', rotor='shaft', at='800 mm'}]"
     keys = [TORQUE, RANGE, "damping_ratio=0.03", probes, *([springs] if held else [])]
-    response = solved_rotor(shaft, f"rotor_analysis.torsional_response={{{','.join(keys)}}}")["torsional_response"]
-    assert response["frequency_hz"] == pytest.approx(np.linspace(10.0, 100.0, 10).tolist())
-    left, right = response["probes"]
-    for place, hertz in enumerate(response["frequency_hz"]):
+    setting = f"rotor_analysis.torsional_response={{{','.join(keys)}}}"
+    response, data = solved_rotor(shaft, setting)["torsional_response"], rotor_curves(shaft, setting)
+    assert (response["from_hz"], response["to_hz"]) == pytest.approx((10.0, 100.0))
+    assert data.torsion_frequency.values[0] == pytest.approx(np.linspace(10.0, 100.0, 10))
+    angles, torques = data.torsion_angle.values, data.torsion_torque.values
+    for place, hertz in enumerate(data.torsion_frequency.values[0]):
         one, other = two_discs(hertz, 0.03, *((900.0, 2.0) if held else ()))
         # The shaft's own inertia is a part in 1e6 of the discs'.
-        assert left["angle_rad"][place] == pytest.approx(abs(one), rel=1e-4)
-        assert right["angle_rad"][place] == pytest.approx(abs(other), rel=1e-4)
-        assert math.remainder(left["angle_phase_deg"][place] - math.degrees(np.angle(one)), 360.0) == pytest.approx(
-            0.0, abs=0.05
-        )
+        assert angles[0, place] == pytest.approx(abs(one), rel=1e-4)
+        assert angles[1, place] == pytest.approx(abs(other), rel=1e-4)
+        lag = math.degrees(float(data.torsion_angle_phase[0, place]) - float(np.angle(one)))
+        assert math.remainder(lag, 360.0) == pytest.approx(0.0, abs=0.05)
         twist = SPRING * (1.0 + 0.06j) * (other - one)
-        assert left["torque_n_m"][place] == pytest.approx(abs(twist), rel=1e-4)
-    assert left["largest_angle_rad"] == max(left["angle_rad"])
-    assert response["largest_torque_n_m"] == pytest.approx(max(left["torque_n_m"]), rel=1e-4)
+        assert torques[0, place] == pytest.approx(abs(twist), rel=1e-4)
+    assert response["probes"][0]["largest_angle_rad"] == pytest.approx(angles[0].max(), rel=1e-12)
+    assert response["largest_torque_n_m"] == pytest.approx(torques[0].max(), rel=1e-4)
 
 
 def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(solved_rotor: Any, shaft: str) -> None:
@@ -102,8 +103,9 @@ def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(solve
     response, elastic = rotor["torsional_response"], rotor["torsional_hz"][1]
     assert elastic * 2.0 * math.pi == pytest.approx(math.sqrt(SPRING * (1 / LEFT + 1 / RIGHT)), rel=1e-4)
     assert response["damping_ratio"] == 0.01
-    assert elastic in response["frequency_hz"]
-    assert response["frequency_hz"][-1] == pytest.approx(1.25 * rotor["torsional_hz"][3])
+    # It is among the frequencies.
+    assert response["probes"][0]["largest_angle_at_hz"] == pytest.approx(elastic, rel=1e-12)
+    assert response["to_hz"] == pytest.approx(1.25 * rotor["torsional_hz"][3])
     assert [probe["name"] for probe in response["probes"]] == ["torque 1", "right end"]
     assert response["probes"][0]["largest_torque_at_hz"] == pytest.approx(elastic, rel=1e-3)
     expected = 3.0 * RIGHT / (LEFT + RIGHT) / 0.02
@@ -131,10 +133,10 @@ def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_pa
         assert len(image.convert("RGB").getcolors(maxcolors=1 << 24) or ()) > 50
 
 
-def test_orders_meet_whirl_at_their_own_speeds(solved_rotor: Any, shaft: str) -> None:
+def test_orders_meet_whirl_at_their_own_speeds(solved_rotor: Any, rotor_curves: Any, shaft: str) -> None:
     campbell = solved_rotor(shaft, "rotor_analysis.orders=[1, 2, 0.5]")["campbell"]
     assert [one["order"] for one in campbell["orders"]] == [0.5, 2.0]
-    speeds, frequencies = np.array(campbell["speed_rpm"]), np.array(campbell["frequency_hz"])
+    speeds, frequencies = np.array(campbell["speed_rpm"]), rotor_curves(shaft).campbell_frequency.values[0]
     for one in campbell["orders"]:
         gaps = frequencies - one["order"] * speeds[:, None] / 60.0
         expected = []
@@ -159,13 +161,21 @@ def test_the_map_of_backward_whirl_lies_below_that_of_forward(solved_rotor: Any,
     assert (np.array(behind) < np.array(ahead)).all()
 
 
-def test_whirl_says_where_it_strains_the_rotor(gearwhine: Any, solved_rotor: Any, shaft: str) -> None:
+def test_whirl_says_where_it_strains_the_rotor(
+    gearwhine: Any, solved_rotor: Any, rotor_curves: Any, shaft: str
+) -> None:
     (whirl, *_) = (rotor := solved_rotor(shaft))["whirl"]
     assert rotor["bearings"] == ["left", "right"]
-    shares = np.hstack([np.array(whirl["strain_energy"][part]) for part in ("segments", "bearings")])
+    data = rotor_curves(shaft).sel(whirl_state="shaft at 1000 rpm")
+    shares = np.hstack([data[f"whirl_{part}_strain_share"].values for part in ("segment", "bearing")])
     assert shares.shape == (4, 4)
     np.testing.assert_allclose(shares.sum(axis=1), 1.0, rtol=1e-9)
-    assert "pedestals" not in whirl["strain_energy"]
+    assert "whirl_pedestal_strain_share" not in data
+    names = ["segment 1", "segment 2", "left", "right"]
+    for told, of in zip(whirl["most_strained"], shares, strict=True):
+        assert told == {"part": names[int(of.argmax())], "share": pytest.approx(of.max())}
+    # At the other speeds the file has them.
+    assert ["most_strained" in one for one in rotor["whirl"]].count(True) == 1
     assert "most strain energy" in gearwhine("rotors", shaft, "-q").out
 
 

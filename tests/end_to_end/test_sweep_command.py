@@ -24,7 +24,7 @@ SPEEDS = (3000.0, 3600.0, 4200.0)
 # A bearing that pushes its shaft around: the motion grows without bound.
 UNSTABLE = "bearing.input-back.stiffness.xy=0,1e10 N/m"
 ROTORS = (
-    *("sweep", "spur-pair", "-o", "out", "--workers", "2", "--json"),
+    *("sweep", "spur-pair", "-o", "out", "--json"),
     *("--over", "operation.speed=3000 rpm:4200 rpm:3", "--over", UNSTABLE),
     # Points that take a second or so, so that there is something to interrupt.
     *("--set", "transient.revolutions=24", "--set", "transient.discard=23", "--set", "transient.tolerance=1e-4"),
@@ -35,8 +35,8 @@ HOUSED = (
 )
 
 
-def start(folder: Path, arguments: tuple[str, ...]) -> "subprocess.Popen[str]":
-    command = [sys.executable, "-m", "gearwhine", *arguments]
+def start(folder: Path, arguments: tuple[str, ...], workers: int) -> "subprocess.Popen[str]":
+    command = [sys.executable, "-m", "gearwhine", *arguments, "--workers", str(workers)]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     # A shell has what it starts in the background ignore Ctrl-C, and children inherit that.
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -75,10 +75,13 @@ def wait_for(what: Callable[[], object], process: "subprocess.Popen[str]") -> No
 
 @pytest.fixture(scope="module")
 def interrupted_and_hurt(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
-    """A sweep interrupted by Ctrl-C after its first point, taken up again, and a worker of it killed."""
+    """A sweep interrupted by Ctrl-C after its first point, taken up again, and a worker of it killed.
+
+    The first time by one worker: each takes seconds to start.
+    """
     folder = tmp_path_factory.mktemp("rotors")
     points = folder / "out" / "points"
-    process = start(folder, ROTORS)
+    process = start(folder, ROTORS, 1)
     wait_for(lambda: list(points.glob("*.nc")), process)
     hands = workers_of(process)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
@@ -91,7 +94,7 @@ def interrupted_and_hurt(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
     assert {path.name for path in (folder / "out").iterdir()} == {"points"}
 
     kept = {path.name: path.stat().st_mtime_ns for path in points.iterdir() if "xy-0" in path.name}
-    process = start(folder, ROTORS)
+    process = start(folder, ROTORS, 2)
     before = len(list(points.iterdir()))
     wait_for(lambda: len(list(points.iterdir())) > before, process)
     workers_of(process)[0].send_signal(signal.SIGKILL)
@@ -107,7 +110,7 @@ def interrupted_and_hurt(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
 
 
 def test_ctrl_c_while_workers_start_is_quiet_and_leaves_none(tmp_path: Path) -> None:
-    process = start(tmp_path, ROTORS)
+    process = start(tmp_path, ROTORS, 2)
     wait_for(lambda: workers_of(process), process)
     hands = psutil.Process(process.pid).children(recursive=True)
     os.killpg(process.pid, signal.SIGINT)

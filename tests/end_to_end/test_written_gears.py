@@ -101,12 +101,10 @@ def test_curves_are_what_their_names_say(written: Written) -> None:
                 "unloaded_transmission_error",
             )
         )
-        # Chords between the pairs that are on the path and those that touch, by the summary's own curves.
-        for key, values in (("stiffness", stiffness), ("transmission_error", error)):
-            told_curve = told[key]
-            assert np.interp(
-                0.31, np.array(told["roll_angle_rad"]) / (2.0 * pi / GEARS[told["driver"]].teeth), told_curve
-            ) == pytest.approx(np.interp(0.31, row.mesh_phase.values, values), rel=1e-3)
+        # Between the pairs that are on the path, by the summary's own curve.
+        phases = np.array(told["roll_angle_rad"]) / (2.0 * pi / GEARS[told["driver"]].teeth)
+        expected = np.interp(0.31, row.mesh_phase.values, stiffness)
+        assert np.interp(0.31, phases, told["stiffness"]) == pytest.approx(expected, rel=1e-3)
         figures = told["stiffness_n_per_m"]
         assert figures["min"] == pytest.approx(stiffness.min(), rel=0.02)
         assert figures["max"] == pytest.approx(stiffness.max(), rel=0.02)
@@ -140,12 +138,17 @@ def test_pairs_of_teeth_share_the_load_and_press(written: Written) -> None:
         assert np.count_nonzero(inside) > 400
         assert found[inside] == pytest.approx(expected[inside], rel=0.02)
         positions = row.tooth_pair_position.values
-        told = written.pairs[number]["load_sharing"]
-        place = np.array(told["position_base_pitches"])
+        known = np.isfinite(row.path_position.values)
+        place, along, roll = (
+            row[name].values[known] for name in ("path_position", "path_load_share", "path_roll_angle")
+        )
         assert (np.diff(place) >= 0.0).all()
+        # A base pitch on the line of action is that arc of the base circle.
+        assert np.ptp(roll) == pytest.approx(np.ptp(place) * pitch / driver)
+        assert written.pairs[number]["load_sharing"]["largest_share"] == pytest.approx(along.max())
         for at in (0.1, 0.5, 1.0, 1.4):
             nearest = np.nanargmin(np.abs(positions - at))
-            assert np.interp(at, place, told["share"]) == pytest.approx(share.ravel()[nearest], abs=0.03)
+            assert np.interp(at, place, along) == pytest.approx(share.ravel()[nearest], abs=0.03)
         assert written.pairs[number]["contact_pressure_pa"]["max"] == pytest.approx(np.nanmax(found), rel=0.1)
 
 

@@ -48,6 +48,17 @@ SHAPES = {
     "campbell_frequency": (("rotor", "campbell_step", "whirl_branch"), "Hz"),
     "campbell_log_decrement": (("rotor", "campbell_step", "whirl_branch"), "1"),
     "campbell_direction": (("rotor", "campbell_step", "whirl_branch"), "1"),
+    "campbell_axial_share": (("rotor", "campbell_step", "whirl_branch"), "1"),
+    "static_place": (("rotor", "static_step"), "m"),
+    "static_deflection": (("rotor", "plane", "static_step"), "m"),
+    "rotor_segment_strain_share": (("rotor", "lateral_mode", "strained_segment"), "1"),
+    "rotor_bearing_strain_share": (("rotor", "lateral_mode", "strained_bearing"), "1"),
+    "whirl_speed": (("whirl_state",), "rpm"),
+    "whirl_frequency": (("whirl_state", "whirl_number"), "Hz"),
+    "whirl_segment_strain_share": (("whirl_state", "whirl_number", "strained_segment"), "1"),
+    "whirl_bearing_strain_share": (("whirl_state", "whirl_number", "strained_bearing"), "1"),
+    "unbalance_bearing_speed": (("unbalance_bearing", "response_step"), "rpm"),
+    "unbalance_bearing_force": (("unbalance_bearing", "plane", "response_step"), "N"),
     "map_stiffness": (("map_step",), "N/m"),
     "map_critical_speed": (("rotor", "map_step", "map_curve"), "rpm"),
     "response_speed": (("probe", "response_step"), "rpm"),
@@ -108,11 +119,23 @@ def test_bearings_carry_the_weight(written: Written) -> None:
             expected = weight(name, end) * np.array([3.0, -9.0, 0.0])
             assert loads[f"{name}-{end}"]["load_n"] == pytest.approx(expected.tolist(), rel=1e-6, abs=1e-9)
             assert loads[f"{name}-{end}"]["moment_n_m"] == pytest.approx([0.0, 0.0], abs=1e-9)
-        sag = np.hypot(*static["deflection_m"])
-        assert static["largest_deflection_m"] == pytest.approx(sag.max())
-        assert static["largest_deflection_at_m"] == static["place_m"][int(sag.argmax())]
+        row = written.data.sel(rotor=name)
+        across, up = (row.static_deflection.sel(plane=plane).values for plane in "xy")
+        sag = np.hypot(across, up)
+        assert static["largest_deflection_m"] == pytest.approx(np.nanmax(sag))
+        assert static["largest_deflection_at_m"] == float(row.static_place[int(np.nanargmax(sag))])
         # It sags along the weight.
-        assert np.mean(static["deflection_m"][0]) > 0.0 > np.mean(static["deflection_m"][1])
+        assert np.nanmean(across) > 0.0 > np.nanmean(up)
+
+
+def campbell_at(row: xr.Dataset, speed: float) -> dict[str, np.ndarray]:
+    """Quantities of each branch of a rotor's diagram at a speed [rpm] without its sense, between two of the diagram."""
+    rising = np.argsort(np.abs(row.campbell_speed.values))
+    speeds = np.abs(row.campbell_speed.values[rising])
+    return {
+        name: np.array([np.interp(speed, speeds, branch) for branch in row[name].values[rising].T])
+        for name in ("campbell_frequency", "campbell_log_decrement", "campbell_direction", "campbell_axial_share")
+    }
 
 
 def test_whirl_over_speed(written: Written) -> None:
@@ -120,14 +143,18 @@ def test_whirl_over_speed(written: Written) -> None:
         row, told = written.data.sel(rotor=name), rotor["campbell"]
         ratio = SPEEDS[name] / SPEEDS["input"]
         assert row.campbell_speed.values[np.abs(row.campbell_speed.values).argmin()] == pytest.approx(300.0 * ratio)
-        for key, variable in (
-            ("speed_rpm", "campbell_speed"),
-            ("frequency_hz", "campbell_frequency"),
-            ("log_decrement", "campbell_log_decrement"),
-            ("direction", "campbell_direction"),
+        assert row.campbell_speed.values == pytest.approx(told["speed_rpm"])
+        # At operation, between two speeds of the diagram, the whirl modes lie on its branches.
+        (now,) = (one for one in rotor["whirl"] if one["speed_rpm"] == pytest.approx(SPEEDS[name] * 30.0 / pi))
+        found = campbell_at(row, abs(SPEEDS[name]) * 30.0 / pi)
+        branches = np.argsort(found["campbell_frequency"])[: len(now["frequency_hz"])]
+        for key, variable, near in (
+            ("frequency_hz", "campbell_frequency", 5e-3),
+            ("log_decrement", "campbell_log_decrement", 0.05),
+            ("direction", "campbell_direction", 0.05),
+            ("axial_share", "campbell_axial_share", 0.05),
         ):
-            values = np.array(told[key], dtype=float)
-            assert row[variable].values[tuple(map(slice, values.shape))] == pytest.approx(values, nan_ok=True)
+            assert found[variable][branches] == pytest.approx(now[key], rel=near, abs=near), variable
         # Gyroscopic moments stiffen what whirls with the rotation and soften what whirls against it.
         order = np.argsort(np.abs(row.campbell_speed.values))
         hertz = row.campbell_frequency.values[order]
@@ -148,7 +175,12 @@ def test_whirl_at_operation(written: Written) -> None:
         assert whirl["log_decrement"] == pytest.approx((2.0 * pi * ratio / np.sqrt(1.0 - ratio**2)).tolist())
         place, shape = (written.data[key].sel(rotor=name).values for key in ("rotor_place", "rotor_whirl_deflection"))
         moment = written.data.rotor_whirl_moment.sel(rotor=name).values
-        shares = np.array(whirl["strain_energy"]["bearings"])
+        state = written.data.sel(whirl_state=f"{name} at {whirl['speed_rpm']:.6g} rpm")
+        assert float(state.whirl_speed) == pytest.approx(whirl["speed_rpm"])
+        assert state.whirl_frequency.values == pytest.approx(whirl["frequency_hz"])
+        shares = state.whirl_bearing_strain_share.values
+        whole = shares.sum(axis=1) + np.nansum(state.whirl_segment_strain_share.values, axis=1)
+        assert whole == pytest.approx(1.0)
         assert rotor["bearings"] == [f"{name}-{end}" for end in HELD_AT]
         at = [int(np.abs(place - at).argmin()) for at in HELD_AT.values()]
         for mode in range(3):
@@ -204,25 +236,27 @@ def test_readings_of_probes(written: Written) -> None:
         told, row = written.rotors[rotor]["unbalance_response"], written.data.isel(probe=number)
         (probe,) = told["probes"]
         ratio = SPEEDS[rotor] / SPEEDS["input"]
-        assert told["speed_rpm"] == pytest.approx((np.array([600.0, 3000.0, 45000.0]) * ratio).tolist())
-        assert row.response_speed.values == pytest.approx(told["speed_rpm"])
-        assert row.probe_amplitude.values == pytest.approx(probe["amplitude_m"])
-        assert row.orbit_major_axis.values == pytest.approx(probe["major_axis_m"])
-        assert np.degrees(row.probe_phase_lag.values) == pytest.approx(probe["phase_lag_deg"])
+        speeds, amplitude = row.response_speed.values, row.probe_amplitude.values
+        assert speeds == pytest.approx(np.array([600.0, 3000.0, 45000.0]) * ratio)
+        assert (told["from_rpm"], told["to_rpm"]) == pytest.approx((speeds[0], speeds[-1]))
+        lag = np.degrees(row.probe_phase_lag.values)
+        # Half the length of the orbit is no less than what a probe reads of it.
+        assert (row.orbit_major_axis.values >= amplitude * (1.0 - 1e-9)).all()
         angle = {"one": 25.0, "two": -40.0}[probe["name"]]
         assert probe["angle_deg"] == pytest.approx(angle)
         # The high spot is at the unbalance, whose angle is counter-clockwise; unlike bearings turn it a little.
-        assert remainder(probe["phase_lag_deg"][0] - (angle - phase), 360.0) == pytest.approx(0.0, abs=15.0)
-        assert probe["amplitude_m"][1] / probe["amplitude_m"][0] == pytest.approx(25.0, rel=0.02)
-        largest = int(np.argmax(probe["amplitude_m"]))
-        assert probe["largest_at_rpm"] == pytest.approx(told["speed_rpm"][largest])
-        assert probe["operation_amplitude_m"] == pytest.approx(probe["amplitude_m"][1])
-        assert probe["operation_phase_lag_deg"] == pytest.approx(probe["phase_lag_deg"][1])
-        forces = {bearing["name"]: np.array(bearing["force_n"]) for bearing in told["bearings"]}
-        slow = told["speed_rpm"][0] * pi / 30.0
+        assert remainder(lag[0] - (angle - phase), 360.0) == pytest.approx(0.0, abs=15.0)
+        assert amplitude[1] / amplitude[0] == pytest.approx(25.0, rel=0.02)
+        assert probe["largest_at_rpm"] == pytest.approx(speeds[int(np.argmax(amplitude))])
+        assert probe["operation_amplitude_m"] == pytest.approx(amplitude[1])
+        assert probe["operation_phase_lag_deg"] == pytest.approx(lag[1])
+        largest = {bearing["name"]: bearing["largest_force_n"] for bearing in told["bearings"]}
+        slow = speeds[0] * pi / 30.0
         for end in HELD_AT:
+            force = written.data.unbalance_bearing_force.sel(unbalance_bearing=f"{rotor}-{end}")
             expected = moment * slow**2 * bearing_share(end, at)
-            assert forces[f"{rotor}-{end}"][:, 0] == pytest.approx(expected, rel=0.01)
+            assert force.isel(response_step=0).values == pytest.approx(expected, rel=0.01)
+            assert force.max("response_step").values == pytest.approx(largest[f"{rotor}-{end}"])
 
 
 def test_torsion_of_free_shafts(written: Written) -> None:
@@ -242,16 +276,16 @@ def test_torsion_of_free_shafts(written: Written) -> None:
         )
         for row, probe in zip(own, told["probes"], strict=True):
             of = written.data.isel(torsion_probe=row)
-            assert of.torsion_frequency.values == pytest.approx(told["frequency_hz"])
-            assert of.torsion_angle.values == pytest.approx(probe["angle_rad"])
-            assert of.torsion_torque.values == pytest.approx(probe["torque_n_m"])
-            assert np.degrees(of.torsion_angle_phase.values) == pytest.approx(probe["angle_phase_deg"])
-            assert np.degrees(of.torsion_torque_phase.values) == pytest.approx(probe["torque_phase_deg"])
-            assert probe["angle_rad"][0] == pytest.approx(torque / (inertia * (10.0 * pi) ** 2), rel=2e-3)
-            assert remainder(probe["angle_phase_deg"][0] - phase - 180.0, 360.0) == pytest.approx(0.0, abs=0.1)
-        strongest = max((probe["torque_n_m"] for probe in told["probes"]), key=max)
-        assert told["largest_torque_n_m"] >= max(strongest) * (1.0 - 1e-9)
-        assert told["largest_torque_at_hz"] in told["frequency_hz"][1:]  # nearer to its modes it carries more
+            assert of.torsion_frequency.values[[0, -1]] == pytest.approx([told["from_hz"], told["to_hz"]])
+            assert of.torsion_angle.values.max() == pytest.approx(probe["largest_angle_rad"])
+            assert of.torsion_torque.values.max() == pytest.approx(probe["largest_torque_n_m"], abs=1e-9)
+            assert float(of.torsion_angle[0]) == pytest.approx(torque / (inertia * (10.0 * pi) ** 2), rel=2e-3)
+            lag = np.degrees(float(of.torsion_angle_phase[0]))
+            assert remainder(lag - phase - 180.0, 360.0) == pytest.approx(0.0, abs=0.1)
+        torques = written.data.torsion_torque.values[own]
+        assert told["largest_torque_n_m"] >= torques.max() * (1.0 - 1e-9)
+        # Nearer to its modes it carries more.
+        assert told["largest_torque_at_hz"] in written.data.torsion_frequency.values[own[0], 1:]
 
 
 def test_critical_speeds_over_stiffness(written: Written) -> None:

@@ -17,6 +17,8 @@ from pydantic import ValidationError
 
 from gearwhine.case import Case
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "scripts" / "examples"
 PAGES = [

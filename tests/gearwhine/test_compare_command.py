@@ -12,6 +12,8 @@ from housing.measured import MeasuredGeometry, MeasuredModes
 from housing.measured.survey_data import SurveyData
 from housing.measured.survey_files import write_survey
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 COARSE = ("housing.box.mesh_size=45 mm", "housing.frequency_limit=4 kHz")
 
 

@@ -10,6 +10,7 @@ import gearwhine as gw
 from gearwhine.output.dataset import arrays_of, labelled
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.report import Contents, report_page
+from gearwhine.output.report.elements import in_cell
 from gearwhine.output.sections import Column, Section, Table, columns_of, percent
 
 
@@ -97,6 +98,20 @@ def test_a_table_shows_the_scaled_number_and_leaves_out_what_no_row_has() -> Non
 @pytest.mark.parametrize(("part", "said"), [(0.0, "0 %"), (5e-5, "less than 0.01 %"), (0.25, "25 %"), (1.0, "100 %")])
 def test_a_part_is_said_in_percent(part: float, said: str) -> None:
     assert percent(part) == said
+
+
+@pytest.mark.parametrize(
+    ("text", "cell"),
+    [
+        ("1× pinion 1 -> wheel 1", "1× pinion\xa01\xa0→ wheel\xa01"),
+        ("housing mode 19 (2664 Hz)", "housing mode\xa019 (2664\xa0Hz)"),
+        ("1.0, -2.0, 3.0", "1.0, -2.0, 3.0"),
+        ("19: -149 %", "19: -149\xa0%"),
+        ("2 of 3 <b>", "2 of\xa03 &lt;b&gt;"),
+    ],
+)
+def test_a_cell_breaks_between_names_not_within(text: str, cell: str) -> None:
+    assert in_cell(text) == cell
 
 
 def test_numbers_stand_to_the_right_and_words_to_the_left(tmp_path: object) -> None:

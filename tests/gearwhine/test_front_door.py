@@ -16,6 +16,8 @@ from gearwhine.case import Bearing, Material, Rotor
 from gearwhine.cli import run_command
 from gearwhine.failures import explain
 
+pytestmark = pytest.mark.usefixtures("unrendered")
+
 COARSE = {"housing.box.mesh_size": "40 mm", "housing.frequency_limit": "2.5 kHz"}
 SHORT = {"transient.revolutions": 6, "transient.discard": 4, "transient.tolerance": 5e-3}
 

@@ -18,14 +18,14 @@ def rolling(**changes: str) -> dict[str, Any]:
 def found(name: str, changes: dict[str, Any]) -> dict[tuple[str, str], dict[str, Any]]:
     """Warnings of parts that do not fit, by their kind and the part."""
     document = gw.load(name, changes).check().document
-    kinds = ("bearing seat", "bearing place", "part on shaft")
+    kinds = ("bearing seat", "bearing place", "part on shaft", "gear faces", "sensor place")
     return {
         (one["name"], one["message"].split('"')[1]): one for one in document.get("warnings", ()) if one["name"] in kinds
     }
 
 
 def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
-    """One check of the reducer with four slips; its bores are found in the drawing, 52 mm long about z = -98 mm."""
+    """One check of the reducer with five slips; its bores are found in the drawing, 52 mm long about z = -98 mm."""
     size = "bearing.input-back.stiffness.rolling.catalogue"
     told = found(
         "two-stage-reducer",
@@ -35,6 +35,7 @@ def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
             "bearing.output-back.at": "28 mm",
             "bearing.intermediate-back.stiffness.rolling.catalogue.bore": "35 mm",
             "gear.wheel 1.bore": "45 mm",
+            "housing.sensor.roof.position": ["80 mm", "346 mm", "0 mm"],
         },
     )
     assert set(told) == {
@@ -42,7 +43,10 @@ def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
         ("bearing place", "output-back"),
         ("part on shaft", "intermediate-back"),
         ("part on shaft", "wheel 1"),
+        ("sensor place", "roof"),
     }
+    sits = 'sensor "roof": its position is 10 mm from the surface; it sits at (80, 336, 0) mm'
+    assert told["sensor place", "roof"]["message"] == sits
     seat = told["bearing seat", "input-back"]["message"]
     assert seat == (
         'bearing "input-back": its outside diameter of 62 mm is not the 72 mm of the bore of seat "input-back"'
@@ -93,6 +97,15 @@ def test_a_part_across_a_step_fits_either_diameter() -> None:
     assert ("part on shaft", "pinion") not in found(
         "helical-pair", {"rotor.input.segments": cone, "gear.pinion.bore": "45 mm"}
     )
+
+
+def test_gears_that_meet_on_a_part_of_the_narrower_face_are_named() -> None:
+    """Faces of 30 mm and 24 mm, the narrow one about 120 mm: the wide one hides a shift of 3 mm, and no more."""
+    wide = {"gear.pinion.face_width": "30 mm", "gear.wheel.face_width": "24 mm"}
+    assert found("helical-pair", wide | {"gear.pinion.at": "123 mm"}) == {}
+    (told,) = found("helical-pair", wide | {"gear.pinion.at": "115 mm"}).values()
+    assert (told["common_m"], told["taken_m"]) == pytest.approx((22e-3, 24e-3))
+    assert "have 22 mm in common; the model takes 24 mm" in told["message"]
 
 
 def test_a_bearing_without_a_seat_beside_a_housing_is_named() -> None:

@@ -17,7 +17,7 @@ from gearwhine.output.report import Contents, report_page
 from gearwhine.output.sections import Column, Picture, Section, columns_of, table_of
 from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update
 from gearwhine.results import steady_state as steady
-from gearwhine.results.first_page import first_page
+from gearwhine.results.first_page import first_page, machine_section
 
 VOID = {"meta", "img"}
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")
@@ -141,7 +141,7 @@ TRACED = {
 
 def linked(folder: Path, text: str) -> str:
     """Return the identifier that the text of a link leads to; empty where the text is no link."""
-    page = report_page(folder, Contents(chapters_of, first_page))
+    page = report_page(folder, Contents(chapters_of, first_page)).replace("\N{NO-BREAK SPACE}", " ")
     found = re.search(f'<a href="#([^"]+)">{re.escape(text)}</a>', page)
     return "" if found is None else found[1]
 
@@ -157,7 +157,13 @@ def test_a_line_leads_to_its_path_and_to_the_housing_that_moves_at_it(tmp_path: 
     assert linked(tmp_path, "housing mode 19 (2664 Hz)") == "run-picture-line-2566-7hz"
     page = read(tmp_path)
     assert "front, cancelled in part" in page.text
-    assert "Operating shape at 2566.7 Hz, 1× <a> -> b; grey: at rest, colour: displacement." in page.text
+    near = {"number": 21, "frequency_hz": 2560.4, "kind": "rotor", "where": "output"}
+    write(tmp_path, document | {"sensors": [{"name": "top", "peaks": [TRACED | {"near_mode": near}]}]}, 'title = "x"')
+    assert (
+        "Highest is 2566.7 Hz at top, 1.5 m/s² peak: 1× <a> → b, near a mode of the coupled machine "
+        "(2560 Hz, rotor: output); largest part by housing mode 19 (2664 Hz)." in read(tmp_path).text
+    )
+    assert "Operating shape at 2566.7 Hz, 1× <a> → b; grey: at rest, colour: displacement." in page.text
 
 
 def test_pictures_of_another_command_are_found_from_a_line(tmp_path: Path) -> None:
@@ -226,6 +232,20 @@ def test_the_first_page_tells_the_machine(tmp_path: Path) -> None:
     assert f"{driver.teeth} : {driven.teeth}" in text
     (frequency,) = mesh_frequencies(case)
     assert f"{frequency:.2f}" in text
+
+
+def test_the_first_page_tells_the_hardest_loaded_parts(tmp_path: Path) -> None:
+    """Of the newest operating point: the pair with the largest face load factor, the bearing with the shortest life."""
+    pair = {"driver": "pinion", "driven": "wheel", "misalignment_over_face_m": -2.4e-6}
+    bearings = [{"name": "stiff", "life_h": None}, {"name": "a", "life_h": 9.1e5}, {"name": "b", "life_h": 138_367.0}]
+    pairs = [pair | {"k_h_beta": 1.1}, pair | {"k_h_beta": 1.584, "driver": "second"}]
+    load = {"residual": 1e-12, "gear_pairs": pairs, "bearings": bearings}
+    (sentence,) = [text for text in machine_section(load_case("spur-pair", []).case, [{"load": load}]).content
+                   if isinstance(text, str) and text.startswith("Under load")]  # fmt: skip
+    assert sentence == (
+        "Under load: K_Hβ 1.58 of second → wheel, whose flanks stand 2.4 µm out of line over the face; "
+        "shortest bearing life L10 138 000 h, of b."
+    )
 
 
 def pair_of(case: Case) -> tuple[str, str]:
@@ -494,8 +514,8 @@ CELLS = {
             "where": "input",
             "energy": {"housing": 0.1, "rotor": 0.5, "torsion": 0.2, "axial": 0.05, "pedestal": 0.0, "residual": 0.15}
             | {"mesh": 0.3},
-            "strain_energy": {"components": {"input": 0.6}, "bearings": {"left": 0.1}, "gear_meshes": {"a -> b": 0.3}},
-            "whirl": {"input": -0.8},
+            "strained_most": {"kind": "components", "name": "input", "share": 0.6},
+            "whirl": -0.8,
         },
         {
             "frequency [Hz]": "812.35",

@@ -68,6 +68,14 @@ def test_json_is_the_document_whatever_its_texts(document: object) -> None:
     assert json.loads(json_text({"document": document})) == {"document": document}
 
 
+def test_what_fits_on_a_line_stands_on_one() -> None:
+    line = {"frequency_hz": 2567.0, "amplitude": 1.5}
+    text = json_text({"lines": [line] * 9, "long": {"words": "x" * 200, "curve": [1.0] * 99}})
+    assert '  {"frequency_hz": 2567.0, "amplitude": 1.5},' in text.splitlines()
+    assert max(len(row) for row in text.splitlines() if '"curve"' not in row and "xxx" not in row) <= 160
+    assert len(text.splitlines()) == 17
+
+
 def test_lists_of_numbers_stand_on_one_line() -> None:
     text = json_text({"speeds": [1.5, 2, None], "name": "[\n 1,\n 2\n]", "rows": [{"n": 1}]})
     assert '"speeds": [1.5, 2, null]' in text

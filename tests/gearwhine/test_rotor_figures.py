@@ -230,6 +230,47 @@ def test_whirl_orbits_are_circles_in_their_senses(speed: float) -> None:
     assert [named[color] for color in (*first, *second)] == ["backward", "forward"]
 
 
+def test_a_mode_along_the_axis_is_drawn_by_arrows_as_long_as_its_motion() -> None:
+    """A thrust bearing that is tied to tilt: the shaft moves along its axis as a rigid body, all of it alike."""
+    stiffness = np.diag([1e8, 1e8, 1e7, 1e5, 1e5])
+    stiffness[2, 4] = stiffness[4, 2] = 1e4
+    bearings = [
+        rotors.Bearing("left", 0.0, stiffness, np.zeros((5, 5))),
+        rotors.Bearing.isotropic("right", ROTOR.length, 1e8),
+    ]
+    whirl = rotors.solve_whirl(ROTOR, bearings, 100.0, count=4)
+    (number,) = np.flatnonzero(whirl.axial_share > 0.9)[:1]
+    motion = whirl.evaluate_axial(np.linspace(0.0, ROTOR.length, 13))[number]
+    assert np.abs(motion).min() > 0.8 * np.abs(motion).max()
+    figure = draw_whirl_modes(RotorAssembly(ROTOR, bearings), whirl, most=int(number) + 1)
+    _, axes = figure.axes
+    assert len(axes.get_yticks()) == number + 1
+    level = axes.get_yticks()[number]
+    arrows = [one for one in axes.texts if getattr(one, "arrow_patch", None) is not None and one.xy[1] == level]
+    assert len(arrows) == 13
+    lengths = np.array([one.xy[0] - one.get_position()[0] for one in arrows])
+    expected = np.real(motion / motion[np.abs(motion).argmax()])
+    assert lengths / np.abs(lengths).max() == pytest.approx(expected, abs=1e-6)
+    assert "along the axis" in [line.get_label() for line in figure.legends[0].get_lines()]
+    # Without such a bearing no motion is axial.
+    assert not rotors.solve_whirl(ROTOR, BEARINGS, 100.0, count=2).evaluate_axial([0.0, 0.1]).any()
+
+
+def test_a_mode_in_a_plane_is_never_seen_edgewise() -> None:
+    """Bearings soft in one direction: whatever it is, the orbits of each mode reach up or down from the shaft."""
+    for angle in np.radians([0.0, 40.0, 90.0, 135.0, 161.0]):
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        radial = turn @ np.diag([1e6, 1e9]) @ turn.T
+        bearings = [
+            rotors.Bearing(name, at, radial, np.zeros((2, 2))) for name, at in (("a", 0.0), ("b", ROTOR.length))
+        ]
+        whirl = rotors.solve_whirl(ROTOR, bearings, 1.0, count=1)
+        _, axes = draw_whirl_modes(RotorAssembly(ROTOR, bearings), whirl).axes
+        orbits = [np.asarray(line.get_ydata()) for line in axes.get_lines() if line.get_label() == "orbit"]
+        up = max(np.ptp(orbit) for orbit in orbits) / 2.0
+        assert up > 0.3 * 8.5, np.degrees(angle)
+
+
 def test_local_direction_of_known_orbits() -> None:
     x = np.array([1.0, 1.0, 1.0, 0.0, 0.0 + 2.0j], dtype=complex)
     y = np.array([-1.0j, 1.0j, 1.0, 0.0, 2.0], dtype=complex)

@@ -52,11 +52,11 @@ def rotor(**more: Any) -> Document:
         "axial_share": [0.0, 0.0, 0.2],
         "log_decrement": [0.25, -0.01, 1e-13],
         "damping_ratio": [0.04, -0.002, 1e-14],
-        "strain_energy": {
-            "segments": [[0.25], [0.6], [0.0]],
-            "bearings": [[0.3], [0.3], [0.0]],
-            "pedestals": [[0.45], [0.1], [0.0]],
-        },
+        "most_strained": [
+            {"part": "pedestal of left", "share": 0.45},
+            {"part": "segment 1", "share": 0.6},
+            None,
+        ],
     }
     return {
         "name": "shaft [left]",
@@ -253,7 +253,8 @@ def test_torsional_response_shows_its_largest() -> None:
     }
     end = probe | {"name": "end", "largest_torque_n_m": 1e-13}
     response = {
-        "frequency_hz": [1.0, 50.0],
+        "from_hz": 1.0,
+        "to_hz": 50.0,
         "probes": [probe, end],
         "largest_torque_n_m": 150.0,
         "largest_torque_at_m": 0.2,

@@ -9,7 +9,13 @@ from coupling import SpeedProfile
 from coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import save
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_waterfall
-from gearwhine.figures.machine.transient import draw_contributions, draw_modal_coordinates, draw_orbits
+from gearwhine.figures.machine.transient import (
+    between_samples,
+    draw_contributions,
+    draw_modal_coordinates,
+    draw_orbits,
+    outlined,
+)
 from gearwhine.solve.signature import Contribution, TracedLine
 
 
@@ -35,7 +41,18 @@ def test_run_up(tmp_path: Path) -> None:
         "Run-up", spectra, speeds, unit="m/s²", limit=1200.0, mesh_orders=[28.0], housing_frequencies=np.array([600.0])
     )
     save(waterfall, tmp_path / "waterfall.png")
-    assert any(text.get_text() == "1×" for text in waterfall.axes[0].texts)
+    # Of 28 × 10 to 30 Hz the first two harmonics leave the panel at its top or right end, numbered there.
+    labels = {text.get_text(): text for text in waterfall.axes[0].texts}
+    assert {"1×", "2×", "4×"} <= set(labels)
+    axes = waterfall.axes[0]
+    (along,) = (text for text in waterfall.texts if "each row" in text.get_text())
+    for number in (2, 4):
+        # A number at the right end stands where the order passes the end of the frequencies.
+        _, height = axes.transAxes.inverted().transform(
+            labels[f"{number}×"].get_transform().transform(labels[f"{number}×"].get_position())
+        )
+        rpm = axes.get_ylim()[0] + height * (axes.get_ylim()[1] - axes.get_ylim()[0])
+        assert rpm == pytest.approx(60.0 * 1200.0 / (28.0 * number), rel=0.08), along
     assert waterfall.axes[0].get_xlim()[1] == pytest.approx(1200.0)
 
 
@@ -46,7 +63,8 @@ def test_orbits_stand_where_the_shaft_rests(tmp_path: Path) -> None:
     above, _, below, _ = figure.axes
     assert np.asarray(above.lines[-1].get_xdata()).mean() == pytest.approx(30.0)
     assert np.abs(np.asarray(below.lines[0].get_xdata())).max() == pytest.approx(2.0)
-    assert "d.c. (30, -10) µm\na.c. ±(2, 1) µm" in [text.get_text() for text in above.texts]
+    assert above.get_title(loc="left") == "pinion"
+    assert below.get_title(loc="left") == "mean 30.0, -10.0 µm\n± 2, 1 µm"
     save(figure, tmp_path / "orbits.png")
 
 
@@ -67,12 +85,42 @@ def test_bars_are_the_shares(tmp_path: Path) -> None:
     save(figure, tmp_path / "contributions.png")
 
 
+def test_a_long_record_keeps_its_extremes_and_gains_no_frequency() -> None:
+    """A wave of 7 samples to a period, of which every seventh would be a line that stands still."""
+    times = np.arange(70_001) / 70_000.0
+    wave = np.sin(2.0 * np.pi * 10_000.0 * times)
+    wave[33_333] = 5.0
+    at, drawn = outlined(times, wave, 6000)
+    assert len(at) <= 6000
+    assert (np.diff(at) > 0.0).all()
+    assert drawn.max() == 5.0
+    assert np.interp(at, times, wave) == pytest.approx(drawn)
+    lows, highs = (pick(drawn[: len(drawn) // 20 * 20].reshape(-1, 20), axis=1) for pick in (np.min, np.max))
+    assert lows.max() < -0.97
+    assert highs.min() > 0.97
+    np.testing.assert_array_equal(outlined(times[:100], wave[:100], 100)[1], wave[:100])
+
+
+def test_a_curve_between_samples_is_the_signal_s_own() -> None:
+    """Five samples to a period: the peaks lie between them, and straight lines would miss them by a tenth."""
+    times = 1e-3 * np.arange(400)
+    signal = 3.0 + np.cos(2.0 * np.pi * 199.0 * times) + 0.3 * np.sin(2.0 * np.pi * 97.0 * times)
+    at, values = between_samples(times, signal, 0.03, 1.0 / 199.0)
+    assert at[-1] == pytest.approx(0.03)
+    assert np.diff(at).max() <= 1.0 / 199.0 / 40.0
+    exact = 3.0 + np.cos(2.0 * np.pi * 199.0 * at) + 0.3 * np.sin(2.0 * np.pi * 97.0 * at)
+    # Nothing is known before the first sample: the first period is less exact.
+    assert values[at > 0.01] == pytest.approx(exact[at > 0.01], abs=0.02)
+    assert np.interp(times[:31], at, values) == pytest.approx(signal[:31], abs=1e-9)
+
+
 def test_modal_coordinates_are_told_with_their_fixed_part(tmp_path: Path) -> None:
     times = 1e-3 * np.arange(1000)
     wave = np.cos(2 * np.pi * 50.0 * times)
     named = {"input: torsion 1": 3.0 + np.sqrt(2.0) * wave, "input: torsion 2": 0.0 * wave, "input: bending 1, x": wave}
     figure = draw_modal_coordinates("A case", times, named, 200.0, "uniform")
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["input: torsion", "", "input: bending, x", ""]
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert titles == ["input: torsion over time", "peak amplitudes", "input: bending, x over time", "peak amplitudes"]
     legend = figure.axes[0].get_legend()
     assert legend is not None
     assert legend.get_texts()[0].get_text() == "mode 1: d.c. 3.00e+00, a.c. 1.0e+00 rms"

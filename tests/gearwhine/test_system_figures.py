@@ -59,7 +59,7 @@ def test_orders_have_their_slopes_and_crossings_their_marks() -> None:
     # More strain in the teeth makes a larger mark.
     assert marks[1].get_sizes()[0] > marks[0].get_sizes()[0]
     texts = {text.get_text() for text in figure.axes[0].texts}
-    assert {MESH.name, SHAFT.name} <= texts
+    assert {"1× pinion → wheel", SHAFT.name} <= texts
 
 
 def response(*, sensors: bool) -> FrequencyResponse:

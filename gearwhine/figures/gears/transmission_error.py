@@ -139,7 +139,7 @@ def draw_transmission_error(
         curves.append((f"under {loaded.force:.4g} N", loaded.phases, loaded.transmission_error, BLUE))
     middle = _HUNTING + _CURVE_GAP if hunting is not None else 0.0
     note = "; ".join(
-        f"{name} {MICRO * period_mean(at, curve):.3f} µm in the mean, {MICRO * np.ptp(curve):.3f} µm peak to peak"
+        f"{name} {MICRO * period_mean(at, curve):z.3f} µm in the mean, {MICRO * np.ptp(curve):.3f} µm peak to peak"
         for name, at, curve, _ in curves
     )
     if hunting is not None:

@@ -9,12 +9,27 @@ from matplotlib.figure import Figure
 from coupling.signals import OrderMap, Spectrogram
 from gearwhine.case import Case, mesh_frequencies
 from gearwhine.figures.spectra import draw_waterfall
-from gearwhine.figures.style import SERIES, tidy
+from gearwhine.figures.style import (
+    FOOT,
+    HEAD,
+    SERIES,
+    legend_below,
+    legend_height,
+    log_axis,
+    name_in_legend,
+    panel,
+    sheet,
+)
 from gearwhine.output import file_stems
+from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.run_up import RunSignature
 
 FloatArray = npt.NDArray[np.float64]
+
+_HEIGHT = 80.0  # of the panel of order slices [mm of paper]
+_COLUMNS = 3  # of their legend
+_DECADES = 5.0  # of amplitude that they show at most
 
 
 def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> Iterator[tuple[str, Figure]]:
@@ -27,20 +42,30 @@ def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> 
     mesh_orders = [frequency / turns_per_second for frequency in mesh_frequencies(case)]
     modes = None if housing is None else housing.modes.frequencies_hz
     names = [name.replace(" -> ", "-") for name in found.spectra]
+    pairs = [f"{pair.driver} → {pair.driven}" for pair in case.gear_pair]
     for stem, (name, spectra) in zip(file_stems(names), found.spectra.items(), strict=True):
-        unit, title = found.units[name], f"{case.title}: {name}"
+        unit, what, told = found.units[name], arrowed(name), f"{case.title}; {run_words(found)}"
         waterfall = draw_run_up_waterfall(
-            title,
+            f"{what}: spectra along the run",
             spectra,
             found.speeds_rpm,
+            note=told,
+            mesh_names=pairs,
             unit=unit,
             limit=float(spectra.frequencies[-1]),
             mesh_orders=mesh_orders,
             housing_frequencies=modes,
         )
         yield f"run-up-waterfall-{stem}", waterfall
-        slices = draw_order_slices(title, found.orders[name], found.named, unit=unit)
+        slices = draw_order_slices(f"{what}: orders", found.orders[name], found.named, unit=unit, note=told)
         yield f"run-up-orders-{stem}", slices
+
+
+def run_words(found: RunSignature) -> str:
+    """Return the range of a run's spectra in words."""
+    first, last = float(found.speeds_rpm[0]), float(found.speeds_rpm[-1])
+    kind = "run-up" if abs(last) > abs(first) else "run-down"
+    return f"{kind}, spectra from {first:.0f} to {last:.0f} rpm"
 
 
 def draw_run_up_waterfall(
@@ -50,7 +75,9 @@ def draw_run_up_waterfall(
     *,
     unit: str,
     limit: float,
+    note: str = "",
     mesh_orders: Sequence[float] = (),
+    mesh_names: Sequence[str] = (),
     housing_frequencies: FloatArray | None = None,
 ) -> Figure:
     """Draw spectra along a run as rows over the speed, as :func:`draw_waterfall` does those of a sweep.
@@ -67,7 +94,9 @@ def draw_run_up_waterfall(
         Of the amplitudes.
     limit
         Of the frequency axis, Hz.
-    mesh_orders
+    note
+        Begin of the note below the title.
+    mesh_orders, mesh_names
         Of each gear pair, cycles each turn of the leading shaft.
     housing_frequencies
         (n,): Hz.
@@ -80,42 +109,51 @@ def draw_run_up_waterfall(
         speeds_rpm,
         np.tile(spectra.frequencies[shown], (rows, 1)),
         spectra.amplitude[:, shown],
-        value_name="speed [rpm]",
+        value_name="speed of the first driver [rpm]",
         unit=unit,
+        note=note,
+        mesh_names=mesh_names,
         mesh_frequencies=np.outer(speeds_rpm / 60.0, mesh_orders) if mesh_orders else (),
         housing_frequencies=np.tile(modes, (rows, 1)) if modes.size else (),
     )
 
 
-def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, unit: str) -> Figure:
+def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, unit: str, note: str = "") -> Figure:
     """Draw the amplitude of some orders over the speed of the leading shaft.
 
     Parameters
     ----------
     title
-        Of the figure.
+        Of the sheet.
     orders
         Order spectra along the run.
     named
         Orders by their names.
     unit
         Of the amplitudes.
+    note
+        Below the title.
 
     Raises
     ------
     coupling.CouplingError
         Where an order is not a line of the map.
     """
-    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
-    axes = figure.subplots()
+    below = legend_height(len(named), _COLUMNS)
+    figure = sheet(HEAD + _HEIGHT + FOOT + below, title, note)
+    axes = panel(figure, FOOT + below, _HEIGHT)
+    speeds, top, least = 60.0 * orders.speeds, 0.0, np.inf
+    handles = []
     for number, (name, order) in enumerate(named.items()):
-        color = SERIES[number % len(SERIES)]
-        axes.plot(60.0 * orders.speeds, orders.order_slice(order), color=color, lw=1.2, label=name)
-    axes.set_yscale("log")
-    axes.set(xlabel="speed [rpm]", ylabel=f"amplitude [{unit}, peak]")
-    tidy(axes)
-    legend = figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize=8)
-    for text in legend.get_texts():
-        text.set_parse_math(False)
-    figure.suptitle(title, fontsize=11, parse_math=False)
+        amplitude = orders.order_slice(order)
+        top, least = max(top, float(amplitude.max(initial=0.0))), min(least, float(amplitude.min(initial=np.inf)))
+        style = "-" if number < len(SERIES) else (0, (4, 2))
+        handles += axes.plot(
+            speeds, amplitude, color=SERIES[number % len(SERIES)], ls=style, lw=1.2, label=name_in_legend(name, 40)
+        )
+    axes.set_xlim(float(speeds.min()), float(speeds.max()))
+    axes.set(xlabel="speed of the first driver [rpm]", ylabel=f"amplitude [{unit}, peak]")
+    if top > 0.0:
+        log_axis(axes, max(0.7 * least, top * 10.0**-_DECADES), 2.0 * top)
+    legend_below(figure, handles, _COLUMNS)
     return figure

@@ -7,14 +7,31 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from gearwhine.figures.spectra import draw_waterfall
-from gearwhine.figures.style import GREY, SERIES, tidy
+from gearwhine.figures.style import (
+    FOOT,
+    HEAD,
+    SERIES,
+    legend_below,
+    legend_height,
+    log_axis,
+    name_in_legend,
+    panel,
+    panel_pair,
+    panel_title,
+    sheet,
+)
 from gearwhine.output import file_stems
 
 _MOST_WATERFALLS = 12  # of a grid over several keys
 _LOUD = 40.0  # levels below the highest that have colours of their own [dB]
 _MARKS = 30  # points up to which each is marked
+_LEVELS, _LEVELS_GAP = 36.0, 8.0  # height of a sensor's panel, and between two for a title [mm of paper]
+_FORCES, _FORCES_GAP = 42.0, 8.0  # the same of a gear pair's panels
+_FIRST = 5.0  # above the first, for its title
+_COLUMNS = 3  # of the names of lines
 
 
 def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -40,32 +57,55 @@ def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
     sensors = [str(name) for name in dataset["sensor"].values]
-    figure = Figure(figsize=(9.0, 0.9 + 2.4 * len(sensors)), layout="constrained")
-    for axes, sensor in zip(figure.subplots(len(sensors), 1, sharex=True, squeeze=False)[:, 0], sensors, strict=True):
+    below, count = _legend_height(places), len(sensors)
+    height = HEAD + _FIRST + count * _LEVELS + (count - 1) * _LEVELS_GAP + FOOT + below
+    figure = sheet(height, f"Acceleration over {_key(dataset, along)}", title)
+    for number, sensor in enumerate(reversed(sensors)):
+        axes = panel(figure, FOOT + below + number * (_LEVELS + _LEVELS_GAP), _LEVELS)
         _draw_lines(axes, dataset["sensor_rms"].sel(sensor=sensor), along, places)
-        axes.set_yscale("log")
-        axes.set_ylabel("acceleration\n[m/s², rms]")
-        axes.set_title(sensor, fontsize=10, loc="left", parse_math=False)
-    _finish(figure, dataset, along, places)
-    figure.suptitle(f"{title}: acceleration over {_axis_label(dataset, along)}", fontsize=11, parse_math=False)
+        levels = dataset["sensor_rms"].sel(sensor=sensor).values
+        levels = levels[np.isfinite(levels) & (levels > 0.0)]
+        if levels.size:
+            log_axis(axes, 0.8 * float(levels.min()), 1.25 * float(levels.max()))
+        axes.set_ylabel("acceleration [m/s², rms]")
+        panel_title(axes, sensor)
+        if number:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel(_axis_label(dataset, along))
+            _name_values(axes.xaxis, dataset, along)
+    _name_lines(figure, dataset, places)
     return figure
 
 
 def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
     contacts = [str(name) for name in dataset["contact"].values]
-    figure = Figure(figsize=(9.0, 0.9 + 2.6 * len(contacts)), layout="constrained")
-    for row, contact in zip(figure.subplots(len(contacts), 2, sharex=True, squeeze=False), contacts, strict=True):
-        left, right = row
+    below, count = _legend_height(places), len(contacts)
+    height = HEAD + _FIRST + count * _FORCES + (count - 1) * _FORCES_GAP + FOOT + below
+    parts = float(dataset["contact_loss"].max()) > 0.0
+    note = f"{title}; solid: largest, dashed: mean" + ("" if parts else "; the teeth never part")
+    figure = sheet(height, f"Gear-mesh force over {_key(dataset, along)}", note)
+    for number, contact in enumerate(reversed(contacts)):
+        bottom = FOOT + below + number * (_FORCES + _FORCES_GAP)
+        shown = list(panel_pair(figure, bottom, _FORCES) if parts else (panel(figure, bottom, _FORCES),))
+        left = shown[0]
         _draw_lines(left, dataset["mesh_force_peak"].sel(contact=contact), along, places)
         _draw_lines(left, dataset["mesh_force_mean"].sel(contact=contact), along, places, dashed=True)
         left.set_ylabel("mesh force [N]")
         left.set_ylim(0.0, 1.08 * float(dataset["mesh_force_peak"].sel(contact=contact).max()) or 1.0)
-        left.set_title(f"{contact}: largest, and mean (dashed)", fontsize=10, loc="left", parse_math=False)
-        _draw_lines(right, 100.0 * dataset["contact_loss"].sel(contact=contact), along, places)
-        right.set_ylabel("time apart [%]")
-        right.set_ylim(0.0, max(1.08 * 100.0 * float(dataset["contact_loss"].sel(contact=contact).max()), 1.0))
-    _finish(figure, dataset, along, places)
-    figure.suptitle(f"{title}: gear-mesh force over {_axis_label(dataset, along)}", fontsize=11, parse_math=False)
+        panel_title(left, contact)
+        if parts:
+            right = shown[1]
+            _draw_lines(right, 100.0 * dataset["contact_loss"].sel(contact=contact), along, places)
+            right.set_ylabel("time apart [%]")
+            right.set_ylim(0.0, max(1.08 * 100.0 * float(dataset["contact_loss"].sel(contact=contact).max()), 1.0))
+        for axes in shown:
+            if number:
+                axes.tick_params(labelbottom=False)
+            else:
+                axes.set_xlabel(_axis_label(dataset, along))
+                _name_values(axes.xaxis, dataset, along)
+    _name_lines(figure, dataset, places)
     return figure
 
 
@@ -111,14 +151,16 @@ def _waterfalls(
             pictures.append((sensor, place, data, spectra))
     pictures = pictures[:_MOST_WATERFALLS]
     names = [" ".join([sensor, *_described(dataset, place)]) for sensor, place, *_ in pictures]
-    for stem, name, (_, _, data, spectra) in zip(file_stems(names, "waterfall-"), names, pictures, strict=True):
+    for stem, (sensor, place, data, spectra) in zip(file_stems(names, "waterfall-"), pictures, strict=True):
         figure = draw_waterfall(
-            f"{title}: {name}",
+            f"{sensor}: spectra over {_key(dataset, along)}",
             _numbers(data, along),
             data["frequency"].transpose(along, "order").values,
             spectra,
             value_name=_axis_label(dataset, along),
             unit="m/s²",
+            note="; ".join([title, *_described(dataset, place)]),
+            mesh_names=[str(contact) for contact in data["contact"].values] if "contact" in data else (),
             mesh_frequencies=data["mesh_frequency"].transpose(along, "contact").values if "contact" in data else (),
             housing_frequencies=(
                 data["housing_frequency"].transpose(along, "housing_mode").values if "housing_mode" in data else ()
@@ -138,26 +180,19 @@ def _draw_lines(
         style = {"ls": (0, (4, 3)), "lw": 0.9} if dashed else {"ls": "-", "lw": 1.2}
         mark = "o" if len(at) <= _MARKS and not dashed else None
         axes.plot(at[order], values[order], color=SERIES[number % len(SERIES)], marker=mark, ms=3.0, **style)
-    tidy(axes)
 
 
-def _finish(figure: Figure, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> None:
-    """Name the axis below, and the lines where there are several."""
-    for axes in figure.axes:
-        specification = axes.get_subplotspec()
-        if specification is not None and specification.is_last_row():
-            axes.set_xlabel(_axis_label(dataset, along))
-            _name_values(axes.xaxis, dataset, along)
+def _legend_height(places: list[dict[str, int]]) -> float:
+    """Height of the names of the lines [mm]; none where there is one line."""
+    return legend_height(min(len(places), len(SERIES)), _COLUMNS) if len(places) > 1 else 0.0
+
+
+def _name_lines(figure: Figure, dataset: xr.Dataset, places: list[dict[str, int]]) -> None:
+    """Name the lines at the foot where there are several."""
     if len(places) > 1:
-        colours = SERIES[: len(places)]
-        names = [", ".join(_described(dataset, place)) for place in places[: len(colours)]]
-        handles = [
-            figure.axes[0].plot([], [], color=colour, lw=1.2, label=name)[0]
-            for colour, name in zip(colours, names, strict=False)
-        ]
-        legend = figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=8)
-        for text in legend.get_texts():
-            text.set(parse_math=False, color=GREY)
+        names = [name_in_legend(", ".join(_described(dataset, place)), 48) for place in places[: len(SERIES)]]
+        handles = [Line2D([], [], color=color, lw=1.2, label=name) for color, name in zip(SERIES, names, strict=False)]
+        legend_below(figure, handles, _COLUMNS)
 
 
 def _numbers(data: xr.Dataset | xr.DataArray, along: str) -> Any:
@@ -174,17 +209,25 @@ def _name_values(axis: Any, data: xr.Dataset, along: str) -> None:
 
 
 def _axis_label(dataset: xr.Dataset, along: str) -> str:
-    attributes = dataset[along].attrs
-    unit = attributes.get("units", "")
-    name = "speed" if along == "speed" else attributes.get("long_name", along)
+    unit, name = _unit(dataset, along), _key(dataset, along)
     return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
+def _unit(dataset: xr.Dataset, along: str) -> str:
+    """Return the unit of a swept key as it is printed."""
+    return str(dataset[along].attrs.get("units", "")).replace("*", "·").replace("um", "µm")
+
+
+def _key(dataset: xr.Dataset, along: str) -> str:
+    """Return the swept key in words."""
+    return "speed" if along == "speed" else str(dataset[along].attrs.get("long_name", along))
 
 
 def _described(dataset: xr.Dataset, place: dict[str, int]) -> list[str]:
     """Return a combination of the other keys in words."""
     texts = []
     for name, index in place.items():
-        value, unit = dataset[name].values[index], dataset[name].attrs.get("units", "")
+        value, unit = dataset[name].values[index], _unit(dataset, name)
         last = dataset[name].attrs.get("long_name", name).rpartition(".")[2]
         shown = f"{value:g}" if dataset[name].dtype.kind in "fiu" else str(value)
         texts.append(f"{last} {shown}{f' {unit}' if unit not in ('', '1') else ''}")

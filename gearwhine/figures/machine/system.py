@@ -23,22 +23,28 @@ from gearwhine.figures.style import (
     HEAD,
     HERTZ,
     INK,
+    LEFT,
     NOTE,
-    PANEL_WIDTH,
     RED,
     RPM,
     SERIES,
+    SHEET_WIDTH,
     Label,
     arrange,
+    column_width,
+    draw_column,
     draw_row,
     legend,
+    legend_height,
     mark_operation,
+    name_in_legend,
     panel,
     sheet,
     shortened,
     stretches,
 )
 from gearwhine.output import file_stems
+from gearwhine.output.sections import arrowed
 from gearwhine.solve.coupled_system import SolvedSystem
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,9 +62,10 @@ _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # of the panel [mm]
 _LARGEST = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
 _MICROMETRE = 1e-6
-_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 4.0  # of a panel and the room between two [mm]
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # of a panel and the room between two [mm]
 _DECADES = 4.0  # of amplitude that a panel shows at most
 _NAMED = 8  # curves that a panel tells apart by colour
+_COLUMNS = 4  # of their names above it
 
 
 def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_speed: float | None = None) -> Figure:
@@ -81,19 +88,27 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
         note = note.replace("mesh orders (dashed)", "mesh orders (dashed), their sidebands (pale)")
     speeds = RPM * np.abs(campbell.speeds)
     top, low, high = campbell.limit / HERTZ, float(speeds[0]), float(speeds[-1])
-    # Orders that leave the panel at its top are named above it, the others at its right end.
-    named = [line for line in campbell.lines if line.kind != "sideband"]
-    leaving = [(line, 60.0 * top / line.order) for line in named if low < 60.0 * top / line.order < high]
-    labels = [Label(line.name, speed, top, GREY) for line, speed in leaving]
-    row = arrange(labels, [(speed - low) / (high - low) * PANEL_WIDTH for _, speed in leaving], PANEL_WIDTH)
+    # Orders that leave the panel at its top are named above it, the others beside its right end.
+    above, beside = [], []
+    for line in campbell.lines:
+        if line.kind == "sideband":
+            continue
+        leaves = 60.0 * top / line.order
+        if leaves >= high:
+            beside.append(Label(arrowed(line.name), high, line.order * high / 60.0, GREY))
+        elif leaves > low:
+            above.append(Label(arrowed(line.name), leaves, top, GREY))
+    width = SHEET_WIDTH - LEFT - column_width(beside)
+    row = arrange(above, [(label.x - low) / (high - low) * width for label in above], width)
     figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + FOOT, title, note)
-    axes = panel(figure, FOOT, _HEIGHT)
+    axes = panel(figure, FOOT, _HEIGHT, width=width)
     axes.set(xlim=(speeds[0], speeds[-1]), ylim=(0.0, top))
     axes.set(xlabel="speed of the first driver [rpm]", ylabel="damped frequency [Hz]")
     met = _draw_branches(axes, speeds, campbell)
     for line in campbell.lines:
-        _draw_line(axes, line, high, top)
+        _draw_line(axes, line, high)
     draw_row(axes, row, _HEIGHT + 1.0)
+    draw_column(axes, beside)
     _mark_crossings(axes, campbell)
     handles = [Line2D([], [], color=KIND_COLORS.get(kind, INK), lw=1.4, label=kind) for kind in met]
     if operating_speed is not None:
@@ -115,29 +130,13 @@ def _draw_branches(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> 
     return [kind for kind in KIND_COLORS if kind in met]
 
 
-def _draw_line(axes: Axes, line: ExcitationLine, last: float, top: float) -> None:
-    """Draw the line of an order, named at its end where that is at the right of the panel."""
-    slope = line.order / 60.0
+def _draw_line(axes: Axes, line: ExcitationLine, last: float) -> None:
+    ends, heights = [0.0, last], [0.0, line.order / 60.0 * last]
     if line.kind == "sideband":
-        axes.plot([0.0, last], [0.0, slope * last], color=_PALE_GREY, lw=0.5, zorder=1.5, label=line.name)
+        axes.plot(ends, heights, color=_PALE_GREY, lw=0.5, zorder=1.5, label=line.name)
         return
     style = ":" if line.kind == "shaft" else (0, (5, 3))
-    axes.plot([0.0, last], [0.0, slope * last], color=GREY, lw=0.8, ls=style, zorder=2, label=line.name)
-    if slope * last < top:
-        # Low orders lie close together: their names stand beside each other.
-        place = last * (0.86 if line.kind == "shaft" and round(line.order) % 2 == 0 else 1.0)
-        axes.annotate(
-            shortened(line.name, 34),
-            (place, slope * place),
-            (-2.0, 1.5),
-            textcoords="offset points",
-            fontsize=NOTE,
-            color=GREY,
-            ha="right",
-            va="bottom",
-            parse_math=False,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-        )
+    axes.plot(ends, heights, color=GREY, lw=0.8, ls=style, zorder=2, label=line.name)
 
 
 def _mark_crossings(axes: Axes, campbell: SystemCampbell) -> None:
@@ -177,14 +176,16 @@ def draw_transmissibility(
         ("acceleration [m/s²/µm]", {name: np.abs(a) for name, a in response.sensor_acceleration.items()}),
     ]
     shown = [(what, curves) for what, curves in panels if curves]
-    height = HEAD + len(shown) * (_RESPONSE_HEIGHT + _RESPONSE_GAP) + FOOT
+    names = [legend_height(min(len(curves), _NAMED), _COLUMNS) for _, curves in shown]
     note = "peak amplitudes by a harmonic error of 1 µm at any frequency"
     if len(mesh_frequencies):
         note += "; dashed: mesh frequencies at operation, and multiples"
-    figure = sheet(height, title, note)
+    figure = sheet(HEAD + len(shown) * (_RESPONSE_HEIGHT + _RESPONSE_GAP) + sum(names) + FOOT, title, note)
     end = limit or float(frequencies[-1])
-    for number, (what, curves) in enumerate(reversed(shown)):
-        axes = panel(figure, FOOT + number * (_RESPONSE_HEIGHT + _RESPONSE_GAP), _RESPONSE_HEIGHT)
+    bottom = FOOT
+    for number, ((what, curves), above) in enumerate(zip(reversed(shown), reversed(names), strict=True)):
+        axes = panel(figure, bottom, _RESPONSE_HEIGHT)
+        bottom += _RESPONSE_HEIGHT + above + _RESPONSE_GAP
         _draw(axes, frequencies, curves, end)
         axes.set_ylabel(what)
         axes.set_xlim(0.0, end)
@@ -202,27 +203,30 @@ def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray],
     axes.set_yscale("log")
     inside = frequencies <= end
     top = 0.0
+    handles = []
     for number, (name, values) in enumerate(curves.items()):
         size = _MICROMETRE * values
         top = max(top, float(size[inside].max(initial=0.0)))
-        label = shortened(name, 24) if number < _NAMED else "_nolegend_"
-        axes.plot(frequencies, size, color=SERIES[number % _NAMED], lw=1.0, label=label, zorder=3)
+        drawn = axes.plot(
+            frequencies, size, color=SERIES[number % _NAMED], lw=1.0, label=name_in_legend(name, 24), zorder=3
+        )
+        handles += drawn if number < _NAMED else []
     if top > 0.0:
         least = min(
             float(_MICROMETRE * values[inside & (values > 0.0)].min(initial=np.inf)) for values in curves.values()
         )
         axes.set_ylim(max(0.7 * least, top * 10.0**-_DECADES), 2.5 * top)
+    # Above the panel, where no curve is.
     axes.legend(
+        handles=handles,
         loc="lower right",
-        ncols=min(len(curves), 4),
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=min(len(handles), _COLUMNS),
         fontsize=NOTE,
-        frameon=True,
-        framealpha=0.85,
-        edgecolor="none",
+        frameon=False,
         handlelength=1.6,
         columnspacing=1.0,
-        borderaxespad=0.3,
-        bbox_to_anchor=(1.0, 0.0, 0.0, PANEL_WIDTH),
+        borderaxespad=0.1,
     )
 
 
@@ -255,5 +259,5 @@ def draw_system(case: Case, solved: SolvedSystem) -> Iterator[tuple[str, Figure]
     named = [name.replace(" -> ", "-") for name in pairs]
     for stem, name, response in zip(file_stems(named, "transmissibility-"), pairs, solved.responses, strict=True):
         limit = float(response.frequencies[-1] / (2.0 * np.pi))
-        heading = f"From the transmission error of {shortened(name, 26)}"
+        heading = f"From the transmission error of {shortened(arrowed(name), 30)}"
         yield stem, draw_transmissibility(heading, response, mesh_frequencies=meshes, limit=limit)

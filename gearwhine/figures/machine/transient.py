@@ -8,13 +8,14 @@
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+from scipy.signal import resample_poly
 
 from coupling import amplitude_spectrum
 from coupling.signals import decibels
@@ -30,7 +31,10 @@ from gearwhine.figures.style import (
     INK,
     LABEL,
     LEFT,
+    MICRO,
+    MILLI,
     NOTE,
+    PANEL_WIDTH,
     RED,
     SERIES,
     SHEET_WIDTH,
@@ -39,11 +43,15 @@ from gearwhine.figures.style import (
     draw_row,
     legend,
     panel,
+    panel_pair,
     panel_size,
+    panel_title,
+    plain,
     sheet,
+    sheet_height,
     shortened,
-    tidy,
 )
+from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.signature import Contribution, SolvedSignature, TracedLine
 from gearwhine.solve.transient import SolvedTransient
@@ -168,10 +176,10 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
     up = height - HEAD
     for (name, line, modes, bearings), tall in zip(groups, heights, strict=True):
         up -= _BARS_GAP - 5.0 + tall
-        heading = f"{name}: {line.frequency:.0f} Hz, {abs(line.value):.3g} m/s² peak, {line.named.name}"
+        heading = f"{name}: {line.frequency:.0f} Hz, {abs(line.value):.3g} m/s² peak, {arrowed(line.named.name)}"
         figure.text(
             _MARGIN / SHEET_WIDTH,
-            (up + tall + 1.2) / height,
+            (up + tall + 1.2) / sheet_height(figure),
             shortened(heading, 100),
             fontsize=NOTE + 1.0,
             color=INK,
@@ -216,54 +224,140 @@ def _percent(share: float) -> str:
 
 
 _PERIODS = 6  # of the mesh that are drawn
+_FINE = 40  # points of a mesh period that a curve has at least
+_SMOOTH = 24  # the same of an orbit
+_EDGE = 64  # samples on either side that a curve between samples is made of
+_ROW, _ROW_GAP = 42.0, 18.0  # height of a row of panels, and between two for axis and title [mm of paper]
+_FIRST = 5.0  # above the first row, for its titles [mm of paper]
 
 
-def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, float]) -> Figure:
+def _rows_of_pairs(count: int, title: str, note: str, height: float = _ROW) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+    """Return a sheet with rows of two panels, the uppermost row first."""
+    figure = sheet(HEAD + _FIRST + count * height + (count - 1) * _ROW_GAP + FOOT, title, note)
+    bottoms = [FOOT + number * (height + _ROW_GAP) for number in reversed(range(count))]
+    return figure, [panel_pair(figure, bottom, height) for bottom in bottoms]
+
+
+def between_samples(times: FloatArray, values: FloatArray, end: float, period: float) -> tuple[FloatArray, FloatArray]:
+    """Return a signal from its first sample to a time, with points enough to show its form in each period.
+
+    Samples too few for that are joined by the band-limited curve through them (Shannon's series, tapered by Kaiser's
+    window): no peak of the signal falls between two points, as it does where samples are joined by straight lines.
+
+    Parameters
+    ----------
+    times, values
+        (s,): evenly spaced [s], and the signal.
+    end
+        Up to which time it is drawn [s].
+    period
+        Of the signal [s].
+
+    Returns
+    -------
+    times, values
+        (n,): the samples among them.
+    """
+    interval = float(times[1] - times[0])
+    shown = int(np.searchsorted(times, end + 1e-9 * interval, side="right"))
+    factor = int(np.ceil(_FINE * interval / period))
+    if factor <= 1 or shown < 2:
+        return times[:shown], values[:shown]
+    count = factor * (shown - 1) + 1
+    return times[0] + interval / factor * np.arange(count), _refined(values[: shown + _EDGE], factor)[:count]
+
+
+def _refined(values: FloatArray, factor: int) -> FloatArray:
+    """Return a signal (s, ...) at ``factor`` times its rate, from the first to the last of its samples."""
+    reach = min(_EDGE, len(values) - 1)
+    # Mirrored about its ends, so that these are met without ringing.
+    begin, after = values[1 : reach + 1][::-1], values[-reach - 1 : -1][::-1]
+    whole = np.concatenate([2.0 * values[:1] - begin, values, 2.0 * values[-1:] - after])
+    fine = resample_poly(whole, factor, 1, axis=0, window=("kaiser", 8.0))
+    found = np.array(fine[factor * reach : factor * (reach + len(values) - 1) + 1])
+    # The filter's gain is one to five digits; the samples stand as they are.
+    found[::factor] = values
+    return found
+
+
+def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, float], *, note: str = "") -> Figure:
     """Draw six mesh periods of each contact with friction.
 
     Parameters
     ----------
     title
-        Of the figure.
+        Of the sheet.
     histories
         With friction.
     mesh_frequencies
         Of the contacts, Hz.
+    note
+        Below the title.
     """
     shown = {name: found for name, found in histories.mesh_friction.items() if name in mesh_frequencies}
-    figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(shown)), layout="constrained")
-    rows = figure.subplots(len(shown), 2, squeeze=False)
+    figure, rows = _rows_of_pairs(len(shown), title, note)
     for (left, right), (name, found) in zip(rows, shown.items(), strict=True):
-        times = 1e3 * (histories.times - histories.times[0])
-        shown = times <= 1e3 * _PERIODS / mesh_frequencies[name]
-        left.plot(times[shown], found[shown, 0], color=BLUE, lw=1.0)
-        left.axhline(0.0, color=GREY, lw=0.6)
-        left.set(xlabel="time [ms]", ylabel="friction force [N]")
-        left.set_title(f"{name}: across the line of action", fontsize=10, loc="left", parse_math=False)
+        period = 1.0 / mesh_frequencies[name]
         mean = float(np.mean(found[:, 1]))
-        right.plot(times[shown], found[shown, 1], color=RED, lw=1.0)
+        for axes, column, color, what in (
+            (left, 0, BLUE, "friction force [N]"),
+            (right, 1, RED, "power that friction takes [W]"),
+        ):
+            times, values = between_samples(
+                histories.times - histories.times[0], found[:, column], _PERIODS * period, period
+            )
+            axes.plot(MILLI * times, values, color=color, lw=1.0, label=f"_{what}")
+            axes.set(xlabel="time [ms]", ylabel=what, xlim=(0.0, MILLI * _PERIODS * period))
+        left.axhline(0.0, color=GREY, lw=0.6)
         right.axhline(mean, color=GREY, lw=0.8, ls="--")
-        right.set(xlabel="time [ms]", ylabel="friction takes [W]")
-        right.set_title(f"{mean:.3g} W in the mean", fontsize=10, loc="left")
-        tidy(left)
-        tidy(right)
-    figure.suptitle(title, fontsize=11, parse_math=False)
+        panel_title(left, f"{name}: across the line of action")
+        panel_title(right, f"{mean:.3g} W in the mean")
     return figure
 
 
 _MODES = 4  # that a panel tells apart
 _LONGEST = 6000  # points of a curve
+_LEGEND_BAND = 3.4  # of the legend's line for a mode above a panel [mm of paper]
+
+
+def outlined(times: FloatArray, values: FloatArray, most: int) -> tuple[FloatArray, FloatArray]:
+    """Return a signal in at most so many points: of each stretch the least and the largest sample, in their order.
+
+    A picture of these is that of all samples; every tenth of them would show frequencies that the signal has not.
+
+    Parameters
+    ----------
+    times, values
+        (s,) each.
+    most
+        Points, 2 or more.
+    """
+    if times.size <= most:
+        return times, values
+    stretch = -(-2 * times.size // most)
+    whole = times.size // stretch * stretch
+    starts = np.arange(0, whole, stretch)
+    groups = values[:whole].reshape(-1, stretch)
+    ends = np.sort(np.stack([groups.argmin(axis=1), groups.argmax(axis=1)], axis=1), axis=1)
+    chosen = (starts[:, None] + ends).ravel()
+    return times[chosen], values[chosen]
 
 
 def draw_modal_coordinates(
-    title: str, times: FloatArray, coordinates: Mapping[str, FloatArray], limit: float, window: Window
+    title: str,
+    times: FloatArray,
+    coordinates: Mapping[str, FloatArray],
+    limit: float,
+    window: Window,
+    *,
+    note: str = "",
 ) -> Figure:
     """Draw each kind of coordinates of each part: left over time, right their spectra without the d.c. part.
 
     Parameters
     ----------
     title
-        Of the figure.
+        Of the sheet.
     times
         (s,): s, evenly spaced.
     coordinates
@@ -272,21 +366,24 @@ def draw_modal_coordinates(
         Of the frequency axis, Hz.
     window
         Of the spectra.
+    note
+        Below the title.
     """
     groups: dict[str, dict[str, FloatArray]] = {}
     for name, values in coordinates.items():
         kind, _, axis = name.partition(", ")
         head, _, number = kind.rpartition(" ")
         groups.setdefault(f"{head}, {axis}" if axis else head, {})[number] = values
-    figure = Figure(figsize=(10.0, 0.7 + 2.1 * len(groups)), layout="constrained")
-    interval, every = float(times[1] - times[0]), max(1, times.size // _LONGEST)
-    rows = figure.subplots(len(groups), 2, squeeze=False)
+    unit = "m √kg; of torsion rad √(kg m²)"
+    figure, rows = _rows_of_pairs(len(groups), title, f"{note}; {unit}" if note else unit)
+    interval = float(times[1] - times[0])
     for (left, right), (name, group) in zip(rows, groups.items(), strict=True):
         top = 0.0
         for color, (number, values) in zip(SERIES, list(group.items())[:_MODES], strict=False):
             parts = signal_parts(values)
             label = f"mode {number}: d.c. {float(parts.mean):.2e}, a.c. {float(parts.rms):.1e} rms"
-            left.plot(1e3 * (times - times[0])[::every], values[::every], color=color, lw=0.7, label=label)
+            at, outline = outlined(times - times[0], values, _LONGEST)
+            left.plot(MILLI * at, outline, color=color, lw=0.7, label=label)
             spectrum = amplitude_spectrum(values, interval, window)
             shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
             right.plot(spectrum.frequencies[shown], spectrum.amplitude[shown], color=color, lw=0.8)
@@ -295,49 +392,80 @@ def draw_modal_coordinates(
             right.set_yscale("log")
             right.set_ylim(1e-5 * top, 3.0 * top)
         right.set_xlim(0.0, limit)
-        left.legend(fontsize=7, frameon=False, loc="upper left", bbox_to_anchor=(0.0, 1.0), ncols=1)
+        left.set_xlim(0.0, MILLI * float(times[-1] - times[0]))
+        left.legend(fontsize=NOTE, frameon=False, loc="upper left", borderaxespad=0.2, handlelength=1.6)
+        # Room for the legend above the curves.
         low, high = left.get_ylim()
-        left.set_ylim(low, high + 0.45 * (high - low))
-        left.set_title(name, fontsize=9, loc="left", parse_math=False)
-        for axes in (left, right):
-            tidy(axes, size=8.0)
-    left.set_xlabel("time [ms]")
-    right.set_xlabel("frequency [Hz]; peak amplitudes")
-    figure.suptitle(f"{title} [m √kg; torsion: rad √(kg m²)]", fontsize=11, parse_math=False)
+        taken = _LEGEND_BAND * min(len(group), _MODES) / _ROW
+        left.set_ylim(low, low + (high - low) / (1.0 - taken))
+        panel_title(left, f"{name} over time")
+        panel_title(right, "peak amplitudes")
+        left.set_xlabel("time [ms]")
+        right.set_xlabel("frequency [Hz]")
     return figure
 
 
-def draw_orbits(title: str, motions: Mapping[str, FloatArray]) -> Figure:
+_ORBIT_ROWS = 20.0  # between both rows, for an axis and a title of two lines [mm]
+_ORBITS_IN_ROW, _ORBIT_GAP, _LARGEST_ORBIT = 4, 11.0, 56.0  # panels beside each other, room between, largest side [mm]
+
+
+def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = "", refined: int = 1) -> Figure:
     """Draw each gear's centre from where it stands without load, and below enlarged about its mean.
 
     Parameters
     ----------
     title
-        Of the figure.
+        Of the sheet.
     motions
         x, y of each gear's centre [m] in the first columns, shape (s, 2 or more). Gears of a row have one scale.
+    note
+        Begin of the note below the title.
+    refined
+        Points drawn for each sample, on the band-limited curve through them.
     """
-    figure = Figure(figsize=(max(3.6 * len(motions), 5.0), 7.6), layout="constrained")
-    rows = figure.subplots(2, len(motions), squeeze=False)
-    orbits = {name: 1e6 * motion[:, :2] for name, motion in motions.items()}
+    orbits = {
+        name: MICRO * (motion[:, :2] if refined == 1 else _refined(motion[:, :2], refined))
+        for name, motion in motions.items()
+    }
+    columns = min(len(orbits), _ORBITS_IN_ROW)
+    bands = -(-len(orbits) // columns)
+    side = min((PANEL_WIDTH - (columns - 1) * _ORBIT_GAP) / columns, _LARGEST_ORBIT)
+    height = 2.0 * side + _ORBIT_ROWS
+    told = "above: from where the shaft stands without load; below: enlarged about the mean"
+    figure = sheet(
+        HEAD + _FIRST + bands * height + (bands - 1) * _ROW_GAP + FOOT, title, f"{note}; {told}" if note else told
+    )
     reach = [1.12 * max(float(np.abs(orbit).max()) for orbit in orbits.values()) or 1.0, 0.0]
     reach[1] = 1.12 * max(float(np.abs(orbit - orbit.mean(axis=0)).max()) for orbit in orbits.values()) or 1.0
-    for column, (name, orbit) in enumerate(orbits.items()):
-        above, below = rows[:, column]
+    rows: list[list[Axes]] = []
+    for up in (side + _ORBIT_ROWS, 0.0):
+        places = [divmod(number, columns) for number in range(len(orbits))]
+        bottoms = [FOOT + (bands - 1 - band) * (height + _ROW_GAP) + up for band, _ in places]
+        lefts = [LEFT + column * (side + _ORBIT_GAP) for _, column in places]
+        rows.append(
+            [panel(figure, bottom, side, left=left, width=side) for bottom, left in zip(bottoms, lefts, strict=True)]
+        )
+    for number, (name, orbit) in enumerate(orbits.items()):
+        above, below = (row[number] for row in rows)
         center = orbit.mean(axis=0)
         above.annotate("", center, (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": RED, "lw": 0.9})
         above.plot([0.0], [0.0], marker="+", color=GREY, ms=7)
         above.plot(orbit[:, 0], orbit[:, 1], color=BLUE, lw=0.8)
         below.plot(*(orbit - center).T, color=BLUE, lw=0.5)
         below.plot([0.0], [0.0], marker="+", color=RED, ms=7)
-        for axes, what, size in ((above, "x, y", reach[0]), (below, "about the mean: x, y", reach[1])):
-            axes.set(xlim=(-size, size), ylim=(-size, size), aspect="equal", xlabel=f"{what} [µm]")
-            tidy(axes)
-        above.set_title(name, fontsize=10, parse_math=False)
+        for axes, size in ((above, reach[0]), (below, reach[1])):
+            axes.set(xlim=(-size, size), ylim=(-size, size), aspect="equal", xlabel="x [µm]")
+            axes.yaxis.set_major_locator(MaxNLocator(5))
+            axes.xaxis.set_major_locator(MaxNLocator(5))
+            if number % columns == 0:
+                axes.set_ylabel("y [µm]")
+        above.set_title(shortened(name, 20), fontsize=LABEL, loc="left", pad=3.0, parse_math=False)
         swing = 0.5 * np.ptp(orbit, axis=0)
-        note = f"d.c. ({center[0]:.3g}, {center[1]:.3g}) µm\na.c. ±({swing[0]:.2g}, {swing[1]:.2g}) µm"
-        above.text(0.03, 0.97, note, transform=above.transAxes, fontsize=NOTE + 1.0, color=INK, va="top")
-    figure.suptitle(title, fontsize=11, parse_math=False)
+        # Of the mean as many digits as can be seen.
+        digits = max(0, 2 - int(np.floor(np.log10(reach[0]))))
+        mean = ", ".join(f"{part:z.{digits}f}" for part in center)
+        about = f"mean {mean} µm\n± {plain(swing[0], 2)}, {plain(swing[1], 2)} µm"
+        below.set_title(about, fontsize=NOTE, loc="left", pad=3.0)
     return figure
 
 
@@ -373,47 +501,60 @@ def draw_transient(
         yield "mesh-force", _mesh_force(case, solved, meshes)
     carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
     if rates := {contact.name: abs(contact.rate) for contact in carrying if contact.drives and contact.rate}:
-        heading = f"{case.title}\nfriction between the teeth at {speed}"
-        yield "friction", draw_friction(heading, solved.histories, rates)
+        yield (
+            "friction",
+            draw_friction(
+                "Friction between the teeth", solved.histories, rates, note=f"{case.title}, {speed}; six mesh periods"
+            ),
+        )
     if solved.histories.gear_motion:
         motions = solved.histories.gear_motion
         if solved.record.sampling.is_long:
             motions = {name: motion[-_ORBIT_SAMPLES:] for name, motion in motions.items()}
-        orbits = draw_orbits(f"{case.title}: orbits of the gears", motions)
-        yield "orbits", orbits
+        most = max((frequency for frequency in meshes), default=0.0)
+        times = solved.histories.times
+        refined = int(np.ceil(_SMOOTH * most * float(times[1] - times[0]))) or 1
+        # Beyond that a path takes long to draw, and memory.
+        refined = min(refined, max(_ORBIT_SAMPLES // len(times), 1))
+        yield "orbits", draw_orbits("Orbits of the gears", motions, note=f"{case.title}, {speed}", refined=refined)
     if solved.modal.coordinates:
         window = next(iter(solved.force_spectra.values())).window if solved.force_spectra else "hann"
         limit = min(solved.trusted_limit, 1.2 * max(meshes)) if meshes else solved.trusted_limit
-        heading = f"{case.title}: modal coordinates"
-        modal = draw_modal_coordinates(heading, solved.histories.times, solved.modal.coordinates, limit, window)
+        modal = draw_modal_coordinates(
+            "Modal coordinates",
+            solved.histories.times,
+            solved.modal.coordinates,
+            limit,
+            window,
+            note=f"{case.title}, {speed}",
+        )
         yield "modal-coordinates", modal
 
 
 def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) -> Figure:
     drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
-    figure = Figure(figsize=(9.0, 0.7 + 2.8 * len(drives)), layout="constrained")
-    rows = figure.subplots(len(drives), 2, squeeze=False)
-    times, speed = solved.histories.times, _speed(case, solved)
+    times = solved.histories.times
+    figure, rows = _rows_of_pairs(len(drives), "Gear-mesh force", f"{case.title}, {_speed(case, solved)}")
     for (left, right), name, frequency in zip(rows, drives, meshes, strict=True):
-        shown, what = times <= times[0] + 6.0 / frequency, "six mesh periods"
+        period, what = 1.0 / frequency, "six mesh periods"
         if solved.turning is not None:
-            what = f"its first {6e3 / frequency:.3g} ms"
-        left.plot(1e3 * (times[shown] - times[0]), solved.histories.mesh_force[name][shown], color=BLUE, lw=1.0)
-        left.set(xlabel="time [ms]", ylabel="mesh force [N]")
-        left.set_title(f"{name}: {what}", fontsize=10, loc="left")
+            what = f"its first {_PERIODS * MILLI * period:.3g} ms"
+        at, force = between_samples(times - times[0], solved.histories.mesh_force[name], _PERIODS * period, period)
+        left.plot(MILLI * at, force, color=BLUE, lw=1.0)
+        left.set(xlabel="time [ms]", ylabel="mesh force [N]", xlim=(0.0, MILLI * _PERIODS * period))
+        panel_title(left, f"{name}: {what}")
         limit = min(4.2 * frequency, float(solved.force_spectra[name].frequencies[-1]))
         draw_lines(right, solved.force_spectra[name], limit)
-        tidy(right)
         if solved.turning is None:
             _mark(right, meshes, limit)
         right.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")
-        right.set_title("spectrum without its mean", fontsize=10, loc="left")
-        tidy(left)
-    figure.suptitle(f"{case.title}: gear-mesh force at {speed}", fontsize=11)
+        panel_title(right, "spectrum without its mean")
+    if solved.turning is None:
+        legend(figure, [Line2D([], [], color=RED, lw=0.8, ls=(0, (4, 3)), label="mesh harmonic")])
     return figure
 
 
-def _mark(axes: Any, meshes: tuple[float, ...], limit: float) -> None:
+def _mark(axes: Axes, meshes: tuple[float, ...], limit: float) -> None:
     for frequency in meshes:
         for harmonic in range(1, int(limit / frequency) + 1):
             axes.axvline(harmonic * frequency, color=RED, lw=0.8, ls=(0, (4, 3)), zorder=0)

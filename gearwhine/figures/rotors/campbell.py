@@ -163,7 +163,11 @@ def draw_campbell(
     is_damped = bool((np.abs(np.nan_to_num(ratios)) > NEUTRAL).any())
     lower = _DAMPING_HEIGHT + _BETWEEN if is_damped else 0.0
 
-    note = "speeds in rpm above the diagram: critical speeds, ● forward, ○ backward" if criticals else ""
+    note = (
+        "speeds in rpm above the diagram: critical speeds, ● forward, ○ backward"
+        if criticals
+        else f"no critical speed from {RPM * low:.0f} to {RPM * high:.0f} rpm"
+    )
     note += f"; {row.left_out} not named" * bool(row.left_out)
     figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + lower + FOOT, title, note)
     axes = panel(figure, FOOT + lower, _HEIGHT)

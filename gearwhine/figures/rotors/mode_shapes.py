@@ -1,4 +1,4 @@
-"""Mode shapes over a shaft: planar bending, torsion and static deflection as lines, whirl as orbits.
+"""Mode shapes over a shaft: planar bending, torsion and static deflection as lines, whirl as orbits, axial as arrows.
 
 Planar modes stand on a line each; the static deflection of a rotor under its load is drawn with its bearing reactions.
 Whirl modes are orbits along the shaft in oblique projection.
@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearwhine.figures.rotors.assembly import RotorAssembly
-from gearwhine.figures.rotors.campbell import Sense, legend_lines, sense_of
+from gearwhine.figures.rotors.campbell import AXIAL, Sense, legend_lines, sense_of
 from gearwhine.figures.rotors.shaft import MM, ShaftView, lay_out
 from gearwhine.figures.style import (
     BLUE,
@@ -51,6 +51,9 @@ _ORBITS, _ALONG = 17, 121  # orbits drawn, and places of the shaft's own line
 _BACK = 0.6 * np.exp(1j * np.radians(35.0))
 # An orbit ends short of its start, so that its sense is seen without colours too.
 _TURN = np.linspace(0.0, 0.86 * 2.0 * np.pi, 60)
+_EDGEWISE = 0.5  # of the largest displacement seen up: less of it is seen from the other side
+_ARROWS, _SHORTEST = 13, 0.5  # of a motion along the axis, and the shortest one [mm of paper]
+_TIGHT = {"shrinkA": 0, "shrinkB": 0}  # of arrows that begin and end at their points
 _HEIGHT = 60.0  # of the panel [mm of paper]
 _ARROW = 0.26  # of the panel's height, for the largest load
 _WORD, _EDGE = 0.08, 0.03  # ... for what a load is called, and beside all [of the height]
@@ -241,26 +244,30 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     """Whirl modes at one speed, lowest on top: the orbits of places along the shaft, and the shaft at one instant.
 
     Each orbit begins at a dot, where the shaft is at that instant, and ends short of it. Its colour tells its own
-    sense, which may change along a shaft whose bearings differ in x and y. Decay and growth are left out.
+    sense, which may change along a shaft whose bearings differ in x and y. Decay and growth are left out. A mode that
+    is for the most part along the axis is drawn by arrows along it, from where places are at rest. A mode in a plane
+    that is seen edgewise is drawn with x to the lower right, as the axes beside it show.
 
     Parameters
     ----------
     assembly
         The rotor, drawn above on the same axis.
     whirl
-        Its modes; those that are for the most part along the axis are left out.
+        Its modes.
     most
         Largest number of modes drawn; all where not given.
     """
     outline = lay_out(assembly, labelled=False)
     view = outline.view
-    lateral = np.flatnonzero(whirl.axial_share <= MOSTLY_AXIAL)
-    count = min(lateral.size, most if most is not None else lateral.size)
+    whole = int(whirl.frequencies.size)
+    count = min(whole, most if most is not None else whole)
     height = _MODE_HEIGHT * max(count, 1)
-    some = [f"the lowest {count} of {lateral.size}"] if count < lateral.size else []
-    note = "; ".join([*some, "orbits begin at the dot; each mode over its largest displacement", *outline.remarks])
+    along = [number for number in range(count) if whirl.axial_share[number] > MOSTLY_AXIAL]
+    told = [f"the lowest {count} of {whole}"] if count < whole else []
+    told += ["orbits begin at the dot"] * (len(along) < count) + ["arrows: motion along the axis"] * bool(along)
+    told += ["each mode over its largest displacement", *outline.remarks]
     title = f"Rotor {shortened(assembly.rotor.name, 20)}: whirl at {abs(whirl.speed) * RPM:.5g} rpm"
-    figure = sheet(HEAD + outline.height + height + FOOT, title, note)
+    figure = sheet(HEAD + outline.height + height + FOOT, title, "; ".join(told))
     upper = outline.draw(figure, FOOT + height)
     upper.spines["bottom"].set_visible(False)
     upper.tick_params(bottom=False, labelbottom=False)
@@ -270,17 +277,50 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     axes.set_ylim(0.0, height)
     places = np.linspace(0.0, assembly.rotor.length, _ALONG)
     x, y = whirl.evaluate(places)
+    z = whirl.evaluate_axial(places)
     senses: list[Sense] = []
     levels = height - _MODE_HEIGHT * (np.arange(count) + 0.5)
-    for number, level in zip(lateral[:count].tolist(), levels.tolist(), strict=True):
+    turning = -1.0 if whirl.speed < 0.0 else 1.0
+    for number, level in enumerate(levels.tolist()):
+        if number in along:
+            _draw_axial_mode(axes, view, places, z[number], level)
+            senses.append(AXIAL)
+            continue
         motion = _scaled(x[number], y[number])
-        senses += _draw_mode(axes, view, places, motion, level, -1.0 if whirl.speed < 0.0 else 1.0)
-    _draw_directions(axes, view)
-    axes.set_yticks(levels, [_name(whirl, number) for number in lateral[:count].tolist()])
+        back = _view_of(*motion)
+        senses += _draw_mode(axes, view, places, motion, level, turning, back)
+        if number == min(set(range(count)) - set(along)) or back != _BACK:
+            _draw_directions(axes, view, level, back)
+    axes.set_yticks(levels, [_name(whirl, number) for number in range(count)])
     axes.tick_params(axis="y", length=0.0, colors=INK)
     axes.spines["left"].set_visible(False)
     legend(figure, legend_lines(senses, solid=True))
     return figure
+
+
+def _view_of(x: ComplexArray, y: ComplexArray) -> complex:
+    """Return where x goes back to in the projection: to the lower right where a mode would else be seen edgewise."""
+
+    def seen(back: complex) -> float:
+        up = y + back.imag * x
+        return float(np.abs(up).max())
+
+    mirrored = _BACK.conjugate()
+    return complex(mirrored if seen(_BACK) < _EDGEWISE * seen(mirrored) else _BACK)
+
+
+def _draw_axial_mode(axes: Axes, view: ShaftView, z: FloatArray, motion: ComplexArray, level: float) -> None:
+    """Draw a motion along the axis at the instant at which its largest is at its end: arrows from places at rest."""
+    top = int(np.abs(motion).argmax())
+    moved = (motion * np.exp(-1j * np.angle(motion[top]))).real / (np.abs(motion[top]) or 1.0)
+    axes.plot(MM * z[[0, -1]], (level, level), color=GREY, lw=0.5, zorder=1)
+    head = {"arrowstyle": "-|>,head_width=0.14,head_length=0.3", "color": AXIAL.color, "lw": 1.1} | _TIGHT
+    for index in np.linspace(0, z.size - 1, _ARROWS).round().astype(int).tolist():
+        start, end = MM * float(z[index]), MM * float(z[index]) + view.length(_REACH) * float(moved[index])
+        axes.plot((start, start), (level - 1.4, level + 1.4), color=GREY, lw=0.6, zorder=2, label="at rest")
+        if abs(end - start) > view.length(_SHORTEST):
+            axes.annotate("", (end, level), (start, level), arrowprops=head, zorder=3, annotation_clip=False)
+    axes.plot(MM * z, level + 0.0 * z, lw=0.0, label="axial")
 
 
 def local_direction(x: ComplexArray, y: ComplexArray) -> FloatArray:
@@ -302,7 +342,13 @@ def _scaled(x: ComplexArray, y: ComplexArray) -> tuple[ComplexArray, ComplexArra
 
 
 def _draw_mode(
-    axes: Axes, view: ShaftView, z: FloatArray, motion: tuple[ComplexArray, ComplexArray], level: float, turning: float
+    axes: Axes,
+    view: ShaftView,
+    z: FloatArray,
+    motion: tuple[ComplexArray, ComplexArray],
+    level: float,
+    turning: float,
+    back: complex,
 ) -> list[Sense]:
     x, y = motion
     axes.plot(MM * z[[0, -1]], (level, level), color=GREY, lw=0.5, zorder=1)
@@ -311,31 +357,31 @@ def _draw_mode(
     size = np.hypot(np.abs(x), np.abs(y))
     for index in np.linspace(0, z.size - 1, _ORBITS).round().astype(int):
         phase = np.exp(1j * _TURN)
-        across, up = _project(view, MM * z[index], (x[index] * phase).real, (y[index] * phase).real, level)
+        across, up = _project(view, MM * z[index], (x[index] * phase).real, (y[index] * phase).real, level, back)
         sense = sense_of(float(directions[index]))
         axes.plot(across, up, color=sense.color, lw=0.8, zorder=2, label="orbit")
         axes.plot(across[:1], up[:1], ls="", marker="o", markersize=2.2, color=sense.color, zorder=4)
         if size[index] > 0.02:  # the sense of next to nothing is no sense
             senses.append(sense)
-    across, up = _project(view, MM * z, x.real, y.real, level)
+    across, up = _project(view, MM * z, x.real, y.real, level, back)
     axes.plot(across, up, color=INK, lw=1.1, zorder=3, label="shaft")
     return senses
 
 
 def _project(
-    view: ShaftView, z: FloatArray | float, x: FloatArray, y: FloatArray, level: float
+    view: ShaftView, z: FloatArray | float, x: FloatArray, y: FloatArray, level: float, back: complex
 ) -> tuple[FloatArray, FloatArray]:
     """Panel coordinates of displacements (one is the largest) at places z (mm): mm along the shaft, mm of paper up."""
-    back = _BACK * x
-    return np.asarray(z + view.length(_REACH) * back.real), np.asarray(level + _REACH * (y + back.imag))
+    behind = back * x
+    return np.asarray(z + view.length(_REACH) * behind.real), np.asarray(level + _REACH * (y + behind.imag))
 
 
-def _draw_directions(axes: Axes, view: ShaftView) -> None:
-    """Show where x and y point, left of the first mode and below its name."""
-    start, low = view.low - view.length(11.0), axes.get_ylim()[1] - 0.5 * _MODE_HEIGHT - 10.5
-    head = {"arrowstyle": "-|>,head_width=0.1,head_length=0.25", "color": GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
+def _draw_directions(axes: Axes, view: ShaftView, level: float, back: complex) -> None:
+    """Show where x and y point, left of a mode and below its name."""
+    start, low = view.low - view.length(11.0), level - 10.5
+    head = {"arrowstyle": "-|>,head_width=0.1,head_length=0.25", "color": GREY, "lw": 0.7} | _TIGHT
     for name, (x, y) in (("x", (0.7, 0.0)), ("y", (0.0, 0.5))):
-        across, up = _project(view, 0.0, np.array([x, 1.6 * x]), np.array([y, 1.5 * y]), 0.0)
+        across, up = _project(view, 0.0, np.array([x, 1.6 * x]), np.array([y, 1.5 * y]), 0.0, back)
         axes.annotate("", (start + across[0], low + up[0]), (start, low), arrowprops=head, annotation_clip=False)
         axes.text(start + across[1], low + up[1], name, fontsize=NOTE, color=GREY, ha="center", va="center")
 

@@ -12,7 +12,6 @@ import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MultipleLocator
 
 from gearwhine.figures.style import (
     FOOT,
@@ -25,6 +24,7 @@ from gearwhine.figures.style import (
     SERIES,
     Label,
     arrange,
+    degree_axis,
     draw_row,
     legend_beside_title,
     name_in_legend,
@@ -139,7 +139,7 @@ def draw_unbalance_response(
     upper.tick_params(labelbottom=False)
     upper.set_ylabel("amplitude [µm peak to peak]")
     lower.set(xlabel="speed of rotation [rpm]", ylabel="phase lag [°]")
-    lower.yaxis.set_major_locator(MultipleLocator(90.0))
+    degree_axis(lower)
     legend_beside_title(figure, upper, handles)
     draw_row(upper, row, _AMPLITUDE + 1.0)
     return figure
@@ -234,7 +234,7 @@ def draw_torsional_response(
     handles: list[Line2D] = []
     for axes, what, top, name in (
         (upper, "angle", tops[0], "angle [rad]"),
-        (lower, "torque", tops[1], "torque [N m]"),
+        (lower, "torque", tops[1], "torque [N·m]"),
     ):
         axes.set_xlim(low / HERTZ, high / HERTZ)
         for value in marked:

@@ -31,6 +31,7 @@ from gearwhine.figures.style import (
     name_in_legend,
     panel,
     panel_size,
+    plain,
     sheet,
     shortened,
 )
@@ -397,13 +398,13 @@ def _labels_above(assembly: RotorAssembly, view: ShaftView) -> list[Label]:
             labels.append(Label(text, MM * middle, view.across(assembly.shaft_radius(middle))))
     for disc in assembly.discs:
         ring = assembly.ring(disc)
-        labels.append(Label(f"{disc.mass:.3g} kg", MM * disc.at, view.across(ring[0]) if ring else 0.0))
+        labels.append(Label(f"{plain(disc.mass)} kg", MM * disc.at, view.across(ring[0]) if ring else 0.0))
     for gear in assembly.gears:
         text = gear.name if gear.teeth is None else f"{shortened(gear.name)}, {gear.teeth} teeth"
         labels.append(Label(text, MM * gear.at, 0.5 * view.across(gear.tip_diameter)))
     for unbalance in assembly.unbalances:
         # 1 kg·m is a million gram-millimetres.
-        text = f"{1e6 * unbalance.moment:.3g} g·mm at {math.degrees(unbalance.phase):.4g}°"
+        text = f"{plain(1e6 * unbalance.moment)} g·mm at {math.degrees(unbalance.phase):.4g}°"
         spot = view.across(assembly.outer_radius(unbalance.at)) + view.length(2.0 * _SPOT)
         labels.append(Label(text, MM * unbalance.at, spot, RED))
     for probe in assembly.probes:

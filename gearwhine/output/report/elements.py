@@ -8,11 +8,25 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from gearwhine.output.report.pictures import Shown, figure
-from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, is_number
+from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, arrowed, is_number
 
 _LONGEST = 60  # of an identifier [characters]
 _MARKS = {True: ("passed", "✓"), False: ("failed", "✗"), None: ("warned", "!")}  # of findings
 _WRAPPED = 20  # characters of a cell from which on its column may wrap
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+_UNIT = re.compile(r" (?=[→%])|(?<=\d) (?=(?:Hz|kHz|rpm|mm|µm|N|kg)\b)")
+_NUMBERED = re.compile(r"(?<=[^\W\d_]) (?=\d+\b(?![.,]\d))")  # before the number of a wheel, mode or bearing
+
+
+def worded(text: str) -> str:
+    """Return a text as HTML, an arrow between the gears of a pair."""
+    return escape(arrowed(text))
+
+
+def in_cell(text: str) -> str:
+    """Return the text of a cell as HTML: no line ends within a name such as ``wheel 1``, before an arrow or a unit."""
+    kept = _UNIT.sub(_NO_BREAK, arrowed(text))
+    return escape(_NUMBERED.sub(_NO_BREAK, kept))
 
 
 class Places:
@@ -92,7 +106,7 @@ class Writer:
 
     def chapter(self, section: Section, level: int = 3) -> str:
         """Return a section that folds, with all that is in it."""
-        heading = f"<h{level}>{escape(section.title)}{self._note(section)}</h{level}>"
+        heading = f"<h{level}>{worded(section.title)}{self._note(section)}</h{level}>"
         identifier = self._places.identifier(self._result, section.place)
         inner = "".join(self.chapter(one, level + 1) if one.title else self.content(one) for one in section.inner)
         return (
@@ -109,7 +123,7 @@ class Writer:
             elif isinstance(one, Finding):
                 parts.append(self._finding(one))
             else:
-                parts.append(f"<p>{escape(one.strip())}</p>\n")
+                parts.append(f"<p>{worded(one.strip())}</p>\n")
         shown = self._pictures.get(id(section), ())
         for small, row in ((False, "figures"), (True, "figures small")):
             if some := [self._figure(one) for one in shown if one.small is small]:
@@ -122,16 +136,16 @@ class Writer:
 
     def _note(self, section: Section) -> str:
         note = section.note.strip()
-        return f' <span class="note">{escape(note)}</span>' if note else ""
+        return f' <span class="note">{worded(note)}</span>' if note else ""
 
     def _finding(self, finding: Finding) -> str:
         kind, mark = _MARKS[finding.passed]
         more = ""
         for name in finding.link:
             if target := self._places.find(self._result, [name]):
-                more = f' <a href="#{target}">{escape(name.partition(" ")[2])}</a>'
+                more = f' <a href="#{target}">{worded(name.partition(" ")[2])}</a>'
                 break
-        told = f'<span class="mark">{mark}</span> <span>{escape(finding.text)}{more}</span>'
+        told = f'<span class="mark">{mark}</span> <span>{worded(finding.text)}{more}</span>'
         return f'<p class="finding {kind}">{told}</p>\n'
 
     def _table(self, table: Table) -> str:
@@ -144,14 +158,14 @@ class Writer:
             for word, length in zip(words, longest, strict=True)
         ]
         head = "".join(
-            f'<th scope="col"{kind}>{escape(column.heading)}</th>'
+            f'<th scope="col"{kind}>{worded(column.heading)}</th>'
             for column, kind in zip(columns, classes, strict=True)
         )
         body = "".join(
             f"<tr{self._row_identifier(table, row)}>{self._cells(columns, row, cells, classes)}</tr>\n"
             for row, cells in zip(table.rows, texts, strict=True)
         )
-        caption = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
+        caption = f"<caption>{worded(table.caption)}</caption>" if table.caption else ""
         return (
             f'<div class="table"><table>{caption}<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>\n'
         )
@@ -168,8 +182,7 @@ class Writer:
     def _cells(self, columns: Sequence[Column], row: Row, texts: Sequence[str], classes: Sequence[str]) -> str:
         parts = []
         for column, text, kind in zip(columns, texts, classes, strict=True):
-            # No line ends before a per cent sign.
-            told = escape(text).replace(" %", "\N{NO-BREAK SPACE}%") if text != NOTHING else "–"
+            told = in_cell(text) if text != NOTHING else "–"
             target = self._places.find(self._result, column.link(row)) if column.link and text != NOTHING else None
             parts.append(f"<td{kind}>" + (f'<a href="#{target}">{told}</a>' if target else told) + "</td>")
         return "".join(parts)

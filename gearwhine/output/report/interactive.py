@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.output.sections import Curves, Section
+from gearwhine.output.sections import Curves, Section, arrowed
 
 _RESULTS = "results.nc"
 _POINTS = 4000  # of a curve; of more, the largest of each stretch is shown
@@ -71,7 +71,7 @@ class Scripts:
             return ""
         frames = []
         for drawing in drawings:
-            caption = escape(drawing["caption"])
+            caption = escape(arrowed(drawing["caption"]))
             frames.append(
                 f'<figure class="live"><div class="plot" data-plot="{len(self._drawings)}" role="img" '
                 f'aria-label="{caption}"></div>'
@@ -86,7 +86,7 @@ class Scripts:
             return ""
         entries = "".join(
             f'<li id="{identifier}"><button type="button" data-shape="{number}" '
-            f'data-picture="{escape(shape.name)}">{escape(" ".join(shape.title.split()))}</button></li>\n'
+            f'data-picture="{escape(shape.name)}">{escape(arrowed(" ".join(shape.title.split())))}</button></li>\n'
             for number, (identifier, shape) in enumerate(zip(identifiers, self.shapes, strict=True))
         )
         return (
@@ -113,8 +113,8 @@ class Scripts:
     def written(self) -> str:
         """Return the scripts and their data as HTML, for the end of the page."""
         parts = [
-            f'<script type="application/octet-stream" class="model" data-title="{escape(shape.title)}" '
-            f'data-note="{escape(shape.note)}">{_packed(shape.model)}</script>\n'
+            f'<script type="application/octet-stream" class="model" data-title="{escape(arrowed(shape.title))}" '
+            f'data-note="{escape(arrowed(shape.note))}">{_packed(shape.model)}</script>\n'
             for shape in self.shapes
         ]
         # A slash that ends an element would end the data, too.
@@ -161,7 +161,7 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
     }
     if len(declared.along) == 1:
         x, curves = _coarse_curves(axes[0], values)
-        lines = [{"name": name, "y": _listed(curve)} for name, curve in zip(names, curves, strict=True)]
+        lines = [{"name": arrowed(name), "y": _listed(curve)} for name, curve in zip(names, curves, strict=True)]
         return [common | {"x": _listed(x), "curves": lines}]
     found = []
     for name, table in zip(names, values, strict=True):

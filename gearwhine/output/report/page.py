@@ -15,7 +15,7 @@ from typing import Any
 from gearwhine import __version__
 from gearwhine.case import Case, CaseError, Problem, dump_case
 from gearwhine.output.files import SUMMARY
-from gearwhine.output.report.elements import Places, Writer
+from gearwhine.output.report.elements import Places, Writer, worded
 from gearwhine.output.report.freshness import mismatches, moment, stored_case
 from gearwhine.output.report.interactive import MovingShape, Scripts, live_parts
 from gearwhine.output.report.pictures import Shown, distribute, figure, pictures_in
@@ -182,7 +182,7 @@ def _first_page(first: Sequence[Section], results: Sequence[_Result], places: Pl
             content += f'<div class="figures">{figure(chosen, "first-picture")}</div>\n'
         if section.title:
             identifier = places.identifier(_SUMMARY, section.place)
-            content = f'<section id="{identifier}"><h2>{escape(section.title)}</h2>\n{content}</section>\n'
+            content = f'<section id="{identifier}"><h2>{worded(section.title)}</h2>\n{content}</section>\n'
         parts.append(content)
     return f'<div class="first" id="{places.identifier(_SUMMARY, _SUMMARY)}">{"".join(parts)}</div>\n'
 
@@ -210,7 +210,7 @@ def _chapters(result: _Result, places: Places, scripts: Scripts | None) -> str:
     told = f'<p class="note">Made {escape(moment(made))}.</p>\n' if made else ""
     told += "".join(
         f'<p class="finding failed"><span class="mark">✗</span> '
-        f"<span>Does not fit the case any more: {escape(one)}.</span></p>\n"
+        f"<span>Does not fit the case any more: {worded(one)}.</span></p>\n"
         for one in result.stale
     )
     return (
@@ -232,7 +232,7 @@ def _contents(first: Sequence[Section], results: Sequence[_Result], places: Plac
     """Return the contents: the first page's sections, and each command with its chapters."""
 
     def entry(result: str, name: str, title: str, inner: str = "") -> str:
-        return f'<li><a href="#{places.identifier(result, name)}">{escape(title)}</a>{inner}</li>\n'
+        return f'<li><a href="#{places.identifier(result, name)}">{worded(title)}</a>{inner}</li>\n'
 
     def chapters(name: str, sections: Iterable[Section]) -> str:
         listed = "".join(entry(name, section.place, section.title) for section in sections if section.title)

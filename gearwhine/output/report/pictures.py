@@ -12,7 +12,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from gearwhine.output.sections import Picture, Section
+from gearwhine.output.sections import Picture, Section, arrowed
 
 _LARGEST = 8 << 20  # bytes: a larger file is no picture of ours
 _LIGHT = 512  # bytes: not worth packing
@@ -76,7 +76,7 @@ def _repeated(declared: Picture, files: Sequence[Path]) -> bool:
 
 def figure(shown: Shown, identifier: str) -> str:
     """Return a picture with its caption as HTML."""
-    caption = escape(shown.caption or f"File {shown.path.name}.")
+    caption = escape(arrowed(shown.caption) or f"File {shown.path.name}.")
     packed = _packed(shown.path, _SMALL if shown.small else _WIDE)
     if packed is None:
         return f'<figure id="{identifier}"><figcaption>{caption} The file cannot be read.</figcaption></figure>\n'
