@@ -130,7 +130,7 @@ def test_first_page_says_how_loud_it_is_and_proves_it(document: dict[str, Any]) 
     loudest = page["Loudest lines"]
     assert f"{document['total_db']:.1f} dB re 1 pW" in loudest.sentences[0]
     assert len(rows(loudest.tables[0])) == 5
-    (proof,) = [one for one in page["Is it sound?"].content if str(one).startswith("Sound:")]
+    (proof,) = [one for one in page["Are the results sound?"].content if str(one).startswith("Sound:")]
     assert proof.passed is True  # type: ignore[union-attr]
     # A run that holds the sound as a part has the same.
     nested = {"command": "run", "title": "box", "warnings": [], "sound": sound_document(sound_of_lines())}
@@ -140,7 +140,7 @@ def test_first_page_says_how_loud_it_is_and_proves_it(document: dict[str, Any]) 
 def test_powers_that_differ_fail_on_the_first_page(document: dict[str, Any]) -> None:
     lines = [line | {"surface_power_db": line["sound_power_db"] - 0.6} for line in document["lines"]]
     page = {section.title: section for section in first_page(None, [document | {"lines": lines}], [])}
-    (proof,) = [one for one in page["Is it sound?"].content if str(one).startswith("Sound:")]
+    (proof,) = [one for one in page["Are the results sound?"].content if str(one).startswith("Sound:")]
     assert proof.passed is False  # type: ignore[union-attr]
 
 

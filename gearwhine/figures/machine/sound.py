@@ -34,6 +34,7 @@ from gearwhine.figures.style import (
     panel,
     panel_size,
     sheet,
+    sheet_height,
     shortened,
 )
 from housing.acoustics.boundary_elements import SoundField
@@ -223,11 +224,10 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
         curves.append([_directed(line, directions) for line in lines])
     top = 5.0 * np.ceil(max(float(np.nanmax(curve)) for plane in curves for curve in plane) / 5.0)
     note = f"{shortened(title, 50)}; far field, referred to 1 m from the middle; level [dB re 20 µPa]"
-    height = HEAD + 6.0 + _ROSE + 8.0
-    figure = sheet(height, "Directivity at the loudest lines", note)
+    figure = sheet(HEAD + 6.0 + _ROSE + 8.0, "Directivity at the loudest lines", note)
     for place, ((heading, _, _, names), plane) in enumerate(zip(_PLANES, curves, strict=True)):
-        left = 8.0 + place * (_ROSE + _ROSE_ROOM)
-        box = (left / SHEET_WIDTH, 6.0 / height, _ROSE / SHEET_WIDTH, _ROSE / height)
+        left, tall = 8.0 + place * (_ROSE + _ROSE_ROOM), sheet_height(figure)
+        box = (left / SHEET_WIDTH, 6.0 / tall, _ROSE / SHEET_WIDTH, _ROSE / tall)
         axes = figure.add_axes(box, projection="polar")
         assert isinstance(axes, PolarAxes)
         for number, (line, curve) in enumerate(zip(lines, plane, strict=True)):

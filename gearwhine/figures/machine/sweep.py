@@ -13,6 +13,10 @@ from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.figures.style import (
     FOOT,
     HEAD,
+    INK,
+    LABEL,
+    LEFT,
+    PANEL_WIDTH,
     SERIES,
     legend_below,
     legend_height,
@@ -30,6 +34,7 @@ _LOUD = 40.0  # levels below the highest that have colours of their own [dB]
 _MARKS = 30  # points up to which each is marked
 _LEVELS, _LEVELS_GAP = 36.0, 8.0  # height of a sensor's panel, and between two for a title [mm of paper]
 _FORCES, _FORCES_GAP = 42.0, 8.0  # the same of a gear pair's panels
+_LINES, _SCALE = 50.0, 17.0  # height of the panel of loudest lines, and room for its scale of colours
 _FIRST = 5.0  # above the first, for its title
 _COLUMNS = 3  # of the names of lines
 
@@ -111,32 +116,49 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
 
 def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
     """Draw the sound power level over the sweep; of one swept key also the frequencies of the loudest lines."""
-    alone = len(places) == 1
-    figure = Figure(figsize=(9.0, 6.2 if alone else 3.6), layout="constrained")
-    rows = figure.subplots(2 if alone else 1, 1, sharex=True, squeeze=False)[:, 0]
-    _draw_lines(rows[0], dataset["sound_power_level_a"], along, places)
-    _draw_lines(rows[0], dataset["sound_power_level"], along, places, dashed=True)
-    rows[0].set_ylabel("sound power level\n[dB re 1 pW]")
-    rows[0].set_title("A-weighted, and unweighted (dashed)", fontsize=10, loc="left")
+    below, alone = _legend_height(places), len(places) == 1
+    lower = FOOT + below
+    upper = lower + (_LINES + _FORCES_GAP if alone else 0.0)
+    note = f"{title}; sound power levels re 1 pW, solid: A-weighted, dashed: unweighted"
+    figure = sheet(HEAD + _FIRST + upper + _FORCES, f"Sound over {_key(dataset, along)}", note)
+    # Both have one width, with room for the scale of colours.
+    width = PANEL_WIDTH - _SCALE if alone else PANEL_WIDTH
+    axes = panel(figure, upper, _FORCES, width=width)
+    _draw_lines(axes, dataset["sound_power_level_a"], along, places)
+    _draw_lines(axes, dataset["sound_power_level"], along, places, dashed=True)
+    axes.set_ylabel("sound power level [dB]")
     if alone:
-        levels = dataset["sound_line_level"].transpose(along, "sound_line").values
-        frequencies = dataset["sound_line_frequency"].transpose(along, "sound_line").values
-        at = np.broadcast_to(_numbers(dataset, along)[:, None], levels.shape)
-        # The quiet ones first, below the loud ones.
-        order = np.argsort(levels, axis=None)[: int(np.isfinite(levels).sum())]
-        color = levels.ravel()[order]
-        low = max(float(color.min()), float(color.max()) - _LOUD)
-        drawn = rows[1].scatter(
-            at.ravel()[order], frequencies.ravel()[order], c=color, cmap="viridis_r", vmin=low, s=22.0, lw=0.0, zorder=3
-        )
-        figure.colorbar(drawn, ax=rows[1], label="sound power level [dB re 1 pW]", shrink=0.9)
-        rows[1].set_ylabel("frequency [Hz]")
-        rows[1].set_ylim(bottom=0.0)
-        rows[1].set_title("loudest lines of each point", fontsize=10, loc="left")
-        tidy(rows[1])
-    _finish(figure, dataset, along, places)
-    figure.suptitle(f"{title}: sound over {_axis_label(dataset, along)}", fontsize=11, parse_math=False)
+        panel_title(axes, "all lines")
+        axes.tick_params(labelbottom=False)
+        limits = axes.get_xlim()
+        axes = panel(figure, lower, _LINES, width=width)
+        bar = panel(figure, lower, _LINES, left=LEFT + width + 3.0, width=3.0)
+        _draw_loudest(axes, bar, dataset, along)
+        axes.set_xlim(*limits)
+    axes.set_xlabel(_axis_label(dataset, along))
+    _name_values(axes.xaxis, dataset, along)
+    _name_lines(figure, dataset, places)
     return figure
+
+
+def _draw_loudest(axes: Any, bar: Any, dataset: xr.Dataset, along: str) -> None:
+    """Draw the frequencies of each point's loudest lines, coloured by their levels."""
+    levels = dataset["sound_line_level"].transpose(along, "sound_line").values
+    frequencies = dataset["sound_line_frequency"].transpose(along, "sound_line").values
+    at = np.broadcast_to(_numbers(dataset, along)[:, None], levels.shape)
+    # The quiet ones first, below the loud ones.
+    order = np.argsort(levels, axis=None)[: int(np.isfinite(levels).sum())]
+    color = levels.ravel()[order]
+    low = max(float(color.min()), float(color.max()) - _LOUD)
+    drawn = axes.scatter(
+        at.ravel()[order], frequencies.ravel()[order], c=color, cmap="viridis_r", vmin=low, s=12.0, lw=0.0, zorder=3
+    )
+    axes.figure.colorbar(drawn, cax=bar)
+    bar.set_ylabel("sound power level [dB]", size=LABEL, color=INK)
+    bar.yaxis.set_label_coords(3.6, 0.5)
+    axes.set_ylabel("frequency [Hz]")
+    axes.set_ylim(bottom=0.0)
+    panel_title(axes, "loudest lines of each point")
 
 
 def _waterfalls(
