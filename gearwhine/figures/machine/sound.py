@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
-from matplotlib.ticker import FixedLocator, MultipleLocator
+from matplotlib.ticker import MultipleLocator
 
 from gearwhine.case import Case
 from gearwhine.figures.style import (
@@ -234,7 +234,8 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
             shown = np.maximum(curve, top - _ROSE_RANGE)
             axes.plot(_ANGLES, shown, color=SERIES[number], lw=1.2, label=_text(line), zorder=3)
         axes.set_rlim(top - _ROSE_RANGE, top)
-        axes.yaxis.set_major_locator(FixedLocator(list(np.arange(top - _ROSE_RANGE + 10.0, top + 1.0, 10.0))))
+        rings = np.arange(top - _ROSE_RANGE + 10.0, top + 1.0, 10.0)
+        axes.set_yticks(rings, [f"{ring:.0f}" for ring in rings])
         axes.set_rlabel_position(67.5)
         axes.tick_params(axis="y", labelsize=NOTE - 0.5, labelcolor=GREY)
         axes.tick_params(axis="x", labelsize=NOTE, labelcolor=INK, pad=-2.0)
