@@ -44,6 +44,11 @@ def test_document_has_the_levels_of_the_solution(solved: SolvedSound, document: 
             entry["radiation_efficiency"]
         )
         assert entry["surface_power_db"] == pytest.approx(10.0 * np.log10(line.sound.surface_power / 1e-12))
+    # IEC 61672-1:2013, Table 3, at the nominal 500, 1000 and 2000 Hz, of lines near by.
+    weights = {
+        entry["frequency_hz"]: entry["sound_power_db_a"] - entry["sound_power_db"] for entry in document["lines"]
+    }
+    assert [weights[hertz] for hertz in (520.0, 1000.0, 2100.0)] == pytest.approx([-3.2, 0.0, 1.2], abs=0.3)
     surface = solved.radiation.elements[0].surface
     assert (document["surface"]["triangles"], document["surface"]["area_m2"]) == (len(surface.triangles), surface.area)
     assert document["surface"]["caps_m2"] == pytest.approx(2.0 * np.pi * 0.025**2, rel=0.3)
