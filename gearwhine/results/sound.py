@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, percent, table_of
+from gearwhine.output.sections import (
+    Column,
+    Document,
+    Picture,
+    Section,
+    Table,
+    arrowed,
+    columns_of,
+    counted,
+    percent,
+    table_of,
+)
 from housing.acoustics.sound_levels import power_level, pressure_level
 
 if TYPE_CHECKING:
@@ -132,7 +143,7 @@ def _largest(heading: str, group: str, *, share: bool = True) -> Column:
 _LINE = Column("line [Hz]", "frequency_hz", ".1f", link=_picture_of)
 _ORDER = Column("order", "order", ".4g")
 _LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB]", "sound_power_db_a", ".1f"))
-_NAME = Column("what it is", lambda row: str(row["name"]).replace(" -> ", " → "))
+_NAME = Column("what it is", lambda row: arrowed(str(row["name"])))
 _MODE, _FACE = _largest("by mode", "housing_modes"), _largest("by face", "faces")
 
 LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _largest("by bearing", "bearings", share=False), _FACE)

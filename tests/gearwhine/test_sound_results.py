@@ -44,6 +44,11 @@ def test_document_has_the_levels_of_the_solution(solved: SolvedSound, document: 
             entry["radiation_efficiency"]
         )
         assert entry["surface_power_db"] == pytest.approx(10.0 * np.log10(line.sound.surface_power / 1e-12))
+    # IEC 61672-1:2013, Table 3, at the nominal 500, 1000 and 2000 Hz, of lines near by.
+    weights = {
+        entry["frequency_hz"]: entry["sound_power_db_a"] - entry["sound_power_db"] for entry in document["lines"]
+    }
+    assert [weights[hertz] for hertz in (520.0, 1000.0, 2100.0)] == pytest.approx([-3.2, 0.0, 1.2], abs=0.3)
     surface = solved.radiation.elements[0].surface
     assert (document["surface"]["triangles"], document["surface"]["area_m2"]) == (len(surface.triangles), surface.area)
     assert document["surface"]["caps_m2"] == pytest.approx(2.0 * np.pi * 0.025**2, rel=0.3)
@@ -130,7 +135,7 @@ def test_first_page_says_how_loud_it_is_and_proves_it(document: dict[str, Any]) 
     loudest = page["Loudest lines"]
     assert f"{document['total_db']:.1f} dB re 1 pW" in loudest.sentences[0]
     assert len(rows(loudest.tables[0])) == 5
-    (proof,) = [one for one in page["Is it sound?"].content if str(one).startswith("Sound:")]
+    (proof,) = [one for one in page["Are the results sound?"].content if str(one).startswith("Sound:")]
     assert proof.passed is True  # type: ignore[union-attr]
     # A run that holds the sound as a part has the same.
     nested = {"command": "run", "title": "box", "warnings": [], "sound": sound_document(sound_of_lines())}
@@ -140,7 +145,7 @@ def test_first_page_says_how_loud_it_is_and_proves_it(document: dict[str, Any]) 
 def test_powers_that_differ_fail_on_the_first_page(document: dict[str, Any]) -> None:
     lines = [line | {"surface_power_db": line["sound_power_db"] - 0.6} for line in document["lines"]]
     page = {section.title: section for section in first_page(None, [document | {"lines": lines}], [])}
-    (proof,) = [one for one in page["Is it sound?"].content if str(one).startswith("Sound:")]
+    (proof,) = [one for one in page["Are the results sound?"].content if str(one).startswith("Sound:")]
     assert proof.passed is False  # type: ignore[union-attr]
 
 

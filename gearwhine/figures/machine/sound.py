@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
-from matplotlib.ticker import FixedLocator, MultipleLocator
+from matplotlib.ticker import MultipleLocator
 
 from gearwhine.case import Case
 from gearwhine.figures.style import (
@@ -34,6 +34,7 @@ from gearwhine.figures.style import (
     panel,
     panel_size,
     sheet,
+    sheet_height,
     shortened,
 )
 from housing.acoustics.boundary_elements import SoundField
@@ -223,18 +224,18 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
         curves.append([_directed(line, directions) for line in lines])
     top = 5.0 * np.ceil(max(float(np.nanmax(curve)) for plane in curves for curve in plane) / 5.0)
     note = f"{shortened(title, 50)}; far field, referred to 1 m from the middle; level [dB re 20 µPa]"
-    height = HEAD + 6.0 + _ROSE + 8.0
-    figure = sheet(height, "Directivity at the loudest lines", note)
+    figure = sheet(HEAD + 6.0 + _ROSE + 8.0, "Directivity at the loudest lines", note)
     for place, ((heading, _, _, names), plane) in enumerate(zip(_PLANES, curves, strict=True)):
-        left = 8.0 + place * (_ROSE + _ROSE_ROOM)
-        box = (left / SHEET_WIDTH, 6.0 / height, _ROSE / SHEET_WIDTH, _ROSE / height)
+        left, tall = 8.0 + place * (_ROSE + _ROSE_ROOM), sheet_height(figure)
+        box = (left / SHEET_WIDTH, 6.0 / tall, _ROSE / SHEET_WIDTH, _ROSE / tall)
         axes = figure.add_axes(box, projection="polar")
         assert isinstance(axes, PolarAxes)
         for number, (line, curve) in enumerate(zip(lines, plane, strict=True)):
             shown = np.maximum(curve, top - _ROSE_RANGE)
             axes.plot(_ANGLES, shown, color=SERIES[number], lw=1.2, label=_text(line), zorder=3)
         axes.set_rlim(top - _ROSE_RANGE, top)
-        axes.yaxis.set_major_locator(FixedLocator(list(np.arange(top - _ROSE_RANGE + 10.0, top + 1.0, 10.0))))
+        rings = np.arange(top - _ROSE_RANGE + 10.0, top + 1.0, 10.0)
+        axes.set_yticks(rings, [f"{ring:.0f}" for ring in rings])
         axes.set_rlabel_position(67.5)
         axes.tick_params(axis="y", labelsize=NOTE - 0.5, labelcolor=GREY)
         axes.tick_params(axis="x", labelsize=NOTE, labelcolor=INK, pad=-2.0)

@@ -15,8 +15,9 @@ from gearwhine.figures.style import (
     HEAD,
     INK,
     LABEL,
+    LEFT,
+    PANEL_WIDTH,
     SERIES,
-    TICK,
     legend_below,
     legend_height,
     log_axis,
@@ -33,7 +34,7 @@ _LOUD = 40.0  # levels below the highest that have colours of their own [dB]
 _MARKS = 30  # points up to which each is marked
 _LEVELS, _LEVELS_GAP = 36.0, 8.0  # height of a sensor's panel, and between two for a title [mm of paper]
 _FORCES, _FORCES_GAP = 42.0, 8.0  # the same of a gear pair's panels
-_ORDERS = 56.0  # height of the panel of the lines' frequencies [mm]
+_LINES, _SCALE = 50.0, 17.0  # height of the panel of loudest lines, and room for its scale of colours
 _FIRST = 5.0  # above the first, for its title
 _COLUMNS = 3  # of the names of lines
 
@@ -116,39 +117,48 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
 def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
     """Draw the sound power level over the sweep; of one swept key also the frequencies of the loudest lines."""
     below, alone = _legend_height(places), len(places) == 1
-    foot = FOOT + below + (_ORDERS + _FORCES_GAP if alone else 0.0)
-    note = f"{title}; dB re 1 pW; solid: A-weighted, dashed: unweighted"
-    figure = sheet(HEAD + _FIRST + _FORCES + foot, f"Sound power over {_key(dataset, along)}", note)
-    upper = panel(figure, foot, _FORCES)
-    _draw_lines(upper, dataset["sound_power_level_a"], along, places)
-    _draw_lines(upper, dataset["sound_power_level"], along, places, dashed=True)
-    upper.set_ylabel("sound power level [dB]")
-    panel_title(upper, "all lines")
-    lowest = upper
+    lower = FOOT + below
+    upper = lower + (_LINES + _FORCES_GAP if alone else 0.0)
+    note = f"{title}; sound power levels re 1 pW, solid: A-weighted, dashed: unweighted"
+    figure = sheet(HEAD + _FIRST + upper + _FORCES, f"Sound over {_key(dataset, along)}", note)
+    # Both have one width, with room for the scale of colours.
+    width = PANEL_WIDTH - _SCALE if alone else PANEL_WIDTH
+    axes = panel(figure, upper, _FORCES, width=width)
+    _draw_lines(axes, dataset["sound_power_level_a"], along, places)
+    _draw_lines(axes, dataset["sound_power_level"], along, places, dashed=True)
+    axes.set_ylabel("sound power level [dB]")
     if alone:
-        upper.tick_params(labelbottom=False)
-        lowest = panel(figure, FOOT + below, _ORDERS)
-        levels = dataset["sound_line_level"].isel(places[0]).transpose(along, "sound_line").values
-        frequencies = dataset["sound_line_frequency"].isel(places[0]).transpose(along, "sound_line").values
-        at = np.broadcast_to(_numbers(dataset, along)[:, None], levels.shape)
-        # The quiet ones first, below the loud ones.
-        order = np.argsort(levels, axis=None)[: int(np.isfinite(levels).sum())]
-        color = levels.ravel()[order]
-        low = max(float(color.min()), float(color.max()) - _LOUD)
-        drawn = lowest.scatter(
-            at.ravel()[order], frequencies.ravel()[order], c=color, cmap="viridis_r", vmin=low, s=14.0, lw=0.0, zorder=3
-        )
-        bar = figure.colorbar(drawn, ax=[upper, lowest], fraction=0.03, pad=0.02)
-        bar.set_label("level of the line [dB]", size=LABEL, color=INK)
-        bar.ax.tick_params(labelsize=TICK, colors=INK)
-        lowest.set_ylabel("frequency [Hz]")
-        lowest.set_ylim(bottom=0.0)
-        panel_title(lowest, "loudest lines of each point")
-        upper.set_xlim(lowest.get_xlim())
-    lowest.set_xlabel(_axis_label(dataset, along))
-    _name_values(lowest.xaxis, dataset, along)
+        panel_title(axes, "all lines")
+        axes.tick_params(labelbottom=False)
+        limits = axes.get_xlim()
+        axes = panel(figure, lower, _LINES, width=width)
+        bar = panel(figure, lower, _LINES, left=LEFT + width + 3.0, width=3.0)
+        _draw_loudest(axes, bar, dataset, along)
+        axes.set_xlim(*limits)
+    axes.set_xlabel(_axis_label(dataset, along))
+    _name_values(axes.xaxis, dataset, along)
     _name_lines(figure, dataset, places)
     return figure
+
+
+def _draw_loudest(axes: Any, bar: Any, dataset: xr.Dataset, along: str) -> None:
+    """Draw the frequencies of each point's loudest lines, coloured by their levels."""
+    levels = dataset["sound_line_level"].transpose(along, "sound_line").values
+    frequencies = dataset["sound_line_frequency"].transpose(along, "sound_line").values
+    at = np.broadcast_to(_numbers(dataset, along)[:, None], levels.shape)
+    # The quiet ones first, below the loud ones.
+    order = np.argsort(levels, axis=None)[: int(np.isfinite(levels).sum())]
+    color = levels.ravel()[order]
+    low = max(float(color.min()), float(color.max()) - _LOUD)
+    drawn = axes.scatter(
+        at.ravel()[order], frequencies.ravel()[order], c=color, cmap="viridis_r", vmin=low, s=12.0, lw=0.0, zorder=3
+    )
+    axes.figure.colorbar(drawn, cax=bar)
+    bar.set_ylabel("sound power level [dB]", size=LABEL, color=INK)
+    bar.yaxis.set_label_coords(3.6, 0.5)
+    axes.set_ylabel("frequency [Hz]")
+    axes.set_ylim(bottom=0.0)
+    panel_title(axes, "loudest lines of each point")
 
 
 def _waterfalls(
