@@ -31,12 +31,12 @@ from gearwhine.solve.plausibility import (
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
-from gearwhine.solve.sound import MotionLines, SolvedSound, highest_frequency, lines_of_steady, solve_sound
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.solve.sound import MotionLines, SolvedSound
     from gearwhine.sweep.run import SweptPoint
 
 
@@ -372,6 +372,9 @@ def sound(
     housing.HousingError
         Where the power through the surface and in the far field differ by more than 10 %.
     """
+    # The acoustics' kernels are for this analysis alone.
+    from gearwhine.solve.sound import highest_frequency, lines_of_steady, solve_sound
+
     require(case, "housing", command="sound")
     if case.acoustics is None:
         case = case.model_copy(update={"acoustics": Acoustics()})

@@ -36,7 +36,6 @@ from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings,
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.signature import solve_signature
-from gearwhine.solve.sound import highest_frequency, lines_of_run, solve_sound, with_histories
 from gearwhine.solve.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.solve.transient_record import stored_record
 
@@ -170,6 +169,8 @@ def run(
             seconds["time_stepping"] = transient.result.seconds
 
     if case.acoustics is not None and housing is not None:
+        from gearwhine.solve.sound import highest_frequency, lines_of_run, solve_sound, with_histories
+
         begin = time.perf_counter()
         motions = [] if signature is None else lines_of_run(signature, highest_frequency(case, housing))
         sound = solve_sound(case, housing, motions, machine if motions else None, progress)

@@ -790,8 +790,8 @@ def _weight(static: Document) -> Iterator[str | Table]:
         Column("bearing carries", "name"),
         *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xyz" if along else "xy")),
     )
-    forces = counted(len(static["forces"]), "constant force")
-    under = f"Under its weight and {forces}" if static["forces"] else "Under its weight"
+    pulled = static.get("forces", ())
+    under = f"Under its weight and {counted(len(pulled), 'constant force')}" if pulled else "Under its weight"
     yield from table_of(columns, static["bearings"], f"{under}{_with_bearings_at(static['bearings_at_rpm'])}")
     sag, place = 1e6 * static["largest_deflection_m"], 1e3 * static["largest_deflection_at_m"]
     yield f"It sags most at {place:.5g} mm, by {sag:.3g} µm"

@@ -27,7 +27,6 @@ from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, machine_warnings
-from gearwhine.solve.sound import strongest_lines
 from gearwhine.solve.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.sweep.points import Point, code_digest
 from housing.storage.atomic_file import checksum_holds, write_checksum
@@ -175,6 +174,8 @@ def _reduced(
     forces = solved.histories.bearing_load
     frequencies, rates = np.empty(0), np.empty((0, 0, 2))
     if case.acoustics is not None and solved.machine.housing is not None:
+        from gearwhine.solve.sound import strongest_lines
+
         frequencies, rates = strongest_lines(case, solved)
     return PointResult(
         document=document,
