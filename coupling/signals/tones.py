@@ -78,9 +78,11 @@ def hann_tones(spectrum: Spectrum, weights: npt.ArrayLike, floor: float = 1e-6) 
         loud = np.argsort(-_size(amplitudes, own), kind="stable")[:_LEAKING]
         distance = low[:, None] - (low + offset)[loud]
         itself = np.arange(len(low))[:, None] == loud
-        others = [np.where(itself, 0.0, _hann(distance + side)) for side in (0.0, 1.0)]
-        corrected = [lines - amplitudes[:, loud] @ leaked.T for lines, leaked in zip(pair, others, strict=True)]
-        offset, amplitudes = _interpolated(*corrected, own)
+        lower, upper = (
+            held - amplitudes[:, loud] @ np.where(itself, 0.0, _hann(distance + side)).T
+            for held, side in zip(pair, (0.0, 1.0), strict=True)
+        )
+        offset, amplitudes = _interpolated(lower, upper, own)
     return Tones(spectrum.spacing * (low + offset), amplitudes)
 
 

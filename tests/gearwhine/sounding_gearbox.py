@@ -42,3 +42,9 @@ def quick_run(revolutions: float) -> Result[RunSolution]:
     """Run it over these turns after sixteen; 24 are whole ones of both shafts."""
     turns = {"transient.revolutions": revolutions, "transient.discard": 16.0}
     return sounding_gearbox(QUICK | turns).run()
+
+
+@cache
+def heard_run() -> Result[RunSolution]:
+    """Run it over eight turns with a microphone above it."""
+    return sounding_gearbox(TOP | {"transient.revolutions": 16.0, "transient.discard": 8.0}).run()

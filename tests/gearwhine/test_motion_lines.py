@@ -12,8 +12,10 @@ import gearwhine as gw
 from coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.case import CaseError, swept_keys
 from gearwhine.solve.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
-from gearwhine.solve.sound import microphones_of
+from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
+from gearwhine.solve.sound import microphones_of, solve_sound
 from gearwhine.sweep.sound import add_sound
+from housing.pictures.drawn_shapes import drawn_housing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -132,8 +134,6 @@ def test_lines_beyond_the_wanted_number_and_frequency_are_named() -> None:
     assert every is not None
     study = sounding_gearbox(QUICK | {"acoustics.lines": 2, "acoustics.highest_frequency": "2 kHz"})
     case = study.case
-    from gearwhine.solve.sound import solve_sound
-
     transient = result.solved.transient
     assert transient is not None
     found = solve_sound(case, sounding_housing(), lines_of_run(transient, 3000.0), transient.machine)
@@ -228,3 +228,13 @@ def test_the_box_of_microphones_stands_on_the_floor() -> None:
 def test_refuses_a_box_without_a_floor_and_its_names(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(CaseError, match=message):
         gw.load("small-gearbox", changes)
+
+
+def test_titles_of_operating_shapes_have_arrows() -> None:
+    solved = quick_run(24.0).solved
+    assert solved.signature is not None
+    surface = drawn_housing(sounding_housing().mesh)
+    lines = [line for line in highest_lines(solved.signature, 3000.0, 6) if "->" in line.name]
+    titles = [operating_shape_of_line(line, sounding_housing().modes, surface).title for line in lines]
+    assert "Operating shape at 2520.0 Hz   1× pinion → wheel" in titles
+    assert not any("->" in title for title in titles)
