@@ -1,12 +1,17 @@
-"""Progress of long work: a live line on a terminal, plain lines elsewhere, nothing when quiet."""
+"""Progress of long work: a live line on a terminal, plain lines elsewhere, nothing when quiet; work on two threads."""
 
 import logging
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from typing import Protocol
+from typing import Protocol, TypeVar
 
+Item = TypeVar("Item")
+Found = TypeVar("Found")
+
+_THREADS = 2
 _OFTEN = 30.0  # seconds between reports of long work
 _WORTH_SAYING = 5.0  # seconds left, from which on they are shown
 
@@ -23,6 +28,28 @@ class Progress(Protocol):
 
 def silent(message: str, fraction: float | None = None) -> None:
     """Say nothing."""
+
+
+def in_order(
+    solve: Callable[[Item], Found], items: Sequence[Item], what: str, progress: Progress = silent
+) -> tuple[Found, ...]:
+    """Solve for each item on two threads under the progress; the results are in the order of the items.
+
+    Parameters
+    ----------
+    solve : callable
+        Of one item; it releases the interpreter in its long work.
+    items : sequence
+    what : str
+        The work in words.
+    progress : callable
+    """
+    found: list[Found] = []
+    with ThreadPoolExecutor(_THREADS) as pool:
+        for one in pool.map(solve, items):
+            found.append(one)
+            progress(what, len(found) / len(items))
+    return tuple(found)
 
 
 @contextmanager

@@ -138,8 +138,8 @@ def export_results(
     case : Case, optional
         Gives the positions of the sensors; by default that of the newest result.
     formats : sequence of {"csv", "uff", "wav"}
-        Tables of the report; histories, spectra and transmissibilities as datasets 58; accelerations of the sensors'
-        histories as sound.
+        Tables of the report; histories, spectra and transmissibilities as datasets 58; accelerations of the sensors
+        and sound pressures of the microphones as sound.
     signals : {"sensors", "all"}
         Whether the universal files leave out forces and motions of bearings, gears and meshes.
 
@@ -192,14 +192,20 @@ def _direction(unit_vector: tuple[float, float, float] | None) -> int:
     return 0
 
 
+def _either(row: Document, quantity: str) -> float:
+    """Return a quantity of a sound file in the unit of its signal."""
+    return float(row.get(f"{quantity}_m_per_s2", row.get(f"{quantity}_pa", 0.0)))
+
+
 def export_sections(document: Document) -> tuple[Section, ...]:
     """Return what was exported, as tables."""
     sounds = (
         Column("file", "file"),
-        Column("sensor", "sensor"),
-        Column("full scale [m/s²]", "full_scale_m_per_s2", "g"),
-        Column("peak [m/s²]", "peak_m_per_s2"),
-        Column("rms [m/s²]", "rms_m_per_s2"),
+        Column("sensor or microphone", lambda row: str(row.get("sensor", row.get("microphone")))),
+        Column("unit", lambda row: "Pa" if "microphone" in row else "m/s²"),
+        Column("full scale", lambda row: f"{_either(row, 'full_scale'):g}"),
+        Column("peak", lambda row: f"{_either(row, 'peak'):.3g}"),
+        Column("rms", lambda row: f"{_either(row, 'rms'):.3g}"),
         Column("length [s]", "seconds", ".3f"),
     )
     tables = (Column("file", "file"), Column("rows", "rows"))
@@ -210,7 +216,7 @@ def export_sections(document: Document) -> tuple[Section, ...]:
             (
                 *table_of(tables, document.get("tables", ()), "Tables (CSV)"),
                 *table_of(functions, document.get("universal_files", ()), "Universal files, datasets 58"),
-                *table_of(sounds, document.get("sounds", ()), "Sounds of the sensors' acceleration (WAV)"),
+                *table_of(sounds, document.get("sounds", ()), "Sounds of sensors and microphones (WAV)"),
             ),
         ),
     )

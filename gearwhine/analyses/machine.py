@@ -36,7 +36,7 @@ from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.solve.sound import MotionLines, SolvedSound
+    from gearwhine.solve.sound import SolvedSound
     from gearwhine.sweep.run import SweptPoint
 
 
@@ -373,24 +373,25 @@ def sound(
         Where the power through the surface and in the far field differ by more than 10 %.
     """
     # The acoustics' kernels are for this analysis alone.
-    from gearwhine.solve.sound import highest_frequency, lines_of_steady, solve_sound
+    from gearwhine.solve.motion_lines import left_out_warnings, lines_of_steady
+    from gearwhine.solve.sound import highest_estimated, solve_sound
 
     require(case, "housing", command="sound")
     if case.acoustics is None:
         case = case.model_copy(update={"acoustics": Acoustics()})
     if housing is None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    machine = None
-    motions: list[MotionLines] = []
+    machine, motion = None, None
     told: list[dict[str, Any]] = []
-    if case.rotor and case.operation is not None:
+    steady = case.model_copy(update={"transient": None})
+    if case.rotor and case.operation is not None and not (told := left_out_warnings(steady)):
         require_machine(case)
         load, told = find_load(case, housing, progress)
         point = None if load is None else load.point
         _, _, machine = solve_machine(case, progress, housing=housing, point=point)
         steady_state = solve_steady(case, machine, housing, progress)
-        motions = lines_of_steady(steady_state, highest_frequency(case, housing))
-    solved = solve_sound(case, housing, motions, machine, progress)
+        motion = lines_of_steady(steady_state, highest_estimated(case, housing))
+    solved = solve_sound(case, housing, motion, machine, progress)
     document = {"title": case.title} | sound_document(solved)
     add_warnings(document, [*solved.warnings(), *told])
 

@@ -169,15 +169,18 @@ def run(
             seconds["time_stepping"] = transient.result.seconds
 
     if case.acoustics is not None and housing is not None:
-        from gearwhine.solve.sound import highest_frequency, lines_of_run, solve_sound, with_histories
+        from gearwhine.solve.motion_lines import left_out_warnings, lines_of_run
+        from gearwhine.solve.sound import highest_estimated, solve_sound, with_histories
 
         begin = time.perf_counter()
-        motions = [] if signature is None else lines_of_run(signature, highest_frequency(case, housing))
-        sound = solve_sound(case, housing, motions, machine if motions else None, progress)
+        motion, without = None, []
+        if transient is not None and not (without := left_out_warnings(case)):
+            motion = lines_of_run(transient, highest_estimated(case, housing))
+        sound = solve_sound(case, housing, motion, machine, progress)
         if transient is not None:
-            sound = with_histories(sound, transient, progress)
+            sound = with_histories(case, sound, transient, progress)
         document["sound"] = sound_document(sound)
-        add_warnings(document, sound.warnings())
+        add_warnings(document, [*without, *sound.warnings()])
         timed("sound", begin)
 
     seconds["total"] = time.perf_counter() - start

@@ -1,4 +1,4 @@
-"""Export of a results folder: tables as CSV, histories and spectra as universal files, sensors' signals as sound.
+"""Export of a results folder: tables as CSV, histories and spectra as universal files, signals as sound.
 
 Everything is made from what commands left in the folder: the tables of their documents, and the labelled arrays of
 their NetCDF files. Nothing is solved.
@@ -13,7 +13,7 @@ import struct
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 Chapters = Callable[[Document], Iterable[Section]]
 Signals = Literal["sensors", "all"]
+_Places = dict[tuple[str, str], tuple[int, int]]  # point and direction by kind and name
 
 AUDIO_RATE = 48_000
 """Sampling rate of sound files [Hz]."""
@@ -41,6 +42,7 @@ _FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # of a full scale
 _RATIO_LIMIT = 10_000  # of the terms of a resampling ratio: the pitch is right to 1e-8
 _HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
 _ATTENUATION = 100.0  # dB, of what would fold back
+_MEASURED = ("sensor", "microphone")  # dimensions of what is measured on a real machine, too
 _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response", "Hz": "spectrum"}
 
 
@@ -102,6 +104,8 @@ def write_universal_files(
 ) -> list[Document]:
     """Write histories, spectra and transmissibilities as universal files with datasets 58.
 
+    Microphones have the points after those of the sensors.
+
     Parameters
     ----------
     folder : path
@@ -111,7 +115,7 @@ def write_universal_files(
     sensors : sequence of (str, (x, y, z), int)
         Name, position [m] and direction of each sensor: 1, 2, 3 for x, y, z with a sign, 0 for another.
     signals : {"sensors", "all"}
-        Whether to leave out forces and motions of bearings, gears and meshes.
+        Whether to leave out all but sensors and microphones: forces and motions of bearings, gears and meshes.
 
     Returns
     -------
@@ -121,7 +125,7 @@ def write_universal_files(
     from housing.measured.universal_writing import write_functions
 
     points = [(float(x), float(y), float(z)) for _, (x, y, z), _ in sensors]
-    places = {name: (number, direction) for number, (name, _, direction) in enumerate(sensors, start=1)}
+    places = {("sensor", name): (number, direction) for number, (name, _, direction) in enumerate(sensors, start=1)}
     written: list[Document] = []
     for command, data in _datasets(folder):
         count = 0
@@ -133,7 +137,9 @@ def write_universal_files(
                 yield function
 
         path = place / f"{command}.uff"
-        write_functions(path, counted(_functions(data, places, signals)), points)
+        heard, positions = _microphone_places(data, len(points))
+        functions = chain(_functions(data, places | heard, signals), _heard_lines(data, heard))
+        write_functions(path, counted(functions), [*points, *positions])
         if count:
             written.append({"file": path.name, "functions": count})
         else:
@@ -151,15 +157,45 @@ def _datasets(folder: Path) -> Iterator[tuple[str, xr.Dataset]]:
                 yield str(document.get("command", "results")), data
 
 
-def _functions(data: xr.Dataset, places: dict[str, tuple[int, int]], signals: Signals) -> Iterator[UniversalFunction]:
+def _microphone_places(data: xr.Dataset, before: int) -> tuple[_Places, list[tuple[float, float, float]]]:
+    """Return the points of microphones by name, behind those before them, and their positions [m]."""
+    if "microphone_position" not in data:
+        return {}, []
+    names = [str(name) for name in data["microphone"].values]
+    rows = data["microphone_position"].transpose("microphone", ...).values.tolist()
+    places = {("microphone", name): (number, 0) for number, name in enumerate(names, start=before + 1)}
+    return places, [(float(x), float(y), float(z)) for x, y, z in rows]
+
+
+def _heard_lines(data: xr.Dataset, places: _Places) -> Iterator[UniversalFunction]:
+    """Yield the lines of the sound at each microphone as a spectrum."""
+    from housing.measured.universal_writing import UniversalFunction
+
+    if "sound_pressure" not in data:
+        return
+    frequencies = np.asarray(data["sound_frequency"].values, dtype=np.float64)
+    for name in [str(name) for name in data["microphone"].values]:
+        parts = data["sound_pressure"].sel(microphone=name).transpose("sound_line", "part").values
+        yield UniversalFunction(
+            "spectrum",
+            frequencies,
+            parts[:, 0] + 1j * parts[:, 1],
+            "Pa",
+            "sound pressure",
+            (name, "sound pressure of the lines", "amplitudes are peaks"),
+            (name, *places[("microphone", name)]),
+        )
+
+
+def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[UniversalFunction]:
     """Yield every real history and every complex or real spectrum along an axis in s or Hz."""
     from housing.measured.universal_writing import UniversalFunction
 
     for name, variable in data.data_vars.items():
         axis = next((dimension for dimension in variable.dims if _axis_unit(data, dimension) in _KINDS), None)
         others = [dimension for dimension in variable.dims if dimension != axis]
-        is_sensor = any("sensor" in str(dimension) for dimension in others)
-        if axis is None or str(name).endswith("_phase") or (signals == "sensors" and not is_sensor):
+        measured = next((kind for kind in _MEASURED if any(kind in str(dimension) for dimension in others)), None)
+        if axis is None or str(name).endswith("_phase") or (signals == "sensors" and measured is None):
             continue
         if any(dimension not in data.coords or data[dimension].dtype.kind not in "UO" for dimension in others):
             continue  # along numbers, such as those of modes
@@ -171,7 +207,7 @@ def _functions(data: xr.Dataset, places: dict[str, tuple[int, int]], signals: Si
             if phase is not None:
                 values = values * np.exp(1j * np.asarray(phase.sel(at).values))
             error = at.get("mesh_error")
-            sensor = next((label for dimension, label in at.items() if "sensor" in str(dimension)), labels[0])
+            label = next((at[dimension] for dimension in at if measured and measured in str(dimension)), labels[0])
             unit = str(variable.attrs.get("units", ""))
             long_name = str(variable.attrs.get("long_name", name))
             yield UniversalFunction(
@@ -181,7 +217,7 @@ def _functions(data: xr.Dataset, places: dict[str, tuple[int, int]], signals: Si
                 _response_unit(unit) if error is not None else unit,
                 _quantity(str(name)),
                 (", ".join(map(str, labels)), long_name, *_remarks(variable, abscissa, _axis_unit(data, axis))),
-                (str(sensor), *places.get(str(sensor), (0, 0))),
+                (str(label), *places.get((measured or "", str(label)), (0, 0))),
                 *(() if error is None else (("mesh", 0, 0), "m", "transmission error")),
             )
 

@@ -12,7 +12,7 @@ import numpy as np
 from coupling.signals.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
-from gearwhine.results import comparison, operating_point
+from gearwhine.results import comparison, operating_point, sound
 from gearwhine.results.housing import line_picture, modes_sentence
 from gearwhine.results.motion import (
     MESH,
@@ -675,6 +675,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         )
     elif "system" in document:
         yield f"Coupled system: {counted(len(document['system']['modes']), 'mode')}"
+    if "sound" in document:
+        yield from sound.brief(document["sound"])
 
 
 _SIGNATURE_COLUMNS = (

@@ -30,6 +30,8 @@ _METHODS = {
 }
 _TOLD = 3  # parts of a line that are named
 _SHOWN = 12  # lines on the terminal
+_BRIEF = 5  # of them beside another analysis
+_LITTLE = 1e-3  # part of the power that may be left out without a word
 _ON_BOX = 9  # microphones of the box, the last ones
 _FAINT = 0.02  # part of a power that is worth its place
 
@@ -65,6 +67,8 @@ MODE = (
         shown=".3g",
     ),
     Quantity("faces", lambda one: {face: part for face, part in one.by_face.items() if abs(part) > _FAINT}),
+    Quantity("power_balance_db", lambda one: one.power_balance_db),
+    Quantity("interior_pressure", lambda one: one.interior_pressure),
 )
 """Of the sound of one housing mode."""
 
@@ -111,6 +115,8 @@ ENTRY = (
     Quantity("equivalent_power_db", lambda row: row[1].equivalent_db),
     Quantity("radiation_efficiency", lambda row: row[1].sound.radiation_efficiency),
     Quantity("surface_power_db", lambda row: float(power_level(row[1].sound.surface_power))),
+    Quantity("power_balance_db", lambda row: row[1].power_balance_db),
+    Quantity("interior_pressure", lambda row: row[1].interior_pressure),
     Quantity("contributions", _contributions),
     Quantity(
         "microphones_db",
@@ -162,6 +168,13 @@ LINE_COLUMNS = (
 )
 """Of a line, in the report."""
 
+LEFT_OUT = (
+    Quantity("name", lambda one: one.name),
+    Quantity("frequency_hz", lambda one: one.frequency_hz),
+    Quantity("share", lambda one: one.share),
+)
+"""Of a line whose sound is not solved; the share is None where the modes are not complete."""
+
 MICROPHONE = (
     Quantity("name", lambda row: row[0], heading="microphone"),
     Quantity("position_m", lambda row: row[1]),
@@ -169,6 +182,25 @@ MICROPHONE = (
     Quantity("level_db_a", lambda row: row[3], heading="A-weighted [dB]", shown=".1f"),
 )
 """Of a microphone: name, position, level of all lines and the same A-weighted."""
+
+
+HEARD_COLUMNS = (
+    Column("microphone", "microphone"),
+    Column("line [Hz]", "frequency_hz", ".1f"),
+    _NAME,
+    Column("sound pressure [dB re 20 µPa]", "level_db", ".1f"),
+)
+"""Of one of the loudest lines at a microphone."""
+
+
+def _heard(document: Document) -> list[Document]:
+    """Return the loudest lines at each microphone."""
+    found = []
+    for microphone in document["microphones"]:
+        name = microphone["name"]
+        loudest = sorted(document["lines"], key=lambda line: -float(line["microphones_db"][name]))[:_TOLD]
+        found += [line | {"microphone": name, "level_db": line["microphones_db"][name]} for line in loudest]
+    return found
 
 
 def _microphones(solved: "SolvedSound") -> list[Any]:
@@ -193,8 +225,11 @@ SOUND = (
     Part("surface", lambda solved: solved.radiation, SURFACE),
     Rows("lines", lambda solved: [(solved, line) for line in solved.lines], ENTRY),
     Quantity("covered", lambda solved: solved.covered if solved.lines else None),
+    Rows("left_out", lambda solved: solved.left_out, LEFT_OUT),
     Quantity("total_db", lambda solved: solved.total_db if solved.lines else None),
     Quantity("total_db_a", lambda solved: solved.total_db_a if solved.lines else None),
+    Quantity("power_balance_db", lambda solved: solved.power_balance_db),
+    Quantity("interior_pressure", lambda solved: solved.interior_pressure),
     Quantity("third_octaves", _bands),
     Quantity("faces_w", lambda solved: solved.by_face),
     Rows("modes", lambda solved: solved.modes, MODE, "sound_mode"),
@@ -276,6 +311,42 @@ def total_sentence(document: Document) -> str:
     )
 
 
+def left_out_sentence(document: Document) -> str:
+    """Return the lines whose sound is not solved in words; empty where none is worth its name."""
+    left_out = document.get("left_out", ())  # not in summaries of earlier versions
+    parts = []
+    known = [one for one in left_out if one["share"] is not None]
+    rest = 1.0 - document["covered"] if known else 0.0
+    if known and (rest >= _LITTLE or any(one["frequency_hz"] > document["highest_frequency_hz"] for one in known)):
+        parts.append(f"{percent(max(rest, 0.0))} of the power by the estimate, most of it {_named(known, shares=True)}")
+    if unknown := [one for one in left_out if one["share"] is None]:
+        parts.append(f"{_named(unknown)}, where the housing's modes are not complete")
+    return f"Left out: {'; '.join(parts)}" if parts else ""
+
+
+def _named(lines: list[Document], *, shares: bool = False) -> str:
+    """Return the first lines with their frequencies, and the number of further ones."""
+    names = [
+        f"{arrowed(str(one['name']))} at {one['frequency_hz']:.0f} Hz"
+        + (f" ({percent(one['share'])})" if shares else "")
+        for one in lines[:_TOLD]
+    ]
+    return ", ".join(names) + (f" and {len(lines) - _TOLD} more" if len(lines) > _TOLD else "")
+
+
+def brief(document: Document) -> Iterator[str | Table]:
+    """Yield the sound of a motion in sentences and its loudest lines, for the terminal of another analysis."""
+    if total := total_sentence(document):
+        yield total
+        if left_out := left_out_sentence(document):
+            yield left_out
+        yield from table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_BRIEF], "Loudest lines of the sound")
+    if document["microphone_error"] is not None:
+        names = [str(one["name"]) for one in document["microphones"]]
+        told = ", ".join(names[:_TOLD]) + (f" and {len(names) - _TOLD} more" if len(names) > _TOLD else "")
+        yield f"Sound pressure over time at {counted(len(names), 'microphone')} ({told}): gearwhine export --wav"
+
+
 def _content(document: Document) -> Iterator[str | Table]:
     surface = document["surface"]
     yield (
@@ -284,6 +355,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     )
     if total := total_sentence(document):
         yield f"{total}; by an estimate {percent(document['covered'])} of the whole"
+        if left_out := left_out_sentence(document):
+            yield left_out
         power = sum(document["faces_w"].values())
         if power > 0.0:
             yield f"Radiating faces: {_parts({face: part / power for face, part in document['faces_w'].items()})}"
@@ -313,6 +386,7 @@ def report(document: Document) -> Section:
     tables = (
         *table_of(LINE_COLUMNS, loudest_lines(document), "Lines, the loudest first, and the largest part of each"),
         *table_of(columns_of(MICROPHONE), document["microphones"], "All lines at the microphones"),
+        *table_of(HEARD_COLUMNS, _heard(document), "Loudest lines at each microphone"),
         *table_of(MODE_COLUMNS, document["modes"], "Radiation of the housing's modes"),
     )
     notes = (_READ,) if document["lines"] else ()

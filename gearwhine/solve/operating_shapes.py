@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy.spatial import KDTree
 
 from gearwhine.case import CaseError, Problem
+from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
 from housing import HousingError
 from housing.modes.natural_modes import ModeSet
@@ -182,7 +183,7 @@ def operating_shape_of_line(line: RunLine, modes: ModeSet, housing: DrawnHousing
         told = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
         return DrawnShape(
             f"line-{line.hertz:.1f}Hz",
-            f"Operating shape at {line.hertz:.1f} Hz" + (f"   {line.name}" if line.name else ""),
+            f"Operating shape at {line.hertz:.1f} Hz" + (f"   {arrowed(line.name)}" if line.name else ""),
             f"largest {_MICRO * largest:.3g} µm, {largest * line.shape.frequency**2:.3g} m/s² (peak)\n"
             f"kinetic energy: modes {told}",
             motion,

@@ -1,11 +1,11 @@
 """Sound of a case: radiation efficiency of the housing's modes, and the sound of the lines of a motion.
 
-The bearings' forces move the housing at each line; :func:`coupling.signals.transfer_paths.housing_paths` gives the
-motion by each bearing, exactly, and :class:`housing.acoustics.radiation.HousingRadiation` its sound.
+The bearings' forces move the housing at each line (:mod:`gearwhine.solve.motion_lines`);
+:func:`coupling.signals.transfer_paths.housing_paths` gives the motion by each bearing, exactly, and
+:class:`housing.acoustics.radiation.HousingRadiation` its sound.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,16 +13,29 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledMachine, amplitude_spectrum
+from coupling import CoupledMachine
 from coupling.signals.excitation import line_names
-from coupling.signals.transfer_paths import housing_paths
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
+from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.microphones import MicrophoneHistories, microphone_histories, solve_transfer
-from gearwhine.solve.signature import SolvedSignature
-from gearwhine.solve.steady_state import SolvedSteady
+from gearwhine.solve.motion_lines import (
+    AUDIBLE,
+    LeftOut,
+    MotionLines,
+    left_out_lines,
+    loud_lines,
+    pulsating_efficiency,
+)
+from gearwhine.solve.sound_proofs import (
+    COUNTS,
+    counting,
+    interior_pressure,
+    power_balance_db,
+    require_proof,
+    require_proofs,
+)
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
 from housing.acoustics.medium import HardPlane, Medium
@@ -42,16 +55,8 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_WORKERS = 2
-_FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
-_COUNTS = 1e-4  # part of the whole power above which a line has to prove its own
-
-AUDIBLE = 20.0
-"""Lowest frequency of a sound [Hz]."""
-
 _HOLES = 1.1  # of the widest seat, that are closed by default
 _ROUGH = 0.06  # relative error of an interpolation, half a decibel
-_LEAK = 0.1  # pressure inside, relative to that on the surface, above which a solution is doubtful
 
 
 @dataclass(frozen=True)
@@ -92,6 +97,16 @@ class SoundLine:
         sound = self.sound
         return float(power_level(sound.medium.impedance * sound.area * sound.mean_square_velocity))
 
+    @property
+    def power_balance_db(self) -> float | None:
+        """Proof, see :func:`gearwhine.solve.sound_proofs.power_balance_db`."""
+        return power_balance_db(self.sound)
+
+    @property
+    def interior_pressure(self) -> float | None:
+        """Proof, see :func:`gearwhine.solve.sound_proofs.interior_pressure`."""
+        return interior_pressure(self.sound)
+
 
 @dataclass(frozen=True)
 class ModeSound:
@@ -106,12 +121,16 @@ class ModeSound:
         σ.
     by_face : dict of str to float
         Part of each face in the power.
+    power_balance_db, interior_pressure : float or None
+        Proofs, see :func:`power_balance_db` and :func:`interior_pressure`.
     """
 
     number: int
     frequency_hz: float
     radiation_efficiency: float
     by_face: dict[str, float]
+    power_balance_db: float | None = None
+    interior_pressure: float | None = None
 
 
 @dataclass(frozen=True)
@@ -130,12 +149,16 @@ class SolvedSound:
         That the motions of each line's sound stand for.
     covered : float
         Part of all lines' power that these lines hold, by the equivalent power times a pulsating sphere's efficiency.
+    left_out : tuple of LeftOut
+        The strongest of the others, and the low mesh harmonics above `limit_hz`.
     microphones : dict of str to ndarray, shape (3,)
         Positions [m].
     box_area : float or None
         Of the measurement surface of ISO 3744 that the last nine microphones stand on [m²].
     limit_hz : float
         Highest frequency of the sound.
+    told : tuple of dict
+        Warnings of solutions that are doubtful.
     histories : MicrophoneHistories or None
         Sound pressure over time at the microphones.
     """
@@ -149,6 +172,8 @@ class SolvedSound:
     microphones: dict[str, FloatArray]
     box_area: float | None
     limit_hz: float
+    left_out: tuple[LeftOut, ...] = ()
+    told: tuple[dict[str, Any], ...] = ()
     histories: MicrophoneHistories | None = None
 
     @property
@@ -197,21 +222,27 @@ class SolvedSound:
                 total[face] = total.get(face, 0.0) + power
         return dict(sorted(total.items(), key=lambda entry: -entry[1]))
 
+    @property
+    def power_balance_db(self) -> float | None:
+        """Power balance of the line or mode where it is worst, of those that count [dB]; None of an estimate."""
+        found = [one.power_balance_db for one in self._counted if one.power_balance_db is not None]
+        return max(found, key=abs, default=None)
+
+    @property
+    def interior_pressure(self) -> float | None:
+        """Pressure inside, of the line or mode where it is largest, of those that count; None without an inside."""
+        found = [one.interior_pressure for one in self._counted if one.interior_pressure is not None]
+        return max(found, default=None)
+
+    @property
+    def _counted(self) -> "list[SoundLine | ModeSound]":
+        counted = {id(sound) for sound in counting([line.sound for line in self.lines])}
+        lines = [line for line in self.lines if id(line.sound) in counted]
+        return [*lines, *(mode for mode in self.modes if mode.radiation_efficiency > COUNTS)]
+
     def warnings(self) -> list[dict[str, Any]]:
         """Warnings of solutions that are doubtful."""
-        found = []
-        for line in self.lines:
-            leak = max((getattr(field, "interior_residual", 0.0) for field in line.sound.fields), default=0.0)
-            if leak > _LEAK:
-                found.append(
-                    warning(
-                        "interior_pressure",
-                        f"the sound at {line.frequency_hz:.1f} Hz is doubtful: the pressure inside the radiating "
-                        f"surface is {100.0 * leak:.2g} % of that on it, where zero is exact; use smaller triangles",
-                        frequency_hz=line.frequency_hz,
-                        relative=leak,
-                    )
-                )
+        found = list(self.told)
         if self.histories is not None and self.histories.error > _ROUGH:
             found.append(
                 warning(
@@ -222,51 +253,6 @@ class SolvedSound:
                 )
             )
         return found
-
-
-@dataclass(frozen=True)
-class MotionLines:
-    """Spectral lines of the forces of a machine's bearings.
-
-    Attributes
-    ----------
-    frequencies : ndarray, shape (l,)
-        [Hz], above 0.
-    forces : mapping of str to ndarray of complex, shape (l, d)
-        Of each bearing on the housing [N, N m].
-    tolerance : float
-        Half a spacing of lines, for their names [Hz].
-    """
-
-    frequencies: FloatArray
-    forces: Mapping[str, ComplexArray]
-    tolerance: float
-
-
-def lines_of_steady(solved: SolvedSteady, limit: float) -> list[MotionLines]:
-    """Lines of a periodic motion up to a limit [Hz], or of all motions that are superposed."""
-    found = []
-    for motion in solved.motions[: 1 if solved.superposed is None else None]:
-        spectra = {
-            name: amplitude_spectrum(np.ascontiguousarray(force.T), motion.response.period / len(force))
-            for name, force in motion.histories.bearing_reaction.items()
-        }
-        frequencies = next(iter(spectra.values())).frequencies
-        kept = (frequencies > 0.0) & (frequencies <= limit * (1.0 + 1e-9))
-        forces = {name: spectrum.lines[:, kept].T for name, spectrum in spectra.items()}
-        found.append(MotionLines(frequencies[kept], forces, 0.02 / motion.response.period))
-    return found
-
-
-def lines_of_run(signature: SolvedSignature, limit: float) -> list[MotionLines]:
-    """Lines of a transient's record up to a limit [Hz]."""
-    spectra = signature.bearing_spectra
-    if not spectra:
-        return []
-    first = next(iter(spectra.values()))
-    kept = (first.frequencies > 0.0) & (first.frequencies <= limit * (1.0 + 1e-9))
-    forces = {name: spectrum.lines[:, kept].T for name, spectrum in spectra.items()}
-    return [MotionLines(first.frequencies[kept], forces, (0.02 if first.window == "uniform" else 0.5) * first.spacing)]
 
 
 def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = silent) -> HousingRadiation:
@@ -340,7 +326,9 @@ def microphones_of(case: Case, housing: SolvedHousing) -> tuple[dict[str, FloatA
     found = {one.name: np.array(one.position) for one in case.acoustics.microphone}
     if case.acoustics.microphone_box is None:
         return found, None
-    low, high = housing.mesh.bounds
+    assert case.acoustics.floor is not None
+    low, high = (np.array(corner) for corner in housing.mesh.bounds)
+    low[1] = case.acoustics.floor
     positions, area = measurement_box(low, high, case.acoustics.microphone_box)
     return found | {f"box {number}": place for number, place in enumerate(positions, start=1)}, area
 
@@ -348,11 +336,9 @@ def microphones_of(case: Case, housing: SolvedHousing) -> tuple[dict[str, FloatA
 def solve_sound(
     case: Case,
     housing: SolvedHousing,
-    motions: Sequence[MotionLines] = (),
+    motion: MotionLines | None = None,
     machine: CoupledMachine | None = None,
     progress: Progress = silent,
-    *,
-    of_modes: bool = True,
 ) -> SolvedSound:
     """Solve for the sound of a housing's modes and of the lines of a motion that matter.
 
@@ -361,13 +347,11 @@ def solve_sound(
     case : Case
         With `[acoustics]`.
     housing : SolvedHousing
-    motions : sequence of MotionLines
-        Of the machine; superposed.
+    motion : MotionLines, optional
+        Of the machine, up to :func:`highest_estimated` where they shall be told that are left out.
     machine : CoupledMachine, optional
         That moves.
     progress : callable
-    of_modes : bool
-        Whether the radiation efficiency of each mode is wanted, too.
 
     Raises
     ------
@@ -382,69 +366,79 @@ def solve_sound(
     positions, area = microphones_of(case, housing)
     places = np.array(list(positions.values())).reshape(-1, 3)
     _require_free(radiation, positions, places)
+    told: list[dict[str, Any]] = []
 
-    def of_mode(number: int) -> ModeSound:
+    def of_mode(number: int) -> tuple[ModeSound, RadiatedSound]:
         rates = np.zeros((radiation.modal[0].shape[1], 1))
         rates[number] = 1.0
         hertz = float(housing.modes.frequencies_hz[number])
         sound = radiation.solve(hertz, rates)
         power = sound.power
         shares = {face: part / power for face, part in sound.by_face.items()} if power > 0.0 else {}
-        return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares)
+        proofs = power_balance_db(sound), interior_pressure(sound)
+        return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares, *proofs), sound
 
-    numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit] if of_modes else []
-    modes = solved_in_order(of_mode, numbers, "sound of the housing's modes", progress)
+    numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit]
+    modes = []
+    for mode, sound in in_order(of_mode, numbers, "sound of the housing's modes", progress):
+        modes.append(mode)
+        if mode.radiation_efficiency > COUNTS:
+            told += require_proof(sound, f"housing mode {mode.number}")
+    found = SolvedSound(
+        radiation, tuple(modes), (), housing.modes.frequencies_hz, (), 0.0, positions, area, limit, told=tuple(told)
+    )
+    if motion is None or machine is None or not len((motion := motion.between(AUDIBLE, np.inf)).frequencies):
+        return found
 
-    chosen: list[tuple[float, ComplexArray, float]] = []
-    bearings: tuple[str, ...] = ()
-    covered, total = 0.0, 0.0
-    for motion in motions:
-        assert machine is not None
-        kept = (motion.frequencies >= AUDIBLE) & (motion.frequencies <= limit * (1.0 + 1e-9))
-        frequencies = motion.frequencies[kept]
-        forces = {name: force[kept] for name, force in motion.forces.items()}
-        paths = housing_paths(machine, _TWO_PI * frequencies, forces)
-        bearings = paths.bearings
-        rates = paths.acceleration / (1j * _TWO_PI * frequencies[:, None, None])
-        estimate = radiation.equivalent_power(rates.sum(axis=1).T) * pulsating_efficiency(
-            frequencies, radiation.area, radiation.medium.speed_of_sound
-        )
-        total += float(estimate.sum())
-        chosen += [(float(estimate[i]), rates[i].T, float(frequencies[i])) for i in range(len(frequencies))]
-    chosen.sort(key=lambda one: -one[0])
-    largest = chosen[0][0] if chosen else 0.0
-    chosen = [one for one in chosen[: case.acoustics.lines] if one[0] > _FAINT * largest]
-    covered = sum(one[0] for one in chosen) / total if total > 0.0 else 0.0
-    chosen.sort(key=lambda one: one[2])
-    tolerance = max((motion.tolerance for motion in motions), default=0.0)
-    names = line_names(machine, [one[2] for one in chosen], tolerance, None) if machine is not None else []
+    paths = motion.paths(machine)
+    rates = motion.rates(paths)
+    estimate = radiation.equivalent_power(rates.sum(axis=1).T) * pulsating_efficiency(
+        motion.frequencies, radiation.area, radiation.medium.speed_of_sound
+    )
+    chosen = loud_lines(motion.frequencies, estimate, limit, case.acoustics.lines)
+    names = line_names(machine, motion.frequencies[chosen].tolist(), motion.tolerance, None)
 
     def of_line(place: int) -> SoundLine:
-        _, rates, hertz = chosen[place]
-        sound = radiation.solve(hertz, rates)
+        number, hertz = chosen[place], float(motion.frequencies[chosen[place]])
+        sound = radiation.solve(hertz, rates[number].T)
         heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
         return SoundLine(hertz, names[place].name, names[place].order, sound, heard)
 
-    lines = solved_in_order(of_line, range(len(chosen)), "sound of the lines", progress)
-    all_power = sum(line.sound.power for line in lines)
-    for line in lines:
-        if max(line.sound.power, line.sound.surface_power) > _COUNTS * all_power:
-            line.sound.require_balance()
-    return SolvedSound(radiation, modes, lines, housing.modes.frequencies_hz, bearings, covered, positions, area, limit)
+    lines = in_order(of_line, range(len(chosen)), "sound of the lines", progress)
+    told += require_proofs([line.sound for line in lines])
+    total = float(estimate.sum())
+    return replace(
+        found,
+        lines=lines,
+        bearings=paths.bearings,
+        covered=float(estimate[chosen].sum()) / total if total > 0.0 else 0.0,
+        left_out=left_out_lines(machine, motion, estimate, chosen, limit, highest_estimated(case, housing)),
+        told=tuple(told),
+    )
 
 
-def with_histories(solved: SolvedSound, transient: SolvedTransient, progress: Progress = silent) -> SolvedSound:
+def highest_estimated(case: Case, housing: SolvedHousing) -> float:
+    """Return the frequency up to which the sound of lines is estimated [Hz]: at least where the modes are complete."""
+    return max(highest_frequency(case, housing), housing.trusted_limit_hz)
+
+
+def with_histories(
+    case: Case, solved: SolvedSound, transient: SolvedTransient, progress: Progress = silent
+) -> SolvedSound:
     """Add the sound pressure over time at the microphones, of the record of a transient at once.
 
     Parameters
     ----------
+    case : Case
+        One whose base moves has none: the base drives the housing beside its bearings.
     solved : SolvedSound
         Without microphones it is returned as it is.
     transient : SolvedTransient
         Of a long record the last stretch is taken.
     """
     places = np.array(list(solved.microphones.values()))
-    if not len(places):
+    moves = case.operation is not None and case.operation.base is not None
+    if not len(places) or moves:
         return solved
     transfer = solve_transfer(solved.radiation, places, AUDIBLE, solved.limit_hz, progress)
     histories = transient.histories
@@ -453,57 +447,6 @@ def with_histories(solved: SolvedSound, transient: SolvedTransient, progress: Pr
         transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
     )
     return replace(solved, histories=heard)
-
-
-def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray]:
-    """Return the frequencies of a motion's strongest lines and the rates of the housing's coordinates there.
-
-    Returns
-    -------
-    frequencies : ndarray, shape (l,)
-        [Hz]
-    rates : ndarray, shape (l, n, 2)
-        Real and imaginary part.
-    """
-    assert case.acoustics is not None
-    reactions = solved.histories.bearing_reaction
-    if solved.machine.housing is None or not reactions:
-        return np.zeros(0), np.zeros((0, 0, 2))
-    spectra = {
-        name: solved.record.spectrum(np.ascontiguousarray(force.T), solved.trusted_limit)
-        for name, force in reactions.items()
-    }
-    lines = next(iter(spectra.values())).frequencies
-    limit = case.acoustics.highest_frequency or solved.trusted_limit
-    kept = (lines >= AUDIBLE) & (lines <= limit * (1.0 + 1e-9))
-    forces = {name: one.lines[:, kept].T for name, one in spectra.items()}
-    paths = housing_paths(solved.machine, _TWO_PI * lines[kept], forces)
-    rates = paths.acceleration.sum(axis=1) / (1j * _TWO_PI * lines[kept, None])
-    # The surface is not known here: a body of a square metre stands for it.
-    estimate = (np.abs(rates) ** 2).sum(axis=1) * pulsating_efficiency(lines[kept], 1.0, case.acoustics.speed_of_sound)
-    chosen = np.sort(np.argsort(-estimate, kind="stable")[: case.acoustics.lines])
-    return lines[kept][chosen], np.stack([rates[chosen].real, rates[chosen].imag], axis=-1)
-
-
-def pulsating_efficiency(frequencies: FloatArray, area: float, speed_of_sound: float) -> FloatArray:
-    """Radiation efficiency (k a)² / (1 + (k a)²) of a pulsating sphere of an area [m²], an estimate for any body.
-
-    F. Fahy and P. Gardonio, Sound and Structural Vibration, 2nd ed., Academic Press, 2007, section 3.2.
-    """
-    squared = (_TWO_PI * frequencies / speed_of_sound) ** 2 * area / (4.0 * np.pi)
-    return np.asarray(squared / (1.0 + squared))
-
-
-def solved_in_order(
-    solve: Callable[[int], Any], numbers: Sequence[int], what: str, progress: Progress
-) -> tuple[Any, ...]:
-    """Solve one after the other on two threads, in their order, under the progress."""
-    found = []
-    with ThreadPoolExecutor(_WORKERS) as pool:
-        for done, one in enumerate(pool.map(solve, numbers), start=1):
-            found.append(one)
-            progress(what, done / len(numbers))
-    return tuple(found)
 
 
 def _require_free(radiation: HousingRadiation, positions: Mapping[str, FloatArray], places: FloatArray) -> None:

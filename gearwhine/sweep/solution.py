@@ -174,7 +174,7 @@ def _reduced(
     forces = solved.histories.bearing_load
     frequencies, rates = np.empty(0), np.empty((0, 0, 2))
     if case.acoustics is not None and solved.machine.housing is not None:
-        from gearwhine.solve.sound import strongest_lines
+        from gearwhine.solve.motion_lines import strongest_lines
 
         frequencies, rates = strongest_lines(case, solved)
     return PointResult(

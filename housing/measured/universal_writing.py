@@ -228,7 +228,7 @@ class UniversalFunction:
     values : ndarray, shape (n,)
         Real or complex.
     unit : str
-        Of the values: m, m/s, m/s2, N, N m or another, which the file then calls general.
+        Of the values: m, m/s, m/s2, N, Pa or another, which the file then calls general.
     label : str
         Name of the quantity.
     titles : tuple of str
@@ -336,8 +336,12 @@ def _function(function: UniversalFunction) -> bytes:
 
 
 _FUNCTIONS = {"time response": 1, "frequency response function": RESPONSE_FUNCTION, "spectrum": 12}
-_GENERAL, _REACTION = 1, 9  # specific data types: any quantity, a reaction force
-_QUANTITIES = {_UNIT_LABELS[motion]: number for number, motion in MOTIONS.items()} | {"m/s2": 12, "N": _REACTION}
+_GENERAL, _REACTION, _PRESSURE = 1, 9, 15  # specific data types: any quantity, a reaction force, a pressure
+_QUANTITIES = {_UNIT_LABELS[motion]: number for number, motion in MOTIONS.items()} | {
+    "m/s2": 12,
+    "N": _REACTION,
+    "Pa": _PRESSURE,
+}
 _EXCITATIONS = {"N": FORCE, "m": 8}
 
 

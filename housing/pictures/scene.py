@@ -6,6 +6,7 @@ The off-screen renderer is PyVista on EGL, or on OSMesa where EGL is missing.
 import ctypes
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
@@ -191,9 +192,11 @@ class Scene:
         self._actor.prop.culling = "back"
         plotter.add_mesh(outline, color="#707070", line_width=self._finer)
         grown = self._finer * (self._size[0] / _FULL) ** _GROWTH
-        letters = 15.0 * grown, 10.0 * grown
+        letters = 13.5 * grown, 9.0 * grown
         self._title, self._note = (
-            plotter.add_text(" ", position=(0.03, up), viewport=True, font_size=round(size), color=_INK)
+            plotter.add_text(
+                " ", position=(0.03, up), viewport=True, font_size=round(size), color=_INK, font_file=_font_file()
+            )
             for up, size in zip((0.97, 0.915), letters, strict=True)
         )
         for text in (self._title, self._note):
@@ -224,6 +227,13 @@ class Scene:
         self._plotter.reset_camera(bounds=_frame(bounds))
         self._plotter.camera.zoom(1.2)
         self._plotter.camera.SetWindowCenter(0.0, _LOWER)
+
+
+def _font_file() -> str:
+    """Return the file of a font with arrows and µ, which the renderer's own lacks."""
+    import matplotlib as mpl
+
+    return str(Path(mpl.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
 
 
 def check_view(view: str) -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -9,11 +10,12 @@ import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.solve.sound import SolvedSound, SoundLine
 
-COARSE = {
+PLACES = [("1.2 m", "0.3 m", "0 m"), ("0 m", "1.3 m", "0 m"), ("0.1 m", "0.2 m", "-1.4 m")]
+COARSE: dict[str, Any] = {
     "housing.box.mesh_size": "45 mm",
     "acoustics.mesh_size": "45 mm",
     "acoustics.highest_frequency": "2.4 kHz",
-    "acoustics.microphone_box": "1 m",
+    "acoustics.microphone": [{"name": f"ear {n}", "position": list(at)} for n, at in enumerate(PLACES, start=1)],
 }
 NAMES = {
     92.0: "1× input",

@@ -1,10 +1,12 @@
-"""Progress in lines, and what it says where kernels are compiled."""
+"""Progress in lines, what it says where kernels are compiled, and work on two threads under it."""
 
 import logging
+import threading
+import time
 
 import pytest
 
-from gearwhine.progress import shown
+from gearwhine.progress import in_order, shown
 from rotors.numerics import compiled
 
 
@@ -28,3 +30,28 @@ def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
         progress("modes")
         logging.getLogger(compiled.__name__).info("compiling one")
     assert capsys.readouterr().err == ""
+
+
+def test_work_on_two_threads_is_handed_back_in_order() -> None:
+    """The first item ends last, on another thread than the second."""
+    said: list[tuple[str, float | None]] = []
+    second, threads = threading.Event(), set()
+
+    def solve(number: int) -> int:
+        threads.add(threading.get_ident())
+        if number == 1:
+            second.set()
+        elif number == 0:
+            assert second.wait(10.0)
+            time.sleep(0.01)
+        return number * number
+
+    assert in_order(solve, range(4), "squares", lambda what, part=None: said.append((what, part))) == (0, 1, 4, 9)
+    assert said == [("squares", 0.25), ("squares", 0.5), ("squares", 0.75), ("squares", 1.0)]
+    assert len(threads) == 2
+    assert in_order(solve, (), "squares") == ()
+
+
+def test_an_error_in_a_thread_is_that_of_the_work() -> None:
+    with pytest.raises(ZeroDivisionError):
+        in_order(lambda number: 1 // number, [1, 0, 1], "quotients")

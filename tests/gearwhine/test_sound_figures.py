@@ -99,6 +99,16 @@ def test_efficiencies_are_those_of_modes_and_lines(solved: SolvedSound, figures:
     assert low < drawn["_lines"][:, 1].min() < drawn["_modes"][:, 1].max() < high
 
 
+def test_efficiencies_of_one_decade_have_plain_numbers(solved: SolvedSound) -> None:
+    modes = tuple(replace(mode, radiation_efficiency=0.3) for mode in solved.modes)
+    figures = dict(draw_sound(sound_of_modes().case, replace(solved, modes=modes, lines=())))
+    axes = figures["sound-efficiency"].axes[0]
+    low, high = axes.get_ylim()
+    axes.figure.draw_without_rendering()  # type: ignore[union-attr]
+    shown = [text.get_text() for text in axes.get_yticklabels() if low <= text.get_position()[1] <= high]
+    assert shown == ["0.1", "0.2", "0.5", "1"]
+
+
 def test_intensities_are_drawn_where_they_are(solved: SolvedSound, tmp_path: Path) -> None:
     """The mean over the surface is the power over the area, at the loudest lines and over all."""
     shapes = {shape.name: shape for shape in _intensity_shapes(solved)}

@@ -62,6 +62,21 @@ def test_orders_have_their_slopes_and_crossings_their_marks() -> None:
     assert {"1× pinion → wheel", SHAFT.name} <= texts
 
 
+def test_the_legend_of_every_kind_lies_below_the_diagram() -> None:
+    kinds = np.array([list(KIND_COLORS)] * 11)
+    count = len(KIND_COLORS)
+    values = -5.0 + 1j * np.tile(100.0 * np.arange(1, count + 1), (11, 1))
+    nothing = np.zeros((11, count))
+    every = SystemCampbell(SPEEDS, values, kinds, kinds, nothing, nothing, (SHAFT, MESH), (), (), 1500.0)
+    figure = draw_system_campbell("t", every, operating_speed=50.0)
+    (key,) = figure.legends
+    assert [text.get_text() for text in key.get_texts()] == [*KIND_COLORS, "operation"]
+    place, sheet = key.get_window_extent(), figure.bbox
+    assert place.y1 < figure.axes[0].get_tightbbox().y0  # type: ignore[union-attr]
+    assert sheet.x0 <= place.x0 < place.x1 <= sheet.x1
+    assert sheet.y0 <= place.y0
+
+
 def response(*, sensors: bool) -> FrequencyResponse:
     w = 2.0 * math.pi * np.linspace(10.0, 1000.0, 50)
     force = (3e6 + 4e6j) * np.ones(50)

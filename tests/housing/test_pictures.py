@@ -84,6 +84,19 @@ def test_values_of_either_sign_have_their_own_colours(box: Mesh, modes: ModeSet,
 
 
 @pytest.mark.usefixtures("renderer")
+def test_an_arrow_in_a_title_is_drawn(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
+    """Dark pixels where the arrow is, which are none for a space or for a letter that the font lacks."""
+    surface = drawn_housing(box)
+    dark = []
+    for number, title in enumerate(("→→→→", " ")):
+        shape = DrawnShape(f"shape-{number}", title, "", modes.shapes[6][surface.nodes], "d", 1.0)
+        image = _pixels(render_shapes(surface, [shape], tmp_path, size=(640, 480))[0])
+        dark.append(np.count_nonzero(image[:40, :200].max(axis=2) < 128))
+    assert dark[1] == 0
+    assert dark[0] > 50
+
+
+@pytest.mark.usefixtures("renderer")
 def test_gallery_is_a_sheet_of_four_in_a_row(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
     path = render_gallery(box, modes, [1, 2, 3, 4, 7], tmp_path / "sheet.png", tile=(120, 100))
     assert _pixels(path).shape == (200 + STRIP, 480, 3)

@@ -31,6 +31,7 @@ from gearwhine.figures.style import (
     arrange,
     draw_row,
     legend,
+    log_axis,
     panel,
     panel_size,
     sheet,
@@ -174,7 +175,6 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
     note = f"{shortened(title, 60)}; 1: as a plane wave; numbers: housing modes"
     figure = sheet(HEAD + _EFFICIENCY + FOOT, "Radiation efficiency", note)
     axes = panel(figure, FOOT, _EFFICIENCY)
-    axes.set_yscale("log")
     axes.axhline(1.0, color=INK, lw=0.8, zorder=2, label="_one")
     if of_lines:
         axes.plot(*np.array(of_lines).T, marker="x", color=GREY, ms=3, mew=0.8, ls="", zorder=2.5, label="_lines")
@@ -182,10 +182,10 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
     everything = np.concatenate([values, [value for _, value in of_lines], [1.0]])
     axes.set(
         xlim=(0.0, 1.02 * max(solved.limit_hz, float(frequencies.max()))),
-        ylim=(10.0 ** np.floor(np.log10(everything.min())), 1.6 * everything.max()),
         xlabel="frequency [Hz]",
         ylabel="radiation efficiency σ",
     )
+    log_axis(axes, 10.0 ** np.floor(np.log10(everything.min())), 1.6 * everything.max())
     # The first mode of a crowd, from the most efficient, has its number; the others are in the table.
     taken: list[FloatArray] = []
     for place in np.argsort(-values):

@@ -34,7 +34,7 @@ from gearwhine.figures.style import (
     column_width,
     draw_column,
     draw_row,
-    legend,
+    legend_below,
     legend_height,
     mark_operation,
     name_in_legend,
@@ -66,6 +66,7 @@ _RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # of a panel and the room between t
 _DECADES = 4.0  # of amplitude that a panel shows at most
 _NAMED = 8  # curves that a panel tells apart by colour
 _COLUMNS = 4  # of their names above it
+_CAMPBELL_COLUMNS = 8  # of the kinds of modes below the Campbell diagram
 
 
 def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_speed: float | None = None) -> Figure:
@@ -100,8 +101,10 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
             above.append(Label(arrowed(line.name), leaves, top, GREY))
     width = SHEET_WIDTH - LEFT - column_width(beside)
     row = arrange(above, [(label.x - low) / (high - low) * width for label in above], width)
-    figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + FOOT, title, note)
-    axes = panel(figure, FOOT, _HEIGHT, width=width)
+    kinds = {kind for row_of_kinds in campbell.kinds for kind in row_of_kinds if kind}
+    foot = FOOT + legend_height(len(kinds) + (operating_speed is not None), _CAMPBELL_COLUMNS)
+    figure = sheet(HEAD + row.height + 2.0 + _HEIGHT + foot, title, note)
+    axes = panel(figure, foot, _HEIGHT, width=width)
     axes.set(xlim=(speeds[0], speeds[-1]), ylim=(0.0, top))
     axes.set(xlabel="speed of the first driver [rpm]", ylabel="damped frequency [Hz]")
     met = _draw_branches(axes, speeds, campbell)
@@ -113,7 +116,7 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
     handles = [Line2D([], [], color=KIND_COLORS.get(kind, INK), lw=1.4, label=kind) for kind in met]
     if operating_speed is not None:
         handles.append(mark_operation(axes, operating_speed, "-."))
-    legend(figure, handles)
+    legend_below(figure, handles, _CAMPBELL_COLUMNS)
     return figure
 
 

@@ -1,0 +1,263 @@
+"""Lines of a motion that drive the housing: the bearings' forces at each frequency, and the housing's motion by them.
+
+Of a steady state they are the harmonics of its period; where motions are superposed, lines that meet at one frequency
+are added as the complex amplitudes that they are. Of a record of whole periods they are its spectral lines; of another
+record they are its tones, see :mod:`coupling.signals.tones`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import CoupledMachine, amplitude_spectrum
+from coupling.signals.excitation import excitation_lines, line_names
+from coupling.signals.spectrum import Spectrum
+from coupling.signals.tones import hann_tones
+from coupling.signals.transfer_paths import HousingPaths, housing_paths
+from gearwhine.case import Case
+from gearwhine.output.quantity import warning
+from gearwhine.solve.steady_state import SolvedSteady
+from gearwhine.solve.transient import SolvedTransient
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_TWO_PI = 2.0 * np.pi
+_SAME_LINE = 1e-6  # of the spacing of lines: distance of two that are one, by rounding
+_EXACT = 0.02  # of the spacing of exact lines: distance of a line from the frequency of its cause
+_FOUND = 0.5  # the same of tones that are found between the lines
+_FORCES = 3  # of a bearing's axes x, y, z and the rotations about x and y
+_FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
+_NAMED = 12  # lines that are left out
+_WORTH_NAMING = 1e-3  # part of the estimated power of one that is
+_HARMONICS = (1, 2, 3)  # of each mesh that are named where they are too high
+
+AUDIBLE = 20.0
+"""Lowest frequency of a sound [Hz]."""
+
+
+@dataclass(frozen=True)
+class MotionLines:
+    """Spectral lines of the forces of a machine's bearings.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (l,)
+        [Hz], above 0, ascending, each once.
+    forces : mapping of str to ndarray of complex, shape (l, d)
+        Of each bearing on the housing [N, N m].
+    tolerance : float
+        Distance of a line from the frequency of its cause, for its name [Hz].
+    """
+
+    frequencies: FloatArray
+    forces: Mapping[str, ComplexArray]
+    tolerance: float
+
+    def between(self, low: float, high: float) -> "MotionLines":
+        """Return the lines from one frequency to another [Hz]."""
+        kept = (self.frequencies >= low) & (self.frequencies <= high * (1.0 + 1e-9))
+        forces = {name: force[kept] for name, force in self.forces.items()}
+        return MotionLines(self.frequencies[kept], forces, self.tolerance)
+
+    def paths(self, machine: CoupledMachine) -> HousingPaths:
+        """Motion of the housing by each bearing's force, see :func:`coupling.signals.transfer_paths.housing_paths`."""
+        return housing_paths(machine, _TWO_PI * self.frequencies, self.forces)
+
+    def rates(self, paths: HousingPaths) -> ComplexArray:
+        """Rates of the housing's coordinates by each bearing, shape (l, b, n)."""
+        return np.asarray(paths.acceleration / (1j * paths.frequencies[:, None, None]))
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Line of a motion whose sound is not solved.
+
+    Attributes
+    ----------
+    name : str
+    frequency_hz : float
+    share : float or None
+        Part of all lines' power by the estimate; None beyond the frequency below which the modes are complete.
+    """
+
+    name: str
+    frequency_hz: float
+    share: float | None
+
+
+def without_lines(case: Case) -> str:
+    """Return why the motion of a case has no lines that drive the housing by its bearings alone; empty where it has.
+
+    The sound of a moving base is unknown at microphones, too: the base drives the housing by its inertia.
+    """
+    if case.operation is not None and case.operation.base is not None:
+        return "the base moves, which drives the housing beside its bearings (operation.base)"
+    if case.transient is not None and case.transient.run is not None:
+        return "the speed changes, so that the record has no steady lines (transient.run)"
+    return ""
+
+
+def left_out_warnings(case: Case) -> list[dict[str, Any]]:
+    """Return the warning that the sound of a motion's lines is left out, and why; none where it is not."""
+    why = without_lines(case)
+    moves = case.operation is not None and case.operation.base is not None
+    what = "the sound of the motion" if moves else "the sound of lines"
+    return [warning("sound_left_out", f"{what} is left out: {why}")] if why else []
+
+
+def lines_of_steady(solved: SolvedSteady, limit: float) -> MotionLines:
+    """Lines of a periodic motion up to a limit [Hz], or of the sum of all motions that are superposed."""
+    found = []
+    for motion in solved.motions[: 1 if solved.superposed is None else None]:
+        spectra = {
+            name: amplitude_spectrum(np.ascontiguousarray(force.T), motion.response.period / len(force))
+            for name, force in motion.histories.bearing_reaction.items()
+        }
+        found.append(_lines_of(spectra, _EXACT / motion.response.period))
+    return superposed_lines(found).between(np.finfo(float).tiny, limit)
+
+
+def superposed_lines(motions: "list[MotionLines]") -> MotionLines:
+    """Add the lines of motions that are superposed: those at one frequency are one line, the sum of their forces.
+
+    Parameters
+    ----------
+    motions : list of MotionLines
+        One or more, of the same bearings, with phases at the same time.
+    """
+    if len(motions) == 1:
+        return motions[0]
+    frequencies = np.concatenate([motion.frequencies for motion in motions])
+    order = np.argsort(frequencies, kind="stable")
+    ascending = frequencies[order]
+    tolerance = min(motion.tolerance for motion in motions)
+    starts = np.flatnonzero(np.diff(ascending, prepend=-np.inf) > _SAME_LINE / _EXACT * tolerance)
+    forces = {
+        name: np.add.reduceat(np.concatenate([motion.forces[name] for motion in motions])[order], starts, axis=0)
+        for name in motions[0].forces
+    }
+    return MotionLines(ascending[starts], forces, tolerance)
+
+
+def lines_of_run(solved: SolvedTransient, limit: float) -> MotionLines:
+    """Lines of a transient's record at steady speed up to a limit [Hz]; none where no bearing stands in the housing.
+
+    Where the record does not hold whole periods they are tones between its spectral lines, whose frequencies are those
+    of the forces along x, y and z of all bearings together.
+    """
+    histories = solved.histories
+    spectra = {
+        name: solved.record.spectrum(np.ascontiguousarray(force.T), max(limit, solved.trusted_limit))
+        for name, force in histories.bearing_reaction.items()
+    }
+    if not spectra:
+        return MotionLines(np.zeros(0), {}, _EXACT)
+    spacing = next(iter(spectra.values())).spacing
+    if solved.record.sampling.window == "uniform":
+        return _lines_of(spectra, _EXACT * spacing).between(np.finfo(float).tiny, limit)
+    return tones_of(spectra, histories.bearing_axes).between(np.finfo(float).tiny, limit)
+
+
+def tones_of(spectra: Mapping[str, Spectrum], axes: Mapping[str, tuple[int, ...]]) -> MotionLines:
+    """Tones of the bearings' forces under Hann's window.
+
+    Parameters
+    ----------
+    spectra : mapping of str to Spectrum
+        Of each bearing's forces and moments, shape (d, m).
+    axes : mapping of str to tuple of int
+        Axis of each of them: 0 to 2 for forces, 3 and 4 for moments.
+    """
+    first = next(iter(spectra.values()))
+    together = Spectrum(
+        first.frequencies,
+        np.concatenate([one.amplitude for one in spectra.values()]),
+        np.concatenate([one.phase for one in spectra.values()]),
+        first.window,
+    )
+    weights = [float(axis < _FORCES) for name in spectra for axis in axes[name]]
+    tones = hann_tones(together, weights)
+    ends = np.cumsum([len(one.amplitude) for one in spectra.values()])[:-1]
+    parts = np.split(tones.amplitudes, ends)
+    forces = {name: np.asarray(part.T) for name, part in zip(spectra, parts, strict=True)}
+    return MotionLines(tones.frequencies, forces, _FOUND * first.spacing)
+
+
+def _lines_of(spectra: Mapping[str, Spectrum], tolerance: float) -> MotionLines:
+    """Lines of a record of whole periods."""
+    if not spectra:
+        return MotionLines(np.zeros(0), {}, tolerance)
+    forces = {name: np.asarray(spectrum.lines[:, 1:].T) for name, spectrum in spectra.items()}
+    return MotionLines(next(iter(spectra.values())).frequencies[1:], forces, tolerance)
+
+
+def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray]:
+    """Return the frequencies of a motion's strongest lines and the rates of the housing's coordinates there.
+
+    Returns
+    -------
+    frequencies : ndarray, shape (l,)
+        [Hz]
+    rates : ndarray, shape (l, n, 2)
+        Real and imaginary part.
+    """
+    assert case.acoustics is not None
+    limit = case.acoustics.highest_frequency or solved.trusted_limit
+    nothing = MotionLines(np.zeros(0), {}, _EXACT)
+    motion = nothing if without_lines(case) else lines_of_run(solved, limit).between(AUDIBLE, limit)
+    if solved.machine.housing is None or not len(motion.frequencies):
+        return np.zeros(0), np.zeros((0, 0, 2))
+    rates = motion.rates(motion.paths(solved.machine)).sum(axis=1)
+    # The surface is not known here: a body of a square metre stands for it.
+    efficiency = pulsating_efficiency(motion.frequencies, 1.0, case.acoustics.speed_of_sound)
+    estimate = (np.abs(rates) ** 2).sum(axis=1) * efficiency
+    chosen = np.sort(np.argsort(-estimate, kind="stable")[: case.acoustics.lines])
+    return motion.frequencies[chosen], np.stack([rates[chosen].real, rates[chosen].imag], axis=-1)
+
+
+def pulsating_efficiency(frequencies: FloatArray, area: float, speed_of_sound: float) -> FloatArray:
+    """Radiation efficiency (k a)² / (1 + (k a)²) of a pulsating sphere of an area [m²], an estimate for any body.
+
+    F. Fahy and P. Gardonio, Sound and Structural Vibration, 2nd ed., Academic Press, 2007, section 3.2.
+    """
+    squared = (_TWO_PI * frequencies / speed_of_sound) ** 2 * area / (4.0 * np.pi)
+    return np.asarray(squared / (1.0 + squared))
+
+
+def loud_lines(frequencies: FloatArray, estimate: FloatArray, limit: float, most: int) -> npt.NDArray[np.intp]:
+    """Return the numbers of the lines up to a limit [Hz] with most power by an estimate, `most` of them, ascending."""
+    low = np.flatnonzero(frequencies <= limit * (1.0 + 1e-9))
+    strongest = low[np.argsort(-estimate[low], kind="stable")[:most]]
+    return np.sort(strongest[estimate[strongest] > _FAINT * estimate[low].max(initial=0.0)])
+
+
+def left_out_lines(
+    machine: CoupledMachine,
+    motion: MotionLines,
+    estimate: FloatArray,
+    chosen: npt.NDArray[np.intp],
+    limit: float,
+    known: float,
+) -> tuple[LeftOut, ...]:
+    """Return the strongest lines that are not solved, and the low harmonics of each mesh above the limit [Hz]."""
+    shares = estimate / max(float(estimate.sum()), np.finfo(float).tiny)
+    rest = np.setdiff1d(np.arange(len(shares)), chosen)
+    rest = rest[np.argsort(-shares[rest], kind="stable")][:_NAMED]
+    rest = rest[shares[rest] >= _WORTH_NAMING]
+    names = line_names(machine, motion.frequencies[rest].tolist(), motion.tolerance, None)
+    found = [
+        LeftOut(name.name, float(motion.frequencies[number]), float(shares[number]))
+        for name, number in zip(names, rest.tolist(), strict=True)
+    ]
+    turning_hz = abs(machine.speeds[machine.leading_rotor]) / _TWO_PI
+    for line in excitation_lines(machine, shaft_orders=(), mesh_harmonics=_HARMONICS):
+        hertz = line.order * turning_hz
+        if hertz <= limit * (1.0 + 1e-9) or any(abs(one.frequency_hz - hertz) <= motion.tolerance for one in found):
+            continue
+        here = np.abs(motion.frequencies - hertz) <= motion.tolerance
+        found.append(LeftOut(line.name, hertz, float(shares[here].sum()) if hertz <= known * (1.0 + 1e-9) else None))
+    return tuple(found)

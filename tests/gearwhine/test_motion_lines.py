@@ -1,0 +1,240 @@
+"""Lines of a motion that drive the housing: of motions that are superposed, of broken turns, and those left out."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sounding_housing
+
+import gearwhine as gw
+from coupling.signals.spectrum import amplitude_spectrum
+from gearwhine.case import CaseError, swept_keys
+from gearwhine.solve.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
+from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
+from gearwhine.solve.sound import microphones_of, solve_sound
+from gearwhine.sweep.sound import add_sound
+from housing.pictures.drawn_shapes import drawn_housing
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def motion(period: float, harmonics: dict[int, complex]) -> Any:
+    """One period of a bearing's force along x, of harmonics of the period."""
+    at = np.arange(256) / 256
+    force = np.sum([(a * np.exp(2j * np.pi * n * at)).real for n, a in harmonics.items()], axis=0)
+    histories = SimpleNamespace(bearing_reaction={"front": force[:, None]})
+    return SimpleNamespace(response=SimpleNamespace(period=period), histories=histories)
+
+
+def test_lines_of_superposed_motions_at_one_frequency_are_added_with_their_phases() -> None:
+    """Harmonics of 30 and of 100 Hz meet at 300 Hz, the tenth and the third, and at 600 Hz, where they cancel."""
+    slow = motion(1.0 / 30.0, {1: 5.0, 10: 2.0, 20: 1.0 + 1.0j})
+    fast = motion(1.0 / (100.0 * (1.0 + 1e-12)), {1: 7.0, 3: 3.0j, 6: -1.0 - 1.0j})
+    solved: Any = SimpleNamespace(motions=(fast, slow), superposed=object())
+    found = lines_of_steady(solved, 650.0)
+    assert len(np.unique(np.round(found.frequencies, 3))) == len(found.frequencies)
+    assert np.all(np.diff(found.frequencies) > 0.0)
+    heights = dict(zip(np.round(found.frequencies, 6).tolist(), found.forces["front"][:, 0].tolist(), strict=True))
+    assert heights[30.0] == pytest.approx(5.0)
+    assert heights[100.0] == pytest.approx(7.0)
+    assert heights[300.0] == pytest.approx(2.0 + 3.0j)
+    assert abs(heights[600.0]) < 1e-9
+    assert max(heights) == 630.0  # nothing above the limit
+    # Of several motions at one speed on a branch the first is taken.
+    branch: Any = SimpleNamespace(motions=(fast, slow), superposed=None)
+    assert lines_of_steady(branch, 650.0).forces["front"][2, 0] == pytest.approx(3.0j)
+
+
+def test_bearings_share_the_frequencies_of_their_tones() -> None:
+    """Two bearings; the second holds a moment as well, which is of another unit and has no say."""
+    times = 1e-4 * np.arange(6000)
+    tones = {211.3: ([1.0, 0.5j], [0.2, 3.0]), 488.85: ([0.3 - 0.2j, 0.1], [-0.5j, 1.0j])}
+
+    def forces(bearing: int) -> FloatArray:
+        parts = [np.outer(a[bearing], np.exp(2j * np.pi * hertz * times)).real for hertz, a in tones.items()]
+        return np.asarray(np.sum(parts, axis=0))
+
+    spectra = {name: amplitude_spectrum(forces(n), 1e-4, "hann") for n, name in enumerate(("front", "back"))}
+    found = tones_of(spectra, {"front": (0, 1), "back": (0, 3)}).between(100.0, 1000.0)
+    strong = np.flatnonzero(np.abs(found.forces["front"]).max(axis=1) > 0.01)
+    assert found.frequencies[strong] == pytest.approx(list(tones), abs=1e-3)
+    for row, (front, back) in zip(strong, tones.values(), strict=True):
+        np.testing.assert_allclose(found.forces["front"][row], front, atol=2e-3)
+        np.testing.assert_allclose(found.forces["back"][row], back, atol=5e-3)
+
+
+def test_a_record_of_broken_turns_sounds_as_one_of_whole_turns() -> None:
+    whole, broken = quick_run(24.0).solved, quick_run(24.37).solved
+    assert whole.transient is not None
+    assert broken.transient is not None
+    assert whole.sound is not None
+    assert broken.sound is not None
+    windows = [one.transient.record.sampling.window for one in (whole, broken)]  # type: ignore[union-attr]
+    assert windows == ["uniform", "hann"]
+    expected = {line.name: line for line in whole.sound.lines if line.level_db > whole.sound.total_db - 40.0}
+    found = {line.name: line for line in broken.sound.lines}
+    assert len(expected) >= 8
+    for name, line in expected.items():
+        assert found[name].frequency_hz == pytest.approx(line.frequency_hz, abs=0.01)
+        assert found[name].level_db == pytest.approx(line.level_db, abs=0.1)
+    assert broken.sound.total_db == pytest.approx(whole.sound.total_db, abs=0.1)
+    # A tone is one line.
+    assert np.diff(sorted(line.frequency_hz for line in found.values())).min() > 40.0
+
+
+@pytest.mark.parametrize("revolutions", [24.0, 24.37])
+def test_a_sweep_takes_the_strongest_lines_of_a_run(revolutions: float) -> None:
+    result = quick_run(revolutions)
+    solved = result.solved
+    assert solved.transient is not None
+    assert solved.sound is not None
+    case = gw.load("small-gearbox", QUICK | {"acoustics.lines": 5}).case
+    frequencies, rates = strongest_lines(case, solved.transient)
+    lines = {line.frequency_hz: line for line in solved.sound.lines}
+    assert len(frequencies) == 5
+    assert frequencies[0] == pytest.approx(90.0, abs=0.01)
+    assert set(frequencies.tolist()) <= set(lines)
+    for hertz, rate in zip(frequencies.tolist(), rates, strict=True):
+        of_run = lines[hertz].sound.coordinates.sum(axis=1)
+        np.testing.assert_allclose(rate[:, 0] + 1j * rate[:, 1], of_run, rtol=1e-9)
+
+
+def test_the_surface_moves_as_a_sensor_on_it_feels() -> None:
+    """Velocity of the radiating surface at two sensors on walls, against their spectra in the same record."""
+    solved = quick_run(24.0).solved
+    assert solved.transient is not None
+    assert solved.sound is not None
+    spectra = solved.transient.sensor_spectra
+    lines = [line for line in solved.sound.lines if line.level_db > solved.sound.total_db - 35.0]
+    assert len(lines) >= 3
+    for name, place in (("top", [0.02, 0.16, 0.03]), ("right wall", [0.11, 0.09, -0.02])):
+        for line in lines:
+            (field,) = line.sound.fields
+            surface = field.surface
+            corners = surface.points[surface.triangles] - np.array(place)
+            # Weights of the corners of the triangle that holds the sensor: the plane through it is the wall's.
+            weights = np.array(
+                [np.linalg.lstsq(np.vstack([one.T, np.ones(3)]), [0, 0, 0, 1], rcond=None)[0] for one in corners]
+            )
+            off = np.linalg.norm(np.einsum("ij,ijk->ik", weights, corners), axis=1)
+            (number,) = np.flatnonzero((off < 1e-4) & (weights > -1e-6).all(axis=1))[:1]
+            velocity = weights[number] @ field.velocity.reshape(-1, 3, field.velocity.shape[1])[number].sum(axis=1)
+            spectrum = spectra[name]
+            at = int(np.argmin(np.abs(spectrum.frequencies - line.frequency_hz)))
+            felt = spectrum.lines[at] / (2j * np.pi * line.frequency_hz)
+            assert abs(velocity - felt) < 0.08 * abs(felt), (name, line.name)
+
+
+def test_lines_beyond_the_wanted_number_and_frequency_are_named() -> None:
+    """Two lines up to 2 kHz: the next ones and the mesh frequency are left out with their part of the whole."""
+    result = quick_run(24.0)
+    every = result.solved.sound
+    assert every is not None
+    study = sounding_gearbox(QUICK | {"acoustics.lines": 2, "acoustics.highest_frequency": "2 kHz"})
+    case = study.case
+    transient = result.solved.transient
+    assert transient is not None
+    found = solve_sound(case, sounding_housing(), lines_of_run(transient, 3000.0), transient.machine)
+    # Powers by the same estimate: that of the walls' velocity, times the efficiency of a sphere that pulsates.
+    radius = np.sqrt(every.lines[0].sound.area / (4.0 * np.pi))
+    squares = {line.name: (2.0 * np.pi * line.frequency_hz / 343.2 * radius) ** 2 for line in every.lines}
+    powers = {line.name: line.sound.power * squares[line.name] / (1.0 + squares[line.name]) for line in every.lines}
+    shares = {name: power / sum(powers.values()) for name, power in powers.items()}
+    assert [line.name for line in found.lines] == ["1× input, output", "22× input"]
+    assert found.covered == pytest.approx(sum(shares[line.name] for line in found.lines), rel=0.01)
+    left_out = {one.name: one for one in found.left_out}
+    assert left_out["1× pinion -> wheel"].share == pytest.approx(shares["1× pinion -> wheel"], rel=0.01)
+    assert left_out["23× input"].share == pytest.approx(shares["23× input"], rel=0.01)
+    assert "1× input, output" not in left_out
+    known = [one.share for one in found.left_out if one.share is not None]
+    assert known == sorted(known, reverse=True)
+    assert min(known) >= 1e-3
+    # Beyond the modes nothing is known of the harmonics.
+    high = {name: (one.frequency_hz, one.share) for name, one in left_out.items() if one.share is None}
+    assert high == {
+        "2× pinion -> wheel": (pytest.approx(5040.0), None),
+        "3× pinion -> wheel": (pytest.approx(7560.0), None),
+    }
+
+
+RUN_UP = {
+    "transient.run": {"from": "5000 rpm", "to": "5500 rpm", "time": "0.1 s"},
+    "transient.revolutions": "",
+    "transient.discard": 1,
+    "transient.tolerance": 1e-3,
+}
+BASE = {"operation.base": {"harmonic": [{"frequency": "300 Hz", "y": "3 m/s^2"}]}, "transient.tolerance": 1e-3}
+
+
+def test_a_run_up_has_no_lines_but_microphones_over_time() -> None:
+    result = sounding_gearbox(TOP | RUN_UP).run()
+    sound = result.solved.sound
+    assert sound is not None
+    assert sound.lines == ()
+    assert sound.modes
+    assert sound.histories is not None
+    assert np.abs(sound.histories.pressure).max() > 0.0
+    (told,) = [one for one in result.document["warnings"] if one["name"] == "sound_left_out"]
+    assert told["message"].startswith("the sound of lines is left out: the speed changes")
+    assert result.document["sound"]["total_db"] is None
+
+
+def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
+    """The base shakes the housing itself, which the bearings' forces do not know."""
+    study = sounding_gearbox(TOP | BASE)
+    for result in (study.run(), study.sound()):
+        sound = result.solved if result.command == "sound" else result.solved.sound
+        assert sound.modes
+        assert (sound.lines, sound.histories) == ((), None)
+        (told,) = [one for one in result.document["warnings"] if one["name"] == "sound_left_out"]
+        assert told["message"].startswith("the sound of the motion is left out: the base moves")
+
+
+@pytest.mark.parametrize("changes", [RUN_UP, BASE])
+def test_a_sweep_leaves_out_what_a_run_leaves_out(changes: dict[str, Any]) -> None:
+    case = sounding_gearbox(TOP | changes).case
+    (told,) = add_sound(case, swept_keys(case, ["operation.torque=10 N*m,20 N*m"]), [], sounding_housing())
+    assert told["name"] == "sound_left_out"
+    solved = quick_run(24.0).solved.transient
+    assert solved is not None
+    assert len(strongest_lines(case, solved)[0]) == 0
+
+
+def test_the_box_of_microphones_stands_on_the_floor() -> None:
+    """Nine places 1 m from the reference box, which reaches down to the floor (ISO 3744:2010, 7.2.4)."""
+    case = gw.load("small-gearbox", {"acoustics.floor": "-200 mm", "acoustics.microphone_box": "1 m"}).case
+    housing = sounding_housing()
+    places, area = microphones_of(case, housing)
+    low, high = housing.mesh.bounds
+    sides, height = high - low + 2.0, high[1] + 1.0 + 0.2
+    assert area == pytest.approx(sides[0] * sides[2] + 2.0 * height * (sides[0] + sides[2]))
+    assert places["box 1"][1] == pytest.approx(-0.2 + 0.5 * height)
+    assert places["box 5"][1] == pytest.approx(high[1] + 1.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"acoustics.microphone_box": "1 m"}, "acoustics.microphone_box: expected boundary elements and a 'floor'"),
+        (
+            TOP | {"acoustics.microphone_box": "1 m"},
+            "acoustics.microphone_box: expected boundary elements and a 'floor'",
+        ),
+        ({"acoustics.microphone": [EAR, EAR | {"name": "box 3"}]}, r"microphone\[1\].name .*: expected another name"),
+    ],
+)
+def test_refuses_a_box_without_a_floor_and_its_names(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(CaseError, match=message):
+        gw.load("small-gearbox", changes)
+
+
+def test_titles_of_operating_shapes_have_arrows() -> None:
+    solved = quick_run(24.0).solved
+    assert solved.signature is not None
+    surface = drawn_housing(sounding_housing().mesh)
+    lines = [line for line in highest_lines(solved.signature, 3000.0, 6) if "->" in line.name]
+    titles = [operating_shape_of_line(line, sounding_housing().modes, surface).title for line in lines]
+    assert "Operating shape at 2520.0 Hz   1× pinion → wheel" in titles
+    assert not any("->" in title for title in titles)
