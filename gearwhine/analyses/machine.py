@@ -463,10 +463,11 @@ def sweep(
     count = workers or default_workers()
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
     told: list[dict[str, Any]] = []
+    housing = None
     if case.acoustics is not None and case.housing is not None:
         from gearwhine.sweep.sound import add_sound
 
-        told = add_sound(case, keys, swept, solve_housing(case, progress, folder=folder), progress)
+        told, housing = add_sound(case, keys, swept, solve_housing(case, progress, folder=folder), progress)
     dataset = collected_sweep(case, keys, swept)
     document = {"title": case.title} | sweep_document(keys, swept)
     add_warnings(document, told)
@@ -486,5 +487,6 @@ def sweep(
         _arrays=lambda: dataset,
         _figures=figures,
         _data_file="sweep.nc",
+        _housing=housing,
         _started=start,
     )

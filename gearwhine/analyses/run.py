@@ -178,7 +178,7 @@ def run(
             motion = lines_of_run(transient, highest_estimated(case, housing))
         sound = solve_sound(case, housing, motion, machine, progress)
         if transient is not None:
-            sound = with_histories(case, sound, transient, progress)
+            sound, housing = with_histories(case, housing, sound, transient, progress)
         document["sound"] = sound_document(sound)
         add_warnings(document, [*without, *sound.warnings()])
         timed("sound", begin)

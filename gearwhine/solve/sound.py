@@ -19,7 +19,8 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.microphones import MicrophoneHistories, microphone_histories, solve_transfer
+from gearwhine.solve.kept_radiation import kept_radiation
+from gearwhine.solve.microphones import MicrophoneHistories, microphone_histories
 from gearwhine.solve.motion_lines import (
     AUDIBLE,
     LeftOut,
@@ -423,30 +424,41 @@ def highest_estimated(case: Case, housing: SolvedHousing) -> float:
 
 
 def with_histories(
-    case: Case, solved: SolvedSound, transient: SolvedTransient, progress: Progress = silent
-) -> SolvedSound:
+    case: Case,
+    housing: SolvedHousing,
+    solved: SolvedSound,
+    transient: SolvedTransient,
+    progress: Progress = silent,
+) -> tuple[SolvedSound, SolvedHousing]:
     """Add the sound pressure over time at the microphones, of the record of a transient at once.
 
     Parameters
     ----------
     case : Case
         One whose base moves has none: the base drives the housing beside its bearings.
+    housing : SolvedHousing
     solved : SolvedSound
         Without microphones it is returned as it is.
     transient : SolvedTransient
         Of a long record the last stretch is taken.
+
+    Returns
+    -------
+    SolvedSound
+    SolvedHousing
+        Whose record holds the radiation over frequency.
     """
     places = np.array(list(solved.microphones.values()))
     moves = case.operation is not None and case.operation.base is not None
     if not len(places) or moves:
-        return solved
-    transfer = solve_transfer(solved.radiation, places, AUDIBLE, solved.limit_hz, progress)
+        return solved, housing
+    transfer, housing = kept_radiation(case, housing, solved.radiation, places, (AUDIBLE, solved.limit_hz), progress)
     histories = transient.histories
     repeats = transient.turning is None and transient.record.sampling.window == "uniform"
     heard = microphone_histories(
         transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
     )
-    return replace(solved, histories=heard)
+    return replace(solved, histories=heard), housing
 
 
 def _require_free(radiation: HousingRadiation, positions: Mapping[str, FloatArray], places: FloatArray) -> None:

@@ -1,7 +1,8 @@
 """Sound of a sweep: the radiated power of each point's lines that matter, once all points are there.
 
 A point stores the rates of the housing's coordinates at its strongest lines; the housing is the same at all points, so
-that its radiating surface is made once.
+that its radiating surface is made once. Where there are many lines their powers are interpolated over frequency
+(:mod:`housing.acoustics.modal_radiation`); lines whose interpolation or proofs are doubtful are solved.
 """
 
 from __future__ import annotations
@@ -15,19 +16,23 @@ import numpy.typing as npt
 
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
-from gearwhine.solve.sound_proofs import counting, interior_pressure, power_balance_db, require_proof
+from gearwhine.solve.sound_proofs import LEAK, counting, interior_pressure, power_balance_db, require_proof
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
+from housing.acoustics.modal_radiation import POINTS, ModalRadiation
+from housing.acoustics.radiation import POWERS_AGREE
 from housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
 
 if TYPE_CHECKING:
     from gearwhine.case import Case, SweptKey
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.sweep.run import SweptPoint
-    from housing.acoustics.radiation import RadiatedSound
+    from housing.acoustics.radiation import HousingRadiation, RadiatedSound
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
+_SURE = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 _FAINT = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
 _OF_THE_HOUSING = ("housing", "material", "acoustics")
 
@@ -36,10 +41,10 @@ def add_sound(
     case: Case,
     keys: Sequence[SweptKey],
     swept: Sequence[SweptPoint],
-    housing: SolvedHousing | None,
+    housing: SolvedHousing,
     progress: Progress = silent,
-) -> list[dict[str, Any]]:
-    """Add the sound to the documents of a sweep's points; return warnings.
+) -> tuple[list[dict[str, Any]], SolvedHousing]:
+    """Add the sound to the documents of a sweep's points.
 
     Parameters
     ----------
@@ -51,20 +56,27 @@ def add_sound(
         Of all points.
     progress : callable
 
+    Returns
+    -------
+    list of dict
+        Warnings.
+    SolvedHousing
+        Whose record holds the radiation over frequency, where that was of use.
+
     Raises
     ------
     CaseError, housing.HousingError
         As :func:`gearwhine.solve.sound.solve_sound`.
     """
-    from gearwhine.solve.motion_lines import left_out_warnings, pulsating_efficiency
-    from gearwhine.solve.sound import build_radiation, microphones_of
+    from gearwhine.solve.kept_radiation import kept_radiation
+    from gearwhine.solve.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
+    from gearwhine.solve.sound import build_radiation, highest_frequency, microphones_of
 
     if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):
         message = "the sound of a sweep is left out: its housing, materials or acoustics change from point to point"
-        return [warning("sound_of_sweep", message)]
+        return [warning("sound_of_sweep", message)], housing
     if told := left_out_warnings(case):
-        return told
-    assert housing is not None
+        return told, housing
     radiation = build_radiation(case, housing, progress)
     positions, _ = microphones_of(case, housing)
     places = np.array(list(positions.values())).reshape(-1, 3)
@@ -80,9 +92,15 @@ def add_sound(
         for place in np.flatnonzero(estimate > _FAINT * estimate.max()).tolist():
             jobs.append((number, float(frequencies[place]), rates[place][:, None]))
 
+    table = None
+    if radiation.method != "erp" and len(jobs) > POINTS:
+        between = AUDIBLE, highest_frequency(case, housing)
+        table, housing = kept_radiation(case, housing, radiation, places, between, progress)
+
     def solve(job: tuple[int, float, Any]) -> tuple[int, _Line]:
         number, hertz, rates = job
-        return number, _line(radiation.solve(hertz, rates), positions, places)
+        line = None if table is None else _interpolated(table, radiation, hertz, rates[:, 0], positions)
+        return number, line or _line(radiation.solve(hertz, rates), positions, places)
 
     lines: dict[int, list[_Line]] = {}
     for number, line in in_order(solve, jobs, "sound of the sweep", progress):
@@ -106,7 +124,7 @@ def add_sound(
             "interior_pressure": max((one for one in leaks if one is not None), default=None),
             "lines": sorted(entries, key=lambda entry: -float(entry["sound_power_db"])),
         }
-    return told
+    return told, housing
 
 
 @dataclass(frozen=True)
@@ -127,16 +145,47 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
         told = require_proof(sound, "a line")
     except HousingError as error:
         refused = error
-    level = float(power_level(sound.power))
-    entry: dict[str, Any] = {
-        "frequency_hz": sound.frequency_hz,
-        "sound_power_db": level,
-        "sound_power_db_a": level + float(a_weighting(sound.frequency_hz)),
-        "radiation_efficiency": sound.radiation_efficiency,
-        "power_balance_db": power_balance_db(sound),
-        "interior_pressure": interior_pressure(sound),
-    }
-    if len(places):
-        heard = sound.pressure_at(places)
-        entry["microphones_db"] = {name: float(pressure_level(heard[row])) for row, name in enumerate(positions)}
+    heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
+    entry = _entry(
+        sound.frequency_hz, sound.power, sound.radiation_efficiency, dict(zip(positions, heard, strict=True))
+    )
+    entry |= {"power_balance_db": power_balance_db(sound), "interior_pressure": interior_pressure(sound)}
     return _Line(entry, sound.power, sound.surface_power, told, refused)
+
+
+def _interpolated(
+    table: ModalRadiation,
+    radiation: HousingRadiation,
+    hertz: float,
+    rates: ComplexArray,
+    positions: Mapping[str, FloatArray],
+) -> _Line | None:
+    """Return the figures of a line by interpolation; None where that is doubtful, or a proof is."""
+    if not table.holds(hertz):
+        return None
+    power, surface_power, error = table.power(hertz, rates)
+    above = min(int(np.searchsorted(table.frequencies, hertz)), len(table.frequencies) - 1)
+    leak = float(table.interior_residual[max(above - 1, 0) : above + 1].max())
+    if max(error, table.pressure_error) > _SURE or abs(surface_power / power - 1.0) > POWERS_AGREE or leak > LEAK:
+        return None
+    heard = table.pressure_at(np.array([hertz]))[0] @ rates
+    efficiency = power / float(radiation.equivalent_power(rates[:, None])[0])
+    entry = _entry(hertz, power, efficiency, dict(zip(positions, heard, strict=True)))
+    entry |= {
+        "power_balance_db": float(power_level(surface_power) - power_level(power)),
+        "interior_pressure": leak if radiation.method == "boundary-elements" else None,
+    }
+    return _Line(entry, power, surface_power, [], None)
+
+
+def _entry(hertz: float, power: float, efficiency: float, heard: Mapping[str, complex]) -> dict[str, Any]:
+    level = float(power_level(power))
+    entry: dict[str, Any] = {
+        "frequency_hz": hertz,
+        "sound_power_db": level,
+        "sound_power_db_a": level + float(a_weighting(hertz)),
+        "radiation_efficiency": efficiency,
+    }
+    if heard:
+        entry["microphones_db"] = {name: float(pressure_level(one)) for name, one in heard.items()}
+    return entry

@@ -7,7 +7,8 @@ from sounding_gearbox import quick_run
 
 from coupling import CoupledMachine
 from coupling.signals.transfer_paths import housing_paths
-from gearwhine.solve.microphones import FADE, MicrophoneTransfer, fading_weights, microphone_histories
+from gearwhine.solve.microphones import FADE, fading_weights, microphone_histories
+from housing.acoustics.modal_radiation import ModalRadiation
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -20,13 +21,15 @@ def machine() -> CoupledMachine:
     return transient.machine
 
 
-def transfer(machine: CoupledMachine) -> MicrophoneTransfer:
+def transfer(machine: CoupledMachine) -> ModalRadiation:
     """Of two microphones 1 and 2 m off, the rates of the first three modes with other weights."""
     assert machine.housing is not None
     values = np.zeros((5, 2, machine.housing.size), dtype=complex)
     values[:, 0, :3] = [30.0, 20.0, -10.0]
     values[:, 1, :3] = [15.0, 10.0j, 5.0]
-    return MicrophoneTransfer(np.linspace(20.0, 3000.0, 5), values, np.array([1.0, 2.0]) / 343.2, 0.0)
+    nothing = np.zeros((5, machine.housing.size, machine.housing.size))
+    delays = np.array([1.0, 2.0]) / 343.2
+    return ModalRadiation(np.linspace(20.0, 3000.0, 5), nothing, nothing, values, delays, np.zeros(5))
 
 
 def forces_of(machine: CoupledMachine, signal: FloatArray) -> dict[str, FloatArray]:
@@ -49,7 +52,7 @@ def expected_amplitude() -> FloatArray:
     forces = {name: force.astype(complex) for name, force in forces_of(one, np.ones(1)).items()}
     omega = 2.0 * np.pi * np.array([_TONE])
     rates = housing_paths(one, omega, forces).acceleration.sum(axis=1) / (1j * omega[:, None])
-    return np.asarray(np.abs(transfer(one).values[0] @ rates[0]))
+    return np.asarray(np.abs(transfer(one).pressure[0] @ rates[0]))
 
 
 def amplitude(heard: FloatArray, within: slice) -> FloatArray:

@@ -1,0 +1,80 @@
+"""Radiation of a housing's modes over frequency, kept in the mode cache beside the modes that radiate."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import Case
+from gearwhine.output.files import source_digest
+from gearwhine.progress import Progress, in_order, silent
+from gearwhine.solve.housing_modes import SolvedHousing
+from housing.acoustics.modal_radiation import POINTS, ModalRadiation
+from housing.acoustics.radiation import HousingRadiation
+from housing.storage.netcdf import content_key
+
+FloatArray = npt.NDArray[np.float64]
+
+_NOTE = "radiation"
+_CODE = ("housing.acoustics", "housing.storage", "gearwhine.solve.sound", "gearwhine.solve.kept_radiation")
+_WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}  # the places of microphones count as they are
+
+
+def kept_radiation(
+    case: Case,
+    housing: SolvedHousing,
+    radiation: HousingRadiation,
+    places: FloatArray,
+    between: tuple[float, float],
+    progress: Progress = silent,
+) -> tuple[ModalRadiation, SolvedHousing]:
+    """Return the radiation of a housing's modes over frequency, solved where the mode cache has it not.
+
+    Parameters
+    ----------
+    case : Case
+        With `[acoustics]`.
+    housing : SolvedHousing
+    radiation : HousingRadiation
+        Of the case and the housing.
+    places : ndarray, shape (m, 3)
+        Of microphones [m].
+    between : tuple of float
+        Lowest and highest frequency [Hz].
+    progress : callable
+
+    Returns
+    -------
+    ModalRadiation
+    SolvedHousing
+        Whose record holds it.
+    """
+    key = _key(case, places, between)
+    record = housing.record
+    if record.notes.get(_NOTE) == key:
+        return ModalRadiation.of_arrays(record.extras), housing
+    found = ModalRadiation.solve(radiation, places, *between, points=POINTS, each=partial(_each, progress=progress))
+    extras = {**record.extras, **found.arrays()}
+    kept = replace(record, extras=extras, notes={**record.notes, _NOTE: key})
+    return found, replace(housing, record=kept, source_holds=False)
+
+
+def _each(solve: Any, frequencies: Sequence[float], progress: Progress) -> tuple[Any, ...]:
+    return in_order(solve, frequencies, "radiation of the modes over frequency", progress)
+
+
+def _key(case: Case, places: FloatArray, between: tuple[float, float]) -> str:
+    assert case.acoustics is not None
+    seats = [] if case.housing is None else [seat.diameter for seat in case.housing.seat]
+    return content_key(
+        {
+            "acoustics": case.acoustics.model_dump(mode="json", exclude=_WITHOUT_EFFECT),
+            "seats": seats,
+            "places": places.tolist(),
+            "between": list(between),
+            "source": source_digest(*_CODE),
+        }
+    )
