@@ -70,7 +70,7 @@ def hann_tones(spectrum: Spectrum, weights: npt.ArrayLike, floor: float = 1e-6) 
     size = _size(lines, own)
     inner = np.arange(2, len(size) - 1)  # below are the mean and its leakage
     peaks = inner[(size[inner] >= size[inner - 1]) & (size[inner] > size[inner + 1])]
-    peaks = peaks[size[peaks] > floor * size.max(initial=0.0)]
+    peaks = peaks[size[peaks] > floor * size[inner].max(initial=0.0)]
     low = np.where(size[peaks + 1] >= size[peaks - 1], peaks, peaks - 1)
     pair = lines[:, low], lines[:, low + 1]
     offset, amplitudes = _interpolated(*pair, own)

@@ -3,10 +3,14 @@
 from collections.abc import Sequence
 from typing import Any, Protocol, TypeVar
 
+import numpy as np
+
 from gearwhine.output.quantity import warning
 from housing.acoustics.boundary_elements import SoundField
 from housing.acoustics.radiation import EquivalentField, RadiatedSound
 from housing.acoustics.sound_levels import power_level
+
+_FLAT = 1e-6  # of a face's size: height over the plane that it lies in
 
 COUNTS = 1e-4
 """Part of the whole power above which a line has to prove its own, and radiation efficiency above which a mode has."""
@@ -24,8 +28,16 @@ def power_balance_db(sound: RadiatedSound) -> float | None:
 
 def interior_pressure(sound: RadiatedSound) -> float | None:
     """Pressure inside relative to that on the surface, where zero is exact; None of faces and of an estimate."""
-    closed = [one for one in sound.fields if isinstance(one, SoundField) and not len(one.surface.open_edges)]
-    return max((field.interior_residual for field in closed), default=None)
+    proved = [one for one in sound.fields if isinstance(one, SoundField) and not _in_baffle(one)]
+    return max((field.interior_residual for field in proved), default=None)
+
+
+def _in_baffle(field: SoundField) -> bool:
+    """Whether a field is that of a flat face in the hard plane, which has no inside."""
+    if field.plane is None:
+        return False
+    points = field.surface.points
+    return bool(np.abs(field.plane.height(points)).max() <= _FLAT * np.ptp(points, axis=0).max())
 
 
 def require_proof(sound: RadiatedSound, what: str) -> list[dict[str, Any]]:

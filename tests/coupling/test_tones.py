@@ -80,3 +80,8 @@ def test_only_hanns_window_is_interpolated() -> None:
 
 def test_silence_has_no_tones() -> None:
     assert len(hann_tones(amplitude_spectrum(np.zeros((2, 64)), 0.1, "hann"), [1.0, 1.0]).frequencies) == 0
+
+
+def test_a_large_mean_hides_no_tone() -> None:
+    found = hann_tones(amplitude_spectrum(record({313.9: [1.0]}) + 1e7, _INTERVAL, "hann"), [1.0], floor=1e-3)
+    assert found.frequencies == pytest.approx([313.9], abs=1e-3)

@@ -1,0 +1,95 @@
+"""Proofs that modes, lines and the lines of a sweep have to pass, and what counts among them."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from sounding_box import COARSE
+from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing
+
+import gearwhine as gw
+from gearwhine.case import swept_keys
+from gearwhine.solve import sound_proofs
+from gearwhine.solve.motion_lines import MotionLines
+from gearwhine.solve.sound import build_radiation, solve_sound
+from gearwhine.solve.sound_proofs import counting, interior_pressure, power_balance_db
+from gearwhine.sweep.solution import PointResult
+from gearwhine.sweep.sound import add_sound
+from housing import HousingError
+from housing.acoustics import radiation
+
+
+def sound(power: float, surface_power: float) -> Any:
+    return SimpleNamespace(power=power, surface_power=surface_power, fields=())
+
+
+def test_a_line_counts_by_either_of_its_powers() -> None:
+    sounds = [sound(1.0, 1.0), sound(0.5e-4, 0.5e-4), sound(0.5e-4, 2e-4), sound(2e-4, -1e-9)]
+    assert counting(sounds) == [sounds[0], sounds[2], sounds[3]]
+
+
+def test_an_estimate_has_no_proof_and_a_face_no_inside() -> None:
+    for method, known in (("erp", False), ("rayleigh", True)):
+        changes = {"acoustics.method": "erp", "acoustics.mesh_size": "24 mm"} if method == "erp" else TOP
+        case = sounding_gearbox(changes).case
+        solved = build_radiation(case, sounding_housing())
+        rates = np.zeros((solved.modal[0].shape[1], 1))
+        rates[4] = 1.0
+        one = solved.solve(2524.0, rates)
+        assert interior_pressure(one) is None
+        balance = power_balance_db(one)
+        assert (balance is not None) is known
+        if balance is not None:
+            assert balance == pytest.approx(10.0 * np.log10(one.surface_power / one.power), abs=1e-9)
+            assert balance != 0.0
+
+
+def test_every_mode_that_radiates_is_held_against_the_pressure_inside(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sound_proofs, "LEAK", 0.0)
+    result = gw.load("steel-box", COARSE).sound()
+    told = [one for one in result.document["warnings"] if one["name"] == "interior_pressure"]
+    modes = [mode for mode in result.document["modes"] if mode["radiation_efficiency"] > 1e-4]
+    assert [one["frequency_hz"] for one in told] == [mode["frequency_hz"] for mode in modes]
+    assert [one["relative"] for one in told] == [mode["interior_pressure"] for mode in modes]
+    assert f"the sound of housing mode {modes[0]['number']} at" in told[0]["message"]
+    monkeypatch.setattr(radiation, "POWERS_AGREE", 1e-6)
+    with pytest.raises(HousingError, match="through the surface"):
+        gw.load("steel-box", COARSE).sound()
+
+
+def test_every_line_that_counts_is_held_against_its_powers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two lines, of which the other has a part in ten thousand of the force."""
+    case = sounding_gearbox(TOP | {"acoustics.highest_frequency": "1.2 kHz"}).case
+    transient = quick_run(24.0).solved.transient
+    assert transient is not None
+    machine = transient.machine
+    forces = {one.name: np.zeros((2, one.directions.shape[1]), dtype=complex) for one in machine.system.linear}
+    forces["input-back"][:, 1] = [100.0, 1.0]
+    motion = MotionLines(np.array([1100.0, 1110.0]), forces, 0.1)
+    lines = solve_sound(case, sounding_housing(), motion, machine).lines
+    assert len(lines) == 2
+    agree = abs(lines[0].sound.surface_power / lines[0].sound.power - 1.0)
+    monkeypatch.setattr(radiation, "POWERS_AGREE", 0.5 * agree)
+    with pytest.raises(HousingError, match="through the surface"):
+        solve_sound(case, sounding_housing(), motion, machine)
+
+
+def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = sounding_gearbox(TOP).case
+    size = build_radiation(case, sounding_housing()).modal[0].shape[1]
+    rates = np.zeros((2, size, 2))
+    rates[0, 4], rates[1, 4] = [1e-3, 2e-3], [-1e-3, 0.0]
+    outcome = PointResult({}, np.zeros(0), line_frequencies=np.array([900.0, 2400.0]), line_rates=rates)
+    swept: Any = [SimpleNamespace(outcome=outcome)]
+    keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
+    assert add_sound(case, keys, swept, sounding_housing()) == []
+    found = outcome.document["sound"]
+    balances = [line["power_balance_db"] for line in found["lines"]]
+    assert len(balances) == 2
+    assert found["power_balance_db"] == max(balances, key=abs)
+    assert found["interior_pressure"] is None
+    assert all(line["interior_pressure"] is None for line in found["lines"])
+    monkeypatch.setattr(radiation, "POWERS_AGREE", 1e-9)
+    with pytest.raises(HousingError, match="through the surface"):
+        add_sound(case, keys, swept, sounding_housing())
