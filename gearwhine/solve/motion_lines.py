@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledMachine, amplitude_spectrum
-from coupling.signals.excitation import excitation_lines, line_names
+from coupling.signals.excitation import LineName, excitation_lines, line_names
 from coupling.signals.spectrum import Spectrum
 from coupling.signals.tones import hann_tones
 from coupling.signals.transfer_paths import HousingPaths, housing_paths
@@ -195,8 +195,8 @@ def _lines_of(spectra: Mapping[str, Spectrum], tolerance: float) -> MotionLines:
     return MotionLines(next(iter(spectra.values())).frequencies[1:], forces, tolerance)
 
 
-def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray]:
-    """Return the frequencies of a motion's strongest lines and the rates of the housing's coordinates there.
+def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray, list[LineName]]:
+    """Return a motion's strongest lines: frequencies, rates of the housing's coordinates, and names.
 
     Returns
     -------
@@ -204,19 +204,21 @@ def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, Fl
         [Hz]
     rates : ndarray, shape (l, n, 2)
         Real and imaginary part.
+    names : list of LineName
     """
     assert case.acoustics is not None
     limit = case.acoustics.highest_frequency or solved.trusted_limit
     nothing = MotionLines(np.zeros(0), {}, _EXACT)
     motion = nothing if without_lines(case) else lines_of_run(solved, limit).between(AUDIBLE, limit)
     if solved.machine.housing is None or not len(motion.frequencies):
-        return np.zeros(0), np.zeros((0, 0, 2))
+        return np.zeros(0), np.zeros((0, 0, 2)), []
     rates = motion.rates(motion.paths(solved.machine)).sum(axis=1)
     # The surface is not known here: a body of a square metre stands for it.
     efficiency = pulsating_efficiency(motion.frequencies, 1.0, case.acoustics.speed_of_sound)
     estimate = (np.abs(rates) ** 2).sum(axis=1) * efficiency
     chosen = np.sort(np.argsort(-estimate, kind="stable")[: case.acoustics.lines])
-    return motion.frequencies[chosen], np.stack([rates[chosen].real, rates[chosen].imag], axis=-1)
+    names = line_names(solved.machine, motion.frequencies[chosen].tolist(), motion.tolerance)
+    return motion.frequencies[chosen], np.stack([rates[chosen].real, rates[chosen].imag], axis=-1), names
 
 
 def pulsating_efficiency(frequencies: FloatArray, area: float, speed_of_sound: float) -> FloatArray:

@@ -270,9 +270,22 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
         variables[name] = grid.rows((), (), total(key), _unit(unit, what))
     for name, key, unit, what in (
         ("sound_line_frequency", "frequency_hz", "Hz", "frequency of the loudest lines"),
+        ("sound_line_order", "order", "1", "order of the loudest lines over the speed of the first driver"),
         ("sound_line_level", "sound_power_db", "dB", "sound power level of the loudest lines re 1 pW"),
     ):
         variables[name] = grid.rows(("sound_line",), (count,), lines(key), _unit(unit, what))
+    harmonics = _union([line["name"] for line in sound["lines"] if line["kind"] == "mesh"] for sound in sounds)
+    if not harmonics:
+        return
+
+    def of_harmonics(result: PointResult) -> FloatArray:
+        lines = result.document.get("sound", {}).get("lines", ())
+        levels = {line["name"]: line["sound_power_db"] for line in lines}
+        return np.array([levels.get(name, np.nan) for name in harmonics])
+
+    coordinates["mesh_harmonic"] = ("mesh_harmonic", harmonics, {})
+    what = "sound power level of each mesh harmonic re 1 pW; none where its part of the point's power is too small"
+    variables["mesh_harmonic_level"] = grid.rows(("mesh_harmonic",), (len(harmonics),), of_harmonics, _unit("dB", what))
 
 
 def _pair_name(pair: Mapping[str, Any]) -> str:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from coupling.signals.excitation import LineName
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case, mesh_frequencies
 from gearwhine.failures import explain
@@ -62,6 +63,8 @@ class PointResult:
         Of the lines whose sound is wanted [Hz]; empty without `[acoustics]`.
     line_rates : ndarray, shape (l, n, 2)
         Rates of the housing's coordinates there, real and imaginary part.
+    line_names, line_kinds : tuple of str
+        Their names and causes, see :class:`coupling.signals.excitation.LineName`.
     """
 
     document: dict[str, Any]
@@ -74,6 +77,8 @@ class PointResult:
     window: str = "uniform"
     line_frequencies: FloatArray = field(default_factory=lambda: np.empty(0))
     line_rates: FloatArray = field(default_factory=lambda: np.empty((0, 0, 2)))
+    line_names: tuple[str, ...] = ()
+    line_kinds: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -172,11 +177,11 @@ def _reduced(
     add_warnings(document, told)
     add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved), known=told))
     forces = solved.histories.bearing_load
-    frequencies, rates = np.empty(0), np.empty((0, 0, 2))
+    frequencies, rates, names = np.empty(0), np.empty((0, 0, 2)), list[LineName]()
     if case.acoustics is not None and solved.machine.housing is not None:
         from gearwhine.solve.motion_lines import strongest_lines
 
-        frequencies, rates = strongest_lines(case, solved)
+        frequencies, rates, names = strongest_lines(case, solved)
     return PointResult(
         document=document,
         orders=lines[:count] / turning_hz,
@@ -188,6 +193,8 @@ def _reduced(
         window=spectra[0].window if spectra else "uniform",
         line_frequencies=frequencies,
         line_rates=rates,
+        line_names=tuple(one.name for one in names),
+        line_kinds=tuple(one.kind for one in names),
     )
 
 
@@ -281,6 +288,8 @@ def _arrays(result: PointResult) -> Variables:
         arrays["line_frequencies"] = ("sound_line", result.line_frequencies, told)
         told = {"units": "m kg^0.5 / s", "long_name": "rates of the housing's coordinates, real and imaginary"}
         arrays["line_rates"] = (("sound_line", "coordinate", "part"), result.line_rates, told)
+        arrays["line_names"] = ("sound_line", list(result.line_names), {"long_name": "name of the line"})
+        arrays["line_kinds"] = ("sound_line", list(result.line_kinds), {"long_name": "cause of the line"})
     attributes = {"units": "Hz", "long_name": "housing natural frequency"}
     arrays["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
     return arrays
@@ -302,5 +311,7 @@ def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> 
         window=attributes["window"],
         line_frequencies=arrays.get("line_frequencies", np.empty(0)),
         line_rates=arrays.get("line_rates", np.empty((0, 0, 2))),
+        line_names=tuple(map(str, arrays.get("line_names", ()))),
+        line_kinds=tuple(map(str, arrays.get("line_kinds", ()))),
         **named,
     )

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+_TWO_PI = 2.0 * np.pi
 _SURE = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 _FAINT = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
 _OF_THE_HOUSING = ("housing", "material", "acoustics")
@@ -80,7 +81,7 @@ def add_sound(
     radiation = build_radiation(case, housing, progress)
     positions, _ = microphones_of(case, housing)
     places = np.array(list(positions.values())).reshape(-1, 3)
-    jobs: list[tuple[int, float, Any]] = []
+    jobs: list[tuple[int, int, float, Any]] = []  # number of the point and of its line, frequency, rates
     for number, one in enumerate(swept):
         if not isinstance(one.outcome, PointResult) or not len(one.outcome.line_frequencies):
             continue
@@ -90,20 +91,25 @@ def add_sound(
             frequencies, radiation.area, radiation.medium.speed_of_sound
         )
         for place in np.flatnonzero(estimate > _FAINT * estimate.max()).tolist():
-            jobs.append((number, float(frequencies[place]), rates[place][:, None]))
+            jobs.append((number, place, float(frequencies[place]), rates[place][:, None]))
 
     table = None
     if radiation.method != "erp" and len(jobs) > POINTS:
         between = AUDIBLE, highest_frequency(case, housing)
         table, housing = kept_radiation(case, housing, radiation, places, between, progress)
 
-    def solve(job: tuple[int, float, Any]) -> tuple[int, _Line]:
-        number, hertz, rates = job
+    def solve(job: tuple[int, int, float, Any]) -> _Line:
+        *_, hertz, rates = job
         line = None if table is None else _interpolated(table, radiation, hertz, rates[:, 0], positions)
-        return number, line or _line(radiation.solve(hertz, rates), positions, places)
+        return line or _line(radiation.solve(hertz, rates), positions, places)
 
     lines: dict[int, list[_Line]] = {}
-    for number, line in in_order(solve, jobs, "sound of the sweep", progress):
+    for (number, place, *_), line in zip(jobs, in_order(solve, jobs, "sound of the sweep", progress), strict=True):
+        point, outcome = swept[number].point, swept[number].outcome
+        assert isinstance(outcome, PointResult)
+        assert point.case.operation is not None
+        order = line.entry["frequency_hz"] * _TWO_PI / abs(point.case.operation.speed)
+        line.entry.update(order=order, name=outcome.line_names[place], kind=outcome.line_kinds[place])
         lines.setdefault(number, []).append(line)
     for number, found in lines.items():
         counted = counting(found)

@@ -91,7 +91,9 @@ def test_a_sweep_takes_the_strongest_lines_of_a_run(revolutions: float) -> None:
     assert solved.transient is not None
     assert solved.sound is not None
     case = gw.load("small-gearbox", QUICK | {"acoustics.lines": 5}).case
-    frequencies, rates = strongest_lines(case, solved.transient)
+    frequencies, rates, names = strongest_lines(case, solved.transient)
+    named = {line.frequency_hz: line.name for line in solved.sound.lines}
+    assert [one.name for one in names] == [named[hertz] for hertz in frequencies.tolist()]
     lines = {line.frequency_hz: line for line in solved.sound.lines}
     assert len(frequencies) == 5
     assert frequencies[0] == pytest.approx(90.0, abs=0.01)
@@ -195,7 +197,7 @@ def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
 @pytest.mark.parametrize("changes", [RUN_UP, BASE])
 def test_a_sweep_leaves_out_what_a_run_leaves_out(changes: dict[str, Any]) -> None:
     case = sounding_gearbox(TOP | changes).case
-    (told,) = add_sound(case, swept_keys(case, ["operation.torque=10 N*m,20 N*m"]), [], sounding_housing())
+    (told,), _ = add_sound(case, swept_keys(case, ["operation.torque=10 N*m,20 N*m"]), [], sounding_housing())
     assert told["name"] == "sound_left_out"
     solved = quick_run(24.0).solved.transient
     assert solved is not None

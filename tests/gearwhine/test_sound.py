@@ -1,6 +1,7 @@
 """Sound of a case: parts that add up, two motions that sound alike, measurement by ISO 3744, and refusals."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +12,13 @@ import gearwhine as gw
 from gearwhine.case import CaseError, swept_keys
 from gearwhine.cli.command_line import run_command
 from gearwhine.output.export import write_sounds
-from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.output.files import staging
+from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
+from gearwhine.solve.kept_radiation import kept_radiation
 from gearwhine.solve.microphones import microphone_histories
+from gearwhine.solve.sound import build_radiation
+from gearwhine.sweep.run import SweptPoint
+from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing.acoustics.modal_radiation import ModalRadiation
 
@@ -187,6 +193,51 @@ def test_refuses_what_is_not_there(study, changes, message):
     with pytest.raises(Exception, match=message) as caught:
         other.sound()
     assert type(caught.value).__name__ in ("CaseError", "HousingError")
+
+
+def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monkeypatch, tmp_path):
+    """Lines of a point by the table and by solutions agree; the file of modes holds the table for the next sweep."""
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.POINTS", 17)
+    microphone = {"name": "ear", "position": ["0.5 m", "1 m", "0.1 m"]}
+    low = COARSE | {"acoustics.mesh_size": "34 mm", "acoustics.highest_frequency": "2.5 kHz"}
+    study = gw.load("small-gearbox", low | {"acoustics.microphone": [microphone]})
+    housing = solve_housing(study.case)
+    size = len(housing.modes.frequencies) + len(housing.modes.residual_modes.frequencies)
+    generator = np.random.default_rng(5)
+    frequencies = np.linspace(900.0, 2400.0, 6)
+    rates = 1e-4 * generator.normal(size=(6, size, 2))
+    keys = swept_keys(study.case, ["operation.torque=10 N*m,20 N*m"])
+
+    def heard(most, housing):
+        monkeypatch.setattr("gearwhine.sweep.sound.POINTS", most)
+        named = ("line",) * 6
+        one = PointResult(
+            {}, np.zeros(0), line_frequencies=frequencies, line_rates=rates, line_names=named, line_kinds=named
+        )
+        told, kept = add_sound(study.case, keys, [SweptPoint(SimpleNamespace(case=study.case), one, False)], housing)
+        assert told == []
+        return one.document["sound"]["lines"], kept
+
+    solved, same = heard(100, housing)
+    assert same is housing
+    interpolated, kept = heard(5, housing)
+    assert not kept.source_holds
+    assert interpolated != solved
+    for one, other in zip(interpolated, solved, strict=True):
+        assert one["frequency_hz"] == other["frequency_hz"]
+        for key in ("sound_power_db", "sound_power_db_a"):
+            assert one[key] == pytest.approx(other[key], abs=0.05)
+        assert one["power_balance_db"] == pytest.approx(other["power_balance_db"], abs=0.1)
+        assert one["microphones_db"]["ear"] == pytest.approx(other["microphones_db"]["ear"], abs=0.05)
+        assert one["radiation_efficiency"] == pytest.approx(other["radiation_efficiency"], rel=0.01)
+    with staging(tmp_path / "out") as place:
+        write_mode_cache(place, kept)
+    again = solve_housing(study.case, folder=tmp_path / "out")
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.ModalRadiation.solve", None)  # needs no solution
+    assert heard(5, again)[0] == interpolated
+    louder = gw.load("small-gearbox", low | {"acoustics.mesh_size": "33 mm"}).case
+    with pytest.raises(TypeError):
+        kept_radiation(louder, again, build_radiation(louder, again), np.zeros((0, 3)), (20.0, 3000.0))
 
 
 def test_sweep_sounds_as_its_points_do(tmp_path):

@@ -80,15 +80,28 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
     size = build_radiation(case, sounding_housing()).modal[0].shape[1]
     rates = np.zeros((2, size, 2))
     rates[0, 4], rates[1, 4] = [1e-3, 2e-3], [-1e-3, 0.0]
-    outcome = PointResult({}, np.zeros(0), line_frequencies=np.array([900.0, 2400.0]), line_rates=rates)
-    swept: Any = [SimpleNamespace(outcome=outcome)]
+    outcome = PointResult(
+        {},
+        np.zeros(0),
+        line_frequencies=np.array([900.0, 2400.0]),
+        line_rates=rates,
+        line_names=("10× input", "1× pinion -> wheel"),
+        line_kinds=("other", "mesh"),
+    )
+    swept: Any = [SimpleNamespace(outcome=outcome, point=SimpleNamespace(case=case))]
     keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
-    assert add_sound(case, keys, swept, sounding_housing()) == []
+    told, housing = add_sound(case, keys, swept, sounding_housing())
+    assert told == []
+    assert housing is sounding_housing()  # two lines need no table
     found = outcome.document["sound"]
     balances = [line["power_balance_db"] for line in found["lines"]]
     assert len(balances) == 2
     assert found["power_balance_db"] == max(balances, key=abs)
     assert found["interior_pressure"] is None
+    assert {line["name"]: (line["kind"], line["order"]) for line in found["lines"]} == {
+        "10× input": ("other", pytest.approx(900.0 * 60.0 / 5500.0)),
+        "1× pinion -> wheel": ("mesh", pytest.approx(2400.0 * 60.0 / 5500.0)),
+    }
     assert all(line["interior_pressure"] is None for line in found["lines"])
     monkeypatch.setattr(radiation, "POWERS_AGREE", 1e-9)
     with pytest.raises(HousingError, match="through the surface"):

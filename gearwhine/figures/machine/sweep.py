@@ -16,6 +16,7 @@ from gearwhine.figures.style import (
     INK,
     LABEL,
     LEFT,
+    NOTE,
     PANEL_WIDTH,
     SERIES,
     legend_below,
@@ -28,6 +29,7 @@ from gearwhine.figures.style import (
     sheet,
 )
 from gearwhine.output import file_stems
+from gearwhine.output.sections import arrowed
 
 _MOST_WATERFALLS = 12  # of a grid over several keys
 _LOUD = 40.0  # levels below the highest that have colours of their own [dB]
@@ -37,6 +39,8 @@ _FORCES, _FORCES_GAP = 42.0, 8.0  # the same of a gear pair's panels
 _LINES, _SCALE = 50.0, 17.0  # height of the panel of loudest lines, and room for its scale of colours
 _FIRST = 5.0  # above the first, for its title
 _COLUMNS = 3  # of the names of lines
+_HARMONICS = 3  # mesh harmonics that have a line of their own
+_ORDERS = 6  # multiples of a mesh frequency that are drawn among the loudest lines
 
 
 def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -115,8 +119,10 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
 
 
 def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict[str, int]]) -> Figure:
-    """Draw the sound power level over the sweep; of one swept key also the frequencies of the loudest lines."""
-    below, alone = _legend_height(places), len(places) == 1
+    """Draw the sound power level over the sweep; of one swept key also mesh harmonics and the loudest lines."""
+    alone = len(places) == 1
+    harmonics = _loudest_harmonics(dataset) if alone else []
+    below = legend_height(1 + len(harmonics), _COLUMNS) if harmonics else _legend_height(places)
     lower = FOOT + below
     upper = lower + (_LINES + _FORCES_GAP if alone else 0.0)
     note = f"{title}; sound power levels re 1 pW, solid: A-weighted, dashed: unweighted"
@@ -126,9 +132,13 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
     axes = panel(figure, upper, _FORCES, width=width)
     _draw_lines(axes, dataset["sound_power_level_a"], along, places)
     _draw_lines(axes, dataset["sound_power_level"], along, places, dashed=True)
+    at, order = _numbers(dataset, along), np.argsort(_numbers(dataset, along))
+    for name, color in zip(harmonics, SERIES[1:], strict=False):
+        level = dataset["mesh_harmonic_level"].sel(mesh_harmonic=name).values
+        axes.plot(at[order], level[order], color=color, lw=0.9, ls=(0, (4, 3)), marker=".", ms=2.5)
     axes.set_ylabel("sound power level [dB]")
     if alone:
-        panel_title(axes, "all lines")
+        panel_title(axes, "all lines, and mesh harmonics" if harmonics else "all lines")
         axes.tick_params(labelbottom=False)
         limits = axes.get_xlim()
         axes = panel(figure, lower, _LINES, width=width)
@@ -137,12 +147,30 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
         axes.set_xlim(*limits)
     axes.set_xlabel(_axis_label(dataset, along))
     _name_values(axes.xaxis, dataset, along)
+    if harmonics:
+        names = ["all lines", *map(arrowed, harmonics)]
+        handles = [
+            Line2D([], [], color=c, lw=1.2, label=name_in_legend(name, 48))
+            for c, name in zip(SERIES, names, strict=False)
+        ]
+        legend_below(figure, handles, _COLUMNS)
     _name_lines(figure, dataset, places)
     return figure
 
 
+def _loudest_harmonics(dataset: xr.Dataset) -> list[str]:
+    """Return the names of the mesh harmonics that are loudest anywhere, the loudest first."""
+    if "mesh_harmonic_level" not in dataset:
+        return []
+    levels = dataset["mesh_harmonic_level"]
+    highest = levels.max(dim=[name for name in levels.dims if name != "mesh_harmonic"]).values
+    known = np.flatnonzero(np.isfinite(highest))
+    ranked = known[np.argsort(-highest[known], kind="stable")][:_HARMONICS]
+    return [str(name) for name in dataset["mesh_harmonic"].values[ranked]]
+
+
 def _draw_loudest(axes: Any, bar: Any, dataset: xr.Dataset, along: str) -> None:
-    """Draw the frequencies of each point's loudest lines, coloured by their levels."""
+    """Draw the frequencies of each point's loudest lines, coloured by their levels, and the orders of the meshes."""
     levels = dataset["sound_line_level"].transpose(along, "sound_line").values
     frequencies = dataset["sound_line_frequency"].transpose(along, "sound_line").values
     at = np.broadcast_to(_numbers(dataset, along)[:, None], levels.shape)
@@ -157,8 +185,37 @@ def _draw_loudest(axes: Any, bar: Any, dataset: xr.Dataset, along: str) -> None:
     bar.set_ylabel("sound power level [dB]", size=LABEL, color=INK)
     bar.yaxis.set_label_coords(3.6, 0.5)
     axes.set_ylabel("frequency [Hz]")
-    axes.set_ylim(bottom=0.0)
+    highest = 1.06 * float(np.nanmax(frequencies))
+    axes.set_ylim(0.0, highest)
     panel_title(axes, "loudest lines of each point")
+    if along == "speed" and "mesh_frequency" in dataset:
+        _draw_mesh_orders(axes, dataset, highest)
+
+
+def _draw_mesh_orders(axes: Any, dataset: xr.Dataset, highest: float) -> None:
+    """Draw the low multiples of each mesh frequency over the speed up to a frequency [Hz], numbered where they end."""
+    speeds = _numbers(dataset, "speed")
+    fastest = int(np.argmax(speeds))
+    drawn = set[float]()
+    for contact in dataset["contact"].values:
+        mesh = dataset["mesh_frequency"].sel(contact=contact).transpose("speed").values
+        for number in range(1, _ORDERS + 1):
+            order = round(number * float(mesh[fastest] / speeds[fastest]), 9)
+            end = min(float(speeds[fastest]), highest / order if order > 0.0 else 0.0)
+            if not order > 0.0 or order in drawn or end <= speeds.min():
+                continue
+            drawn.add(order)
+            axes.plot([0.0, end], [0.0, order * end], color=INK, lw=0.6, ls=(0, (4, 3)), alpha=0.5, zorder=1)
+            axes.annotate(
+                f"{number}×",
+                (end, order * end),
+                xytext=(-2.0, -2.0),
+                textcoords="offset points",
+                ha="right",
+                va="top",
+                size=NOTE,
+                color=INK,
+            )
 
 
 def _waterfalls(
@@ -212,9 +269,15 @@ def _legend_height(places: list[dict[str, int]]) -> float:
 def _name_lines(figure: Figure, dataset: xr.Dataset, places: list[dict[str, int]]) -> None:
     """Name the lines at the foot where there are several."""
     if len(places) > 1:
-        names = [name_in_legend(", ".join(_described(dataset, place)), 48) for place in places[: len(SERIES)]]
-        handles = [Line2D([], [], color=color, lw=1.2, label=name) for color, name in zip(SERIES, names, strict=False)]
-        legend_below(figure, handles, _COLUMNS)
+        _name_series(figure, [", ".join(_described(dataset, place)) for place in places[: len(SERIES)]])
+
+
+def _name_series(figure: Figure, names: list[str]) -> None:
+    handles = [
+        Line2D([], [], color=color, lw=1.2, label=name_in_legend(name, 48))
+        for color, name in zip(SERIES, names, strict=False)
+    ]
+    legend_below(figure, handles, _COLUMNS)
 
 
 def _numbers(data: xr.Dataset | xr.DataArray, along: str) -> Any:
