@@ -120,7 +120,7 @@ class ModalRadiation:
         )
 
     @cached_property
-    def _pressures(self) -> tuple[CubicSpline, CubicSpline]:
+    def _pressures(self) -> "tuple[CubicSpline[np.complex128], CubicSpline[np.complex128]]":
         return (
             CubicSpline(self.frequencies, self.pressure, axis=0),
             CubicSpline(self.frequencies[::2], self.pressure[::2], axis=0),
