@@ -35,6 +35,7 @@ from housing.acoustics.sound_levels import (
     sum_of_levels,
     third_octave_bands,
 )
+from housing.errors import TriangleSizeError
 from housing.fem.surface import flat_faces
 from meshes.elements import pick_facets
 
@@ -275,7 +276,8 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
     Raises
     ------
     CaseError
-        Where the housing cannot be wrapped as the case says, or a face is not there or not flat.
+        Where the housing cannot be wrapped as the case says, its triangles are too large or too many, or a face is not
+        there or not flat.
     """
     assert case.acoustics is not None
     given = case.acoustics
@@ -310,7 +312,11 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
             medium=medium,
             floor=floor,
             still=given.still,
+            natural_modes=len(housing.modes.shapes),
+            highest_frequency=limit,
         )
+    except TriangleSizeError as error:
+        raise CaseError([Problem("acoustics.mesh_size", f"{1e3 * edge:.4g} mm", f"another edge; {error}")]) from error
     except HousingError as error:
         raise CaseError([Problem("acoustics", given.method, f"a housing that can be wrapped; {error}")]) from error
 
