@@ -18,7 +18,7 @@ The linear functions of a pressure that is bent should pass it in the mean and n
 from which they would deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the
 second derivatives H lies ``Σ eᵀ H e / 24`` below that of the linear function through its corners. The value in the
 equation of a vertex is therefore ``p − B p`` with the bending B of :func:`_bending`, except at edges and corners of the
-surface, where the pressure has no second derivatives. Powers and reciprocity are two to four times as exact as
+surface, where the pressure has no second derivatives. Powers and reciprocity are two to five times as exact as
 without.
 
 A hard plane mirrors the surface. Where a body stands on it, the triangles that lie in the plane are covered: they do

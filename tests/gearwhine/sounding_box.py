@@ -12,7 +12,7 @@ from gearwhine.solve.sound import SolvedSound, SoundLine
 COARSE = {
     "housing.box.mesh_size": "45 mm",
     "acoustics.mesh_size": "45 mm",
-    "acoustics.highest_frequency": "2.4 kHz",
+    "acoustics.highest_frequency": "2.3 kHz",
     "acoustics.microphone_box": "1 m",
 }
 NAMES = {
