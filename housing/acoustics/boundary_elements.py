@@ -220,7 +220,7 @@ class BoundaryElements:
             if heights.min() < -surface.rounding:
                 raise HousingError(f"the radiating surface reaches {-1e3 * heights.min():.3g} mm behind the hard plane")
             of_triangles = heights[surface.triangles]
-            self.uncovered = (of_triangles > surface.rounding).any(axis=1)
+            self.uncovered = np.asarray((of_triangles > surface.rounding).any(axis=1))
             if not self.uncovered.all():
                 self.surface = surface.part(self.uncovered)
             # The image of a vertex is twice as far from it as the plane.
