@@ -26,7 +26,7 @@ from gearwhine.solve.steady_state import SolvedSteady
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
 from housing.acoustics.medium import HardPlane, Medium
-from housing.acoustics.radiation import HousingRadiation, RadiatedSound
+from housing.acoustics.radiation import HousingRadiation, RadiatedSound, require_balances
 from housing.acoustics.sound_levels import (
     a_weighting,
     measurement_box,
@@ -45,14 +45,12 @@ ComplexArray = npt.NDArray[np.complex128]
 _TWO_PI = 2.0 * np.pi
 _WORKERS = 2
 _FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
-_COUNTS = 1e-4  # part of the whole power above which a line has to prove its own
 
 AUDIBLE = 20.0
 """Lowest frequency of a sound [Hz]."""
 
 _HOLES = 1.1  # of the widest seat, that are closed by default
 _ROUGH = 0.06  # relative error of an interpolation, half a decibel
-_LEAK = 0.1  # pressure inside, relative to that on the surface, above which a solution is doubtful
 
 
 @dataclass(frozen=True)
@@ -202,15 +200,14 @@ class SolvedSound:
         """Warnings of solutions that are doubtful."""
         found = []
         for line in self.lines:
-            leak = max((getattr(field, "interior_residual", 0.0) for field in line.sound.fields), default=0.0)
-            if leak > _LEAK:
+            if line.sound.doubt is not None:
+                leak = line.sound.interior_residual
                 found.append(
                     warning(
                         "interior_pressure",
-                        f"the sound at {line.frequency_hz:.1f} Hz is doubtful: the pressure inside the radiating "
-                        f"surface is {100.0 * leak:.2g} % of that on it, where zero is exact; use smaller triangles",
+                        f"the sound at {line.frequency_hz:.1f} Hz is doubtful: {line.sound.doubt}",
                         frequency_hz=line.frequency_hz,
-                        relative=leak,
+                        relative=leak if np.isfinite(leak) else None,
                     )
                 )
         if self.histories is not None and self.histories.error > _ROUGH:
@@ -387,13 +384,14 @@ def solve_sound(
     limit = highest_frequency(case, housing)
     positions, area = microphones_of(case, housing)
     places = np.array(list(positions.values())).reshape(-1, 3)
-    _require_free(radiation, positions, places)
+    _require_free(radiation, positions)
 
     def of_mode(number: int) -> ModeSound:
         rates = np.zeros((radiation.modal[0].shape[1], 1))
         rates[number] = 1.0
         hertz = float(housing.modes.frequencies_hz[number])
         sound = radiation.solve(hertz, rates)
+        require_balances([sound], alone=True)
         power = sound.power
         shares = {face: part / power for face, part in sound.by_face.items()} if power > 0.0 else {}
         return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares)
@@ -432,10 +430,7 @@ def solve_sound(
         return SoundLine(hertz, names[place].name, names[place].order, sound, heard)
 
     lines = solved_in_order(of_line, range(len(chosen)), "sound of the lines", progress)
-    all_power = sum(line.sound.power for line in lines)
-    for line in lines:
-        if max(line.sound.power, line.sound.surface_power) > _COUNTS * all_power:
-            line.sound.require_balance()
+    require_balances([line.sound for line in lines])
     return SolvedSound(radiation, modes, lines, housing.modes.frequencies_hz, bearings, covered, positions, area, limit)
 
 
@@ -512,14 +507,11 @@ def solved_in_order(
     return tuple(found)
 
 
-def _require_free(radiation: HousingRadiation, positions: Mapping[str, FloatArray], places: FloatArray) -> None:
-    """Refuse microphones inside the housing or behind the plane before the work."""
-    if not len(places):
-        return
-    silent_field = radiation.solve(radiation.highest_frequency / 50.0, np.zeros((radiation.modal[0].shape[1], 1)))
+def _require_free(radiation: HousingRadiation, positions: Mapping[str, FloatArray]) -> None:
+    """Refuse microphones inside or on the housing, or behind the plane, before the work."""
     for name, place in positions.items():
         try:
-            silent_field.pressure_at(place[None])
+            radiation.require_in_air(place[None])
         except HousingError as error:
             raise CaseError(
                 [Problem(f"acoustics.microphone {name!r}", place.tolist(), f"a point in the air; {error}")]

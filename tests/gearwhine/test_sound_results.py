@@ -14,7 +14,7 @@ from gearwhine.results import chapters_of
 from gearwhine.results.first_page import first_page
 from gearwhine.results.sound import SOUND, sections, sound_document
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.sound import SolvedSound
+from gearwhine.solve.sound import SolvedSound, SoundLine
 from housing.acoustics.radiation import HousingRadiation
 
 
@@ -39,6 +39,24 @@ def test_shorter_edges_move_no_line_by_more_than_a_fifth_of_a_decibel(solved: So
     for line in solved.lines:
         power = finer.solve(line.frequency_hz, line.sound.coordinates).power
         assert 10.0 * np.log10(power / line.sound.power) == pytest.approx(0.0, abs=0.2), line.name
+
+
+def test_lines_without_proof_inside_are_warned_of(solved: SolvedSound) -> None:
+    assert solved.warnings() == []
+
+    def leaking(line: SoundLine, leak: float) -> SoundLine:
+        fields = tuple(replace(field, interior_residual=leak) for field in line.sound.fields)
+        return replace(line, sound=replace(line.sound, fields=fields))
+
+    first, second, *others = solved.lines
+    told = replace(solved, lines=(leaking(first, np.inf), leaking(second, 0.21), *others)).warnings()
+    assert [one["relative"] for one in told] == [None, 0.21]
+    assert told[0]["message"].startswith(
+        "the sound at 92.0 Hz is doubtful: no point inside the radiating surface is far"
+    )
+    assert (
+        "at 520.0 Hz is doubtful: the pressure inside the radiating surface is 21 % of that on it" in told[1]["message"]
+    )
 
 
 def rows(table: Table) -> list[dict[str, str]]:
