@@ -5,6 +5,10 @@ class HousingError(ValueError):
     """The housing's description does not fit its mesh; the message says what was expected."""
 
 
+class TriangleSizeError(HousingError):
+    """The triangles of a radiating surface are too large or too many; the message says what edge to take."""
+
+
 class IncompleteModesError(RuntimeError):
     """The modes found are incomplete or not accurate enough: an incomplete set is never returned."""
 

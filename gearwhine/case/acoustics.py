@@ -60,9 +60,10 @@ class Acoustics(Table):
     close_holes: PositiveLength | None = None
     """Diameter of the largest hole of the housing that is capped. Default: a tenth more than the widest seat."""
     floor: Length | None = None
-    """Height y of a hard floor, which mirrors the sound. Default: none."""
+    """Height y of a hard floor, which mirrors the sound. The housing stands on it or above it; soles in it do not
+    radiate. Default: none."""
     still: tuple[Name, ...] = Field(default=(), max_length=MOST_ENTRIES)
-    """Surfaces that do not radiate, such as the soles of feet: names of surfaces of the housing."""
+    """Surfaces that do not radiate, such as the soles of feet on a bench: names of surfaces of the housing."""
     faces: tuple[Name, ...] = Field(default=(), max_length=MOST_ENTRIES)
     """Flat faces that radiate, for the method `rayleigh`: names of surfaces of the housing such as `top`."""
     microphone: tuple[Microphone, ...] = Field(default=(), max_length=MOST_ENTRIES)

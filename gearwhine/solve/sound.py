@@ -29,18 +29,11 @@ from gearwhine.solve.motion_lines import (
     loud_lines,
     pulsating_efficiency,
 )
-from gearwhine.solve.sound_proofs import (
-    COUNTS,
-    counting,
-    interior_pressure,
-    power_balance_db,
-    require_proof,
-    require_proofs,
-)
+from gearwhine.solve.sound_proofs import interior_pressure, power_balance_db, require_proofs
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
 from housing.acoustics.medium import HardPlane, Medium
-from housing.acoustics.radiation import HousingRadiation, RadiatedSound
+from housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
 from housing.acoustics.sound_levels import (
     a_weighting,
     measurement_box,
@@ -49,6 +42,7 @@ from housing.acoustics.sound_levels import (
     sum_of_levels,
     third_octave_bands,
 )
+from housing.errors import TriangleSizeError
 from housing.fem.surface import flat_faces
 from meshes.elements import pick_facets
 
@@ -262,7 +256,8 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
     Raises
     ------
     CaseError
-        Where the housing cannot be wrapped as the case says, or a face is not there or not flat.
+        Where the housing cannot be wrapped as the case says, its triangles are too large or too many, or a face is not
+        there or not flat.
     """
     assert case.acoustics is not None
     given = case.acoustics
@@ -297,7 +292,11 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
             medium=medium,
             floor=floor,
             still=given.still,
+            natural_modes=len(housing.modes.shapes),
+            highest_frequency=limit,
         )
+    except TriangleSizeError as error:
+        raise CaseError([Problem("acoustics.mesh_size", f"{1e3 * edge:.4g} mm", f"another edge; {error}")]) from error
     except HousingError as error:
         raise CaseError([Problem("acoustics", given.method, f"a housing that can be wrapped; {error}")]) from error
 
@@ -366,7 +365,7 @@ def solve_sound(
     limit = highest_frequency(case, housing)
     positions, area = microphones_of(case, housing)
     places = np.array(list(positions.values())).reshape(-1, 3)
-    _require_free(radiation, positions, places)
+    _require_free(radiation, positions)
     told: list[dict[str, Any]] = []
 
     def of_mode(number: int) -> tuple[ModeSound, RadiatedSound]:
@@ -383,8 +382,7 @@ def solve_sound(
     modes = []
     for mode, sound in in_order(of_mode, numbers, "sound of the housing's modes", progress):
         modes.append(mode)
-        if mode.radiation_efficiency > COUNTS:
-            told += require_proof(sound, f"housing mode {mode.number}")
+        told += require_proofs([sound], f"housing mode {mode.number}", alone=True)
     found = SolvedSound(
         radiation, tuple(modes), (), housing.modes.frequencies_hz, (), 0.0, positions, area, limit, told=tuple(told)
     )
@@ -461,14 +459,11 @@ def with_histories(
     return replace(solved, histories=heard), housing
 
 
-def _require_free(radiation: HousingRadiation, positions: Mapping[str, FloatArray], places: FloatArray) -> None:
-    """Refuse microphones inside the housing or behind the plane before the work."""
-    if not len(places):
-        return
-    silent_field = radiation.solve(radiation.highest_frequency / 50.0, np.zeros((radiation.modal[0].shape[1], 1)))
+def _require_free(radiation: HousingRadiation, positions: Mapping[str, FloatArray]) -> None:
+    """Refuse microphones inside or on the housing, or behind the plane, before the work."""
     for name, place in positions.items():
         try:
-            silent_field.pressure_at(place[None])
+            radiation.require_in_air(place[None])
         except HousingError as error:
             raise CaseError(
                 [Problem(f"acoustics.microphone {name!r}", place.tolist(), f"a point in the air; {error}")]

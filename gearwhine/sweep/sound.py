@@ -16,11 +16,11 @@ import numpy.typing as npt
 
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
-from gearwhine.solve.sound_proofs import LEAK, counting, interior_pressure, power_balance_db, require_proof
+from gearwhine.solve.sound_proofs import doubts, interior_pressure, power_balance_db
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
 from housing.acoustics.modal_radiation import POINTS, ModalRadiation
-from housing.acoustics.radiation import POWERS_AGREE
+from housing.acoustics.radiation import LEAK, POWERS_AGREE, counting
 from housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
 
 if TYPE_CHECKING:
@@ -146,9 +146,9 @@ class _Line:
 
 def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: FloatArray) -> _Line:
     """Return the figures of a sound, which is not held: a sweep has thousands."""
-    told, refused = [], None
+    refused = None
     try:
-        told = require_proof(sound, "a line")
+        sound.require_balance()
     except HousingError as error:
         refused = error
     heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
@@ -156,7 +156,7 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
         sound.frequency_hz, sound.power, sound.radiation_efficiency, dict(zip(positions, heard, strict=True))
     )
     entry |= {"power_balance_db": power_balance_db(sound), "interior_pressure": interior_pressure(sound)}
-    return _Line(entry, sound.power, sound.surface_power, told, refused)
+    return _Line(entry, sound.power, sound.surface_power, doubts(sound, "a line"), refused)
 
 
 def _interpolated(

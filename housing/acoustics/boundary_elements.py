@@ -14,6 +14,16 @@ CHIEF): H. A. Schenck, "Improved integral formulation for acoustic radiation pro
 Society of America 44 (1968), 41-58. Many points, spread at random, and least squares make an accident unlikely that
 all lie on nodal surfaces; points that were not used prove it, see :attr:`SoundField.interior_residual`.
 
+The linear functions of a pressure that is bent should pass it in the mean and not through its values at the vertices,
+from which they would deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the
+second derivatives H lies ``Σ eᵀ H e / 24`` below that of the linear function through its corners. The value in the
+equation of a vertex is therefore ``p − B p`` with the bending B of :func:`_bending`, except at edges and corners of the
+surface, where the pressure has no second derivatives. Powers and reciprocity are two to five times as exact as
+without.
+
+A hard plane mirrors the surface. Where a body stands on it, the triangles that lie in the plane are covered: they do
+not radiate and are left out, and what is left is one closed body with its mirror image.
+
 The equation of Burton and Miller, which couples the normal derivative, needs a smooth surface at the vertices and
 spoils weak radiators at low frequencies; on a sphere and on boxes CHIEF was the more accurate.
 """
@@ -23,12 +33,13 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 from scipy.linalg import lapack
 
 from housing.acoustics.boundary_integrals import SourcePoints, far_field_amplitudes, solid_angles, surface_integrals
 from housing.acoustics.medium import AIR, HardPlane, Medium
 from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.errors import HousingError
+from housing.errors import HousingError, TriangleSizeError
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -37,7 +48,13 @@ _TWO_PI = 2.0 * np.pi
 _INNER_WEIGHT = 5.0  # of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
 _CHECK_POINTS = 12
 _FEWEST_INNER = 30
+_VAIN = 50  # rounds of 64 trials without a point inside after which there is none
+_NEAR = 0.01  # longest edges from a triangle below which the quadrature fails: 0.3 % at 0.003 edges, 10 % at 0.001
+_SMOOTH = np.cos(np.deg2rad(15.0))  # between a triangle's normal and the mean one of a vertex that is on no edge
 _MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # of linear shape functions on a triangle of unit area
+
+MOST_TRIANGLES = 16_000
+"""Triangles whose equations are still solved: their matrix takes 1.4 GB, and their factorisation minutes."""
 
 
 @dataclass(frozen=True)
@@ -47,16 +64,18 @@ class SoundField:
     Attributes
     ----------
     surface : RadiatingSurface
+        What radiates.
     medium : Medium
     plane : HardPlane or None
     frequency_hz : float
     velocity : ndarray, shape (3 n_triangles, n)
         Normal velocity at the corners of each triangle [m/s].
     pressure : ndarray, shape (n_points, n)
-        At the vertices [Pa].
+        At the vertices [Pa], of linear functions that pass the pressure in the mean.
     interior_residual : float
         Root mean square of the pressure at points inside that the solution did not use, where zero is exact, relative
-        to that on the surface; the largest of all distributions. Zero for a baffled face, which has no inside.
+        to that on the surface; the largest of all distributions. Infinite where no point inside is far enough from the
+        surface, as in a thin plate: there is no proof. Zero for a baffled face, which has no inside.
     """
 
     surface: RadiatingSurface
@@ -71,6 +90,11 @@ class SoundField:
     def wavenumber(self) -> float:
         """Wavenumber k = ω / c [rad/m]."""
         return _TWO_PI * self.frequency_hz / self.medium.speed_of_sound
+
+    @property
+    def baffled(self) -> bool:
+        """Whether the surface is a flat face in a baffle, which has no inside."""
+        return self.plane is not None and _lies_in(self.surface, self.plane)
 
     @property
     def flux(self) -> ComplexArray:
@@ -146,22 +170,10 @@ class SoundField:
         Raises
         ------
         HousingError
-            Where a point is inside the surface or behind the hard plane.
+            As :func:`require_in_air`.
         """
-        if self.plane is not None and (behind := np.flatnonzero(self.plane.height(points) < 0.0)).size:
-            raise HousingError(f"the point {_place(points[behind[0]])} is behind the hard plane")
-        if not len(self.surface.open_edges):
-            inside = np.flatnonzero(solid_angles(self.surface, points) > _TWO_PI)
-            if inside.size:
-                raise HousingError(f"the point {_place(points[inside[0]])} is inside the radiating surface")
+        require_in_air(self.surface, self.plane, points)
         return _represent(self.surface, self.plane, points, self.wavenumber, self.pressure, self.flux)
-
-    @cached_property
-    def intensity(self) -> FloatArray:
-        """Mean sound intensity out of each triangle [W/m²], shape (n_triangles, n)."""
-        shape = (len(self.surface.triangles), 3, -1)
-        pressure, velocity = self.pressure[self.surface.triangles], self.velocity.reshape(shape)
-        return np.asarray(0.5 * np.einsum("ean,ab,ebn->en", velocity.conj(), _MASS, pressure).real)
 
 
 class BoundaryElements:
@@ -179,21 +191,46 @@ class BoundaryElements:
     plane : HardPlane, optional
         A hard floor, or the baffle of a flat face.
 
+    Attributes
+    ----------
+    surface : RadiatingSurface
+        What radiates: the given surface without its triangles that lie in the floor.
+    uncovered : ndarray of bool, shape (n_given_triangles,)
+        Triangles of the given surface that radiate.
+    baffled : bool
+        Whether the surface is a flat face in a baffle.
+
     Raises
     ------
     HousingError
-        Where the surface is neither closed nor flat in the plane, is turned inside out, or reaches behind the plane.
+        Where the surface is neither closed nor flat in the plane, is turned inside out, reaches behind the plane, or
+        leaves a gap above it that is too narrow for its triangles.
     """
 
     def __init__(self, surface: RadiatingSurface, medium: Medium = AIR, plane: HardPlane | None = None) -> None:
         self.surface, self.medium, self.plane = surface, medium, plane
-        rounding = 1e-9 * float(np.ptp(surface.points, axis=0).max())
+        self.uncovered = np.ones(len(surface.triangles), dtype=bool)
         heights = np.zeros(0) if plane is None else plane.height(surface.points)
-        self.baffled = plane is not None and bool(np.abs(heights).max() <= 1e3 * rounding)
-        if not self.baffled:
-            surface.require_closed()
-            if plane is not None and heights.min() < -rounding:
+        self.baffled = plane is not None and _lies_in(surface, plane)
+        if self.baffled:
+            return
+        surface.require_closed()
+        self._volume = surface.volume
+        if plane is not None:
+            if heights.min() < -surface.rounding:
                 raise HousingError(f"the radiating surface reaches {-1e3 * heights.min():.3g} mm behind the hard plane")
+            of_triangles = heights[surface.triangles]
+            self.uncovered = np.asarray((of_triangles > surface.rounding).any(axis=1))
+            if not self.uncovered.all():
+                self.surface = surface.part(self.uncovered)
+            # The image of a vertex is twice as far from it as the plane.
+            narrow = (of_triangles > surface.rounding) & (of_triangles < 0.5 * _NEAR * surface.lengths[:, None])
+            if narrow.any():
+                raise HousingError(
+                    f"the radiating surface leaves a gap of {1e3 * of_triangles[narrow].min():.3g} mm above the hard "
+                    f"plane; expected none, or at least {500.0 * _NEAR * surface.lengths.max():.3g} mm, a "
+                    f"{2.0 / _NEAR:.0f}th of its longest edge"
+                )
 
     def highest_frequency(self, elements: float = 6.0) -> float:
         """Highest frequency that the surface resolves [Hz], see :meth:`RadiatingSurface.highest_frequency`."""
@@ -204,41 +241,70 @@ class BoundaryElements:
 
         Raises
         ------
-        HousingError
+        TriangleSizeError
             With the edge length that is needed.
         """
         limit = self.highest_frequency(elements)
         if frequency_hz > limit:
             edge = self.medium.speed_of_sound / (6.0 * frequency_hz)
-            raise HousingError(
+            raise TriangleSizeError(
                 f"the triangles of the radiating surface are too large for {frequency_hz:.0f} Hz: {elements:g} edges a "
                 f"wavelength end at {limit:.0f} Hz; six need edges of {1e3 * edge:.3g} mm"
             )
+
+    def require_few(self) -> None:
+        """Refuse more triangles than a dense matrix can hold.
+
+        Raises
+        ------
+        TriangleSizeError
+            With the memory that they take.
+        """
+        count = len(self.surface.triangles)
+        if count > MOST_TRIANGLES and not self.baffled:
+            edge = float(np.median(self.surface.lengths)) * np.sqrt(count / MOST_TRIANGLES)
+            memory = 16.0 * (1.0 + 1.0 / 3.0) * len(self.surface.points) ** 2  # a third as many points inside
+            raise TriangleSizeError(
+                f"{count} triangles of the radiating surface take {1e-9 * memory:.3g} GB for the matrix of each "
+                f"frequency; expected at most {MOST_TRIANGLES} triangles: take edges of {1e3 * edge:.3g} mm or longer"
+            )
+
+    def require_in_air(self, points: FloatArray) -> None:
+        """Refuse points that are not in the air, see :func:`require_in_air`."""
+        require_in_air(self.surface, self.plane, points)
 
     @cached_property
     def _inner_points(self) -> FloatArray:
         """Points inside, no nearer to the surface than half an edge; the first few are checks.
 
-        They are random means of four vertices, so that they turn and grow with the surface.
+        They are random means of four vertices, so that they turn and grow with the surface. A thin body has none.
         """
         generator = np.random.default_rng(1968)
         found: list[FloatArray] = []
         most = max(_FEWEST_INNER, len(self.surface.points) // 3) + _CHECK_POINTS
         centers, reach = self.surface.corners.mean(axis=1), 0.6 * self.surface.lengths
-        for _ in range(400):
+        for trials in range(400):
             chosen = generator.integers(len(self.surface.points), size=(64, 4))
             trial = np.einsum("ti,tij->tj", generator.dirichlet(np.ones(4), size=64), self.surface.points[chosen])
-            trial = trial[solid_angles(self.surface, trial) > 1.98 * _TWO_PI]
-            apart = np.linalg.norm(trial[:, None] - centers, axis=2)
-            found += list(trial[(apart > reach).all(axis=1)])
-            if len(found) >= most:
+            trial = trial[(np.linalg.norm(trial[:, None] - centers, axis=2) > reach).all(axis=1)]
+            found += list(trial[_inside(self.surface, self.plane, trial) > 0.99])
+            if len(found) >= most or (trials >= _VAIN and not found):
                 break
         return np.array(found[:most]).reshape(-1, 3)
 
+    @property
+    def _checks(self) -> int:
+        """Number of the points inside that prove the solution: at most half of all."""
+        return min(_CHECK_POINTS, (len(self._inner_points) + 1) // 2)
+
+    @cached_property
+    def _bending(self) -> sparse.coo_array:
+        return _bending(self.surface)
+
     def _inner_count(self, wavenumber: float) -> int:
         """Twice the natural frequencies of the inside, by Weyl's law, within 5 % of this one, and a few more."""
-        expected = 0.2 * self.surface.volume * wavenumber**3 / (2.0 * np.pi**2)
-        return min(_FEWEST_INNER + int(expected), len(self._inner_points) - _CHECK_POINTS)
+        expected = 0.2 * self._volume * wavenumber**3 / (2.0 * np.pi**2)
+        return min(_FEWEST_INNER + int(expected), len(self._inner_points) - self._checks)
 
     def solve(self, frequency_hz: float, velocity: npt.ArrayLike) -> SoundField:
         """Solve for the sound field of some distributions of normal velocity.
@@ -247,19 +313,25 @@ class BoundaryElements:
         ----------
         frequency_hz : float
         velocity : array_like, shape (3 n_triangles, n)
-            Outward normal velocity at the corners of each triangle [m/s].
+            Outward normal velocity at the corners of each triangle that radiates [m/s].
 
         Raises
         ------
         HousingError
-            Where the frequency is not positive or the triangles are too large for it.
+            Where the frequency is not positive, the triangles are too large for it or too many, or the velocity does
+            not belong to the triangles of :attr:`surface`.
         """
         if frequency_hz <= 0.0:
             raise HousingError(f"a frequency of {frequency_hz:g} Hz; expected a positive one")
         self.require_resolved(frequency_hz)
-        given = np.ascontiguousarray(
-            np.asarray(velocity, dtype=np.complex128).reshape(3 * len(self.surface.triangles), -1)
-        )
+        self.require_few()
+        given = np.asarray(velocity, dtype=np.complex128)
+        if len(given) != 3 * len(self.surface.triangles):
+            raise HousingError(
+                f"velocities at {len(given)} corners; expected {3 * len(self.surface.triangles)}, three of each "
+                "triangle that radiates"
+            )
+        given = np.ascontiguousarray(given.reshape(len(given), -1))
         wavenumber = _TWO_PI * frequency_hz / self.medium.speed_of_sound
         flux = -1j * wavenumber * self.medium.impedance * given
         if self.baffled:
@@ -269,15 +341,18 @@ class BoundaryElements:
             pressure = -2.0 * surface_integrals(self.surface, vertices, own, wavenumber, flux).single
             return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, 0.0)
         pressure = self._solve_closed(wavenumber, flux)
-        checks = self._inner_points[:_CHECK_POINTS]
-        inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)
-        size = np.sqrt((np.abs(pressure) ** 2).mean(axis=0))
-        left = np.sqrt((np.abs(inside) ** 2).mean(axis=0)) / np.where(size > 0.0, size, 1.0)
-        return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, float(left.max()))
+        residual = np.inf
+        if self._checks:
+            checks = self._inner_points[: self._checks]
+            inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)
+            size = np.sqrt((np.abs(pressure) ** 2).mean(axis=0))
+            left = np.sqrt((np.abs(inside) ** 2).mean(axis=0)) / np.where(size > 0.0, size, 1.0)
+            residual = float(left.max())
+        return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, residual)
 
     def _solve_closed(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
         vertices = self.surface.points
-        count, inner = len(vertices), self._inner_points[_CHECK_POINTS:][: self._inner_count(wavenumber)]
+        count, inner = len(vertices), self._inner_points[self._checks :][: self._inner_count(wavenumber)]
         rows = count + len(inner)
         # LAPACK works in place on arrays in Fortran order.
         matrix = np.zeros((rows, count), dtype=np.complex128, order="F")
@@ -289,7 +364,7 @@ class BoundaryElements:
         matrix[count:], right[count:] = inside.double, inside.single
         if self.plane is not None:
             mirrored = self.plane.mirror(vertices)
-            touching = np.abs(self.plane.height(vertices)) <= 1e-9 * np.ptp(vertices)
+            touching = np.abs(self.plane.height(vertices)) <= self.surface.rounding
             image = surface_integrals(self.surface, mirrored, np.where(touching, own, -1), wavenumber, flux)
             matrix[:count] -= image.double
             right[:count] -= image.single
@@ -298,14 +373,44 @@ class BoundaryElements:
             matrix[count:] += image.double
             right[count:] += image.single
         matrix[own, own] += free
-        matrix[count:] *= _INNER_WEIGHT
-        right[count:] *= _INNER_WEIGHT
+        bent = self._bending
+        matrix[bent.row, bent.col] -= free[bent.row] * bent.data
+        weights = np.ones(rows)
+        weights[count:] = _INNER_WEIGHT
+        if self.plane is not None:
+            # A vertex in the plane is its own image: of the body with its image all others have two equations.
+            weights[:count][touching] = np.sqrt(0.5)
+        matrix *= weights[:, None]
+        right *= weights[:, None]
         _, solution, failed = lapack.zgels(
             matrix, right, lwork=64 * (count + flux.shape[1]), overwrite_a=True, overwrite_b=True
         )
         if failed:
             raise HousingError(f"the boundary elements are singular at {wavenumber:.6g} rad/m")
         return np.ascontiguousarray(solution[:count])
+
+
+def _bending(surface: RadiatingSurface) -> sparse.coo_array:
+    """Matrix B of the height of linear functions p over the pressure that they pass in the mean, at n vertices.
+
+    The second derivatives are isotropic in the mean over the triangles around a vertex, ``Σ eᵀ H e = ½ Σ e² Δp``, and
+    Δp there follows from the stiffness matrix K of linear finite elements, ``∫ ∇φᵢ·∇p dS = −Aᵢ Δp`` with a third Aᵢ of
+    the area of its triangles: ``(B p)ᵢ = Σ_T (Σ e²)_T (K_T p)ᵢ / 48 Aᵢ``. It is zero for a linear pressure on a plane.
+    """
+    count, triangles = len(surface.points), surface.triangles
+    areas, corners = np.bincount(triangles.ravel(), np.repeat(surface.areas / 3.0, 3), count), surface.corners
+    mean = np.zeros((count, 3))
+    np.add.at(mean, triangles, (surface.areas[:, None] * surface.normals)[:, None])
+    cosines = np.einsum("eaj,ej->ea", mean[triangles], surface.normals) / np.linalg.norm(mean, axis=1)[triangles]
+    least = np.ones(count)
+    np.minimum.at(least, triangles, cosines)
+    opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)  # edge that lies opposite to each corner
+    stiffness = np.einsum("eaj,ebj->eab", opposite, opposite) / (4.0 * surface.areas)[:, None, None]
+    values = (opposite**2).sum(axis=(1, 2))[:, None, None] / 48.0 * stiffness
+    weights = np.where(least > _SMOOTH, 1.0 / areas, 0.0)
+    values = weights[triangles][:, :, None] * values
+    places = np.repeat(triangles, 3, axis=1).ravel(), np.tile(triangles, (1, 3)).ravel()
+    return sparse.coo_array(sparse.csr_array((values.ravel(), places), shape=(count, count)))
 
 
 def _represent(
@@ -323,6 +428,55 @@ def _represent(
         found = surface_integrals(surface, plane.mirror(points), None, wavenumber, flux)
         field = field + found.double @ pressure - found.single
     return field
+
+
+def _lies_in(surface: RadiatingSurface, plane: HardPlane) -> bool:
+    """Whether a surface is flat and lies in a plane, but for a part in a million of its extent."""
+    return bool(np.abs(plane.height(surface.points)).max() <= 1e3 * surface.rounding)
+
+
+def _inside(surface: RadiatingSurface, plane: HardPlane | None, points: FloatArray) -> FloatArray:
+    """Part of all directions in which points see the inner side of a surface and its mirror image: 1 inside, else 0."""
+    angles = solid_angles(surface, points)
+    if plane is not None:
+        angles = angles + solid_angles(surface, plane.mirror(points))
+    return np.asarray(angles / (2.0 * _TWO_PI))
+
+
+def require_in_air(surface: RadiatingSurface, plane: HardPlane | None, points: FloatArray) -> None:
+    """Refuse points whose sound pressure cannot be found.
+
+    Parameters
+    ----------
+    surface : RadiatingSurface
+        Closed, alone or with its mirror image, or flat in the plane.
+    plane : HardPlane or None
+        On it points are in the air.
+    points : ndarray, shape (n_points, 3)
+        [m].
+
+    Raises
+    ------
+    HousingError
+        Where a point is inside the surface or behind the hard plane, or nearer to a triangle than a hundredth of its
+        longest edge, where the integrals over it are not accurate.
+    """
+    if not len(points):
+        return
+    if plane is not None:
+        rounding = max(surface.rounding, 1e-9 * float(np.abs(points).max()))
+        behind = np.flatnonzero(plane.height(points) < -rounding)
+        if behind.size:
+            raise HousingError(f"the point {_place(points[behind[0]])} is behind the hard plane")
+    near, triangles, distances = surface.nearer_than(points, _NEAR)
+    if near.size:
+        raise HousingError(
+            f"the point {_place(points[near[0]])} is {1e3 * distances[0]:.3g} mm from the radiating surface; expected "
+            f"at least {1e3 * _NEAR * surface.lengths[triangles[0]]:.3g} mm, a hundredth of the edge there"
+        )
+    inside = np.flatnonzero(_inside(surface, plane, points) > 0.5)
+    if inside.size:
+        raise HousingError(f"the point {_place(points[inside[0]])} is inside the radiating surface")
 
 
 def surface_product(

@@ -104,8 +104,7 @@ class ModalRadiation:
                 delayed = field.pressure_at(places)  # type: ignore[attr-defined]
                 pressure = np.asarray(delayed * np.exp(1j * _TWO_PI * hertz * delays)[:, None])
             surface = np.asarray(sum(field.surface_resistance for field in sound.fields))
-            leak = max((getattr(field, "interior_residual", 0.0) for field in sound.fields), default=0.0)
-            return sound.resistance, surface, pressure, leak
+            return sound.resistance, surface, pressure, sound.interior_residual
 
         frequencies = np.linspace(lowest, highest, points)
         resistance, surface, pressure, leak = zip(*each(at, frequencies.tolist()), strict=True)

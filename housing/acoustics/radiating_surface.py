@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from housing.acoustics.skin import closest_on_triangles
 from housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
@@ -71,6 +72,11 @@ class RadiatingSurface:
         """Longest edge of each triangle [m]."""
         return np.asarray(np.linalg.norm(self.corners - np.roll(self.corners, 1, axis=1), axis=2).max(axis=1))
 
+    @cached_property
+    def rounding(self) -> float:
+        """Distance that counts as none [m]: a part in 1e9 of the extent or of the largest coordinate."""
+        return 1e-9 * float(max(np.ptp(self.points, axis=0).max(), np.abs(self.points).max()))
+
     @property
     def area(self) -> float:
         """Area of the surface [m²]."""
@@ -105,6 +111,34 @@ class RadiatingSurface:
             )
         if self.volume <= 0.0:
             raise HousingError("the normals of the radiating surface point inward: its volume is negative")
+
+    def part(self, chosen: npt.NDArray[np.bool_]) -> "RadiatingSurface":
+        """Surface of the chosen triangles alone, with their vertices in the same order."""
+        used, triangles = np.unique(self.triangles[chosen], return_inverse=True)
+        return RadiatingSurface(self.points[used], triangles.reshape(-1, 3).astype(np.int64))
+
+    def nearer_than(self, points: FloatArray, part: float) -> tuple[IntArray, IntArray, FloatArray]:
+        """Find points that lie nearer to a triangle than a part, at most 0.4, of its longest edge.
+
+        Returns
+        -------
+        points, triangles : ndarray of int, shape (n,)
+            Numbers of both, in the order of the points.
+        distances : ndarray, shape (n,)
+            Between them [m].
+        """
+        found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))]
+        centers = self.corners.mean(axis=1)
+        for start in range(0, len(points), 64):
+            some = points[start : start + 64]
+            apart = np.linalg.norm(some[:, None] - centers, axis=2)
+            row, triangle = np.nonzero(apart < 1.1 * self.lengths)  # corners lie within 2/3 of an edge of the centre
+            shares = closest_on_triangles(self.corners[triangle], some[row])
+            away = np.linalg.norm(np.einsum("pa,paj->pj", shares, self.corners[triangle]) - some[row], axis=1)
+            near = away < part * self.lengths[triangle]
+            found.append((start + row[near], triangle[near], away[near]))
+        numbers, triangles, distances = (np.concatenate(one) for one in zip(*found, strict=True))
+        return numbers, triangles, distances
 
     def highest_frequency(self, speed_of_sound: float, elements: float = 6.0) -> float:
         """Highest frequency that the triangles resolve [Hz]: `elements` mean edges a wavelength."""

@@ -11,12 +11,12 @@ turns it into a pressure on the surface:
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Protocol
+from typing import Literal, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from housing.acoustics.boundary_elements import BoundaryElements, surface_product
+from housing.acoustics.boundary_elements import BoundaryElements, SoundField, surface_product
 from housing.acoustics.medium import AIR, HardPlane, Medium
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.surface_velocity import face_surface, surface_velocity, transfer_error
@@ -32,6 +32,14 @@ Method = Literal["boundary-elements", "rayleigh", "erp"]
 
 POWERS_AGREE = 0.1
 """Largest relative difference of the power through the surface and into the far field."""
+
+LEAK = 0.1
+"""Pressure inside, relative to that on the surface, above which a solution is doubtful."""
+
+COUNTS = 1e-4
+"""Part of the whole power above which a line has to prove its own, and radiation efficiency above which a mode has."""
+
+_NO_PRESSURE = "the sound pressure at a point needs boundary elements, or Rayleigh's integral of one face"
 
 
 class Field(Protocol):
@@ -50,7 +58,7 @@ class Field(Protocol):
     @property
     def surface_resistance(self) -> FloatArray: ...  # noqa: D102
     @property
-    def intensity(self) -> FloatArray: ...  # noqa: D102
+    def interior_residual(self) -> float: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -85,11 +93,9 @@ class EquivalentField:
         return self.resistance
 
     @property
-    def intensity(self) -> FloatArray:
-        """½ ρ c times the mean |v|² of each triangle [W/m²], shape (n_triangles, n)."""
-        corners = self.velocity.reshape(len(self.surface.triangles), 3, -1)
-        mean = (np.abs(corners.sum(axis=1)) ** 2 + (np.abs(corners) ** 2).sum(axis=1)) / 12.0
-        return np.asarray(0.5 * self.medium.impedance * mean)
+    def interior_residual(self) -> float:
+        """0: an estimate has no inside."""
+        return 0.0
 
 
 @dataclass(frozen=True)
@@ -148,6 +154,24 @@ class RadiatedSound:
         equivalent = self.medium.impedance * self.area * self.mean_square_velocity
         return self.power / equivalent if equivalent > 0.0 else 0.0
 
+    @property
+    def interior_residual(self) -> float:
+        """Largest of the fields', see :class:`housing.acoustics.boundary_elements.SoundField`; infinite: no proof."""
+        return max(field.interior_residual for field in self.fields)
+
+    @property
+    def doubt(self) -> str | None:
+        """Why the solution is doubtful, to be read after "doubtful:"; None where the pressure inside proves it."""
+        leak = self.interior_residual
+        if leak <= LEAK:
+            return None
+        if np.isinf(leak):
+            return "no point inside the radiating surface is far enough from it to prove the solution"
+        return (
+            f"the pressure inside the radiating surface is {100.0 * leak:.2g} % of that on it, where zero is exact; "
+            "use smaller triangles"
+        )
+
     def require_balance(self) -> None:
         """Refuse a solution whose powers through the surface and into the far field differ by more than 10 %.
 
@@ -202,15 +226,58 @@ class RadiatedSound:
         Raises
         ------
         HousingError
-            Where a point is inside, or the method gives no pressure: the ERP, or Rayleigh's integral of several faces.
+            Where a point is not in the air, see :func:`housing.acoustics.boundary_elements.require_in_air`, or the
+            method gives no pressure: the ERP, or Rayleigh's integral of several faces.
         """
-        if len(self.fields) != 1 or isinstance(self.fields[0], EquivalentField):
-            raise HousingError(
-                "the sound pressure at a point needs boundary elements, or Rayleigh's integral of one face"
-            )
-        field = self.fields[0]
-        assert not isinstance(field, EquivalentField)
-        return np.asarray(field.pressure_at(points).sum(axis=1))  # type: ignore[attr-defined]
+        if len(self.fields) != 1 or not isinstance(field := self.fields[0], SoundField):
+            raise HousingError(_NO_PRESSURE)
+        return np.asarray(field.pressure_at(points).sum(axis=1))
+
+
+class Powers(Protocol):
+    """Sound power by two ways [W]."""
+
+    @property
+    def power(self) -> float: ...  # noqa: D102
+    @property
+    def surface_power(self) -> float: ...  # noqa: D102
+
+
+Sound = TypeVar("Sound", bound=Powers)
+
+
+def counting(sounds: Sequence[Sound]) -> list[Sound]:
+    """Return those of a motion's lines whose power counts beside that of all, by either way to find it."""
+    least = COUNTS * sum(sound.power for sound in sounds)
+    return [sound for sound in sounds if max(sound.power, sound.surface_power) > least]
+
+
+def require_balances(sounds: Sequence[RadiatedSound], *, alone: bool = False) -> list[RadiatedSound]:
+    """Require the balance of power of all sounds but those too weak to count.
+
+    Parameters
+    ----------
+    sounds : sequence of RadiatedSound
+    alone : bool
+        Whether each sound stands for itself, as that of a mode does. Else they are lines of one motion, whose powers
+        add up.
+
+    Returns
+    -------
+    list of RadiatedSound
+        Those that count. Lines below 1e-4 of the whole power, by both powers, change its level by 0.0004 dB at most.
+        A sound alone counts above a radiation efficiency of 1e-4; below it the parts of neighbouring areas cancel to
+        four digits in the power through the surface, which has no digit left that could prove the other.
+
+    Raises
+    ------
+    HousingError
+        As :meth:`RadiatedSound.require_balance`.
+    """
+    counted = [one for one in sounds if one.radiation_efficiency > COUNTS] if alone else counting(sounds)
+    for sound in counted:
+        sound.require_balance()
+    return counted
 
 
 @dataclass(frozen=True)
@@ -229,7 +296,8 @@ class HousingRadiation:
     cap_area : float
         Area of the surface that closes holes [m²].
     transfer_error : float
-        Root mean square over the modes of the relative difference of ∫ v² dS on the radiating surface and on the skin.
+        Root mean square over the natural modes of the relative difference of ∫ v² dS on the radiating surface and on
+        the skin.
     """
 
     method: Method
@@ -251,6 +319,8 @@ class HousingRadiation:
         medium: Medium = AIR,
         floor: HardPlane | None = None,
         still: Sequence[str] = (),
+        natural_modes: int | None = None,
+        highest_frequency: float | None = None,
     ) -> "HousingRadiation":
         """Wrap the whole housing, by boundary elements or as an estimate.
 
@@ -266,23 +336,36 @@ class HousingRadiation:
         medium : Medium
         floor : HardPlane, optional
         still : sequence of str
-            Surfaces of the mesh that do not radiate.
+            Surfaces of the mesh that do not radiate. Those that lie in the floor do not in any case.
+        natural_modes : int, optional
+            Number of the shapes, from the first, that are natural modes and have to be the same on the surface as on
+            the skin. Others, such as residual modes, are local and need not. Default: all.
+        highest_frequency : float, optional
+            Highest frequency that boundary elements are to solve [Hz].
 
         Raises
         ------
+        TriangleSizeError
+            Where the triangles are too large for the highest frequency or for the modes, or too many.
         HousingError
-            Where the housing cannot be wrapped, or the modes on the surface are not those on the skin.
+            Where the housing cannot be wrapped, or does not stand on or above the floor.
         """
         surface = wrap(mesh, edge, close_holes)
+        elements = BoundaryElements(surface, medium, floor)
+        if method == "boundary-elements":
+            elements.require_few()
+            if highest_frequency is not None:
+                elements.require_resolved(highest_frequency)
         carried = surface_velocity(mesh, surface)
-        error = transfer_error(carried, shapes)
+        error = transfer_error(carried, shapes[:natural_modes])
         error.require()
         modal = carried.transfer(tuple(still)) @ shapes.reshape(len(shapes), -1).T
+        labels = np.array(carried.face_of_triangles())
         return cls(
             method,
-            (BoundaryElements(surface, medium, floor),),
-            (np.ascontiguousarray(modal),),
-            tuple(carried.face_of_triangles()),
+            (elements,),
+            (np.ascontiguousarray(modal[np.repeat(elements.uncovered, 3)]),),
+            tuple(labels[elements.uncovered].tolist()),
             carried.cap_area,
             float(np.sqrt(np.mean(error.relative**2))),
         )
@@ -317,6 +400,18 @@ class HousingRadiation:
     def area(self) -> float:
         """Radiating area [m²]."""
         return float(sum(one.surface.area for one in self.elements))
+
+    def require_in_air(self, points: FloatArray) -> None:
+        """Refuse points at which the sound pressure cannot be found.
+
+        Raises
+        ------
+        HousingError
+            As :meth:`RadiatedSound.pressure_at`.
+        """
+        if self.method == "erp" or len(self.elements) != 1:
+            raise HousingError(_NO_PRESSURE)
+        self.elements[0].require_in_air(points)
 
     @property
     def highest_frequency(self) -> float:

@@ -15,7 +15,7 @@ from scipy import sparse
 
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.skin import NearestSkin, Skin, skin_of
-from housing.errors import HousingError
+from housing.errors import TriangleSizeError
 from housing.fem.surface import flat_face_numbers, surface_quadrature
 from meshes import Mesh
 from meshes.elements import Facets, facet_centers, facet_normals
@@ -233,13 +233,13 @@ class TransferError:
 
         Raises
         ------
-        HousingError
+        TriangleSizeError
             Where the median of the errors' sizes is above the bound.
         """
         sizes = np.abs(self.relative)
         if not np.median(sizes) <= bound:
             worst = int(np.argmax(sizes))
-            raise HousingError(
+            raise TriangleSizeError(
                 f"the radiating surface carries the mean-square normal velocity of the {len(sizes)} shapes with a "
                 f"median error of {100 * np.median(sizes):.3g} %, the worst {100 * self.relative[worst]:+.3g} % of "
                 f"shape {worst + 1}; expected at most {100 * bound:.3g} %: take triangles with shorter edges"

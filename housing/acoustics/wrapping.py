@@ -23,7 +23,7 @@ from scipy.spatial import cKDTree
 
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.skin import skin_of
-from housing.errors import HousingError
+from housing.errors import HousingError, TriangleSizeError
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -70,8 +70,10 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
 
     Raises
     ------
+    TriangleSizeError
+        Where the edge takes too many cells.
     HousingError
-        Where a size is not positive or takes too many cells, where an opening wider than `close_holes` lets the air
+        Where a size is not positive, where an opening wider than `close_holes` lets the air
         inside, or where the surface does not close.
     """
     if not (0.0 < edge < np.inf and 0.0 <= close_holes < np.inf):
@@ -86,7 +88,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     around = _FINE * (2 + int(np.ceil(0.5 * close_holes / cell)))
     shape = np.ceil(np.ptp(mesh.bounds, axis=0) / cell - 1e-9).astype(np.int64) * _FINE + 2 * around
     if np.prod(shape.astype(np.float64)) > _MOST_CELLS:
-        raise HousingError(
+        raise TriangleSizeError(
             f"a wrap with an edge of {1e3 * edge:.4g} mm takes {np.prod(shape.astype(np.float64)):.3g} cells; expected "
             f"at most {_MOST_CELLS:.3g}: give a longer edge"
         )

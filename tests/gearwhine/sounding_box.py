@@ -14,7 +14,7 @@ PLACES = [("1.2 m", "0.3 m", "0 m"), ("0 m", "1.3 m", "0 m"), ("0.1 m", "0.2 m",
 COARSE: dict[str, Any] = {
     "housing.box.mesh_size": "45 mm",
     "acoustics.mesh_size": "45 mm",
-    "acoustics.highest_frequency": "2.4 kHz",
+    "acoustics.highest_frequency": "2.3 kHz",
     "acoustics.microphone": [{"name": f"ear {n}", "position": list(at)} for n, at in enumerate(PLACES, start=1)],
 }
 NAMES = {

@@ -10,14 +10,14 @@ from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing
 
 import gearwhine as gw
 from gearwhine.case import swept_keys
-from gearwhine.solve import sound_proofs
 from gearwhine.solve.motion_lines import MotionLines
 from gearwhine.solve.sound import build_radiation, solve_sound
-from gearwhine.solve.sound_proofs import counting, interior_pressure, power_balance_db
+from gearwhine.solve.sound_proofs import interior_pressure, power_balance_db
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing import HousingError
 from housing.acoustics import radiation
+from housing.acoustics.radiation import counting
 
 
 def sound(power: float, surface_power: float) -> Any:
@@ -46,7 +46,7 @@ def test_an_estimate_has_no_proof_and_a_face_no_inside() -> None:
 
 
 def test_every_mode_that_radiates_is_held_against_the_pressure_inside(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sound_proofs, "LEAK", 0.0)
+    monkeypatch.setattr(radiation, "LEAK", 0.0)
     result = gw.load("steel-box", COARSE).sound()
     told = [one for one in result.document["warnings"] if one["name"] == "interior_pressure"]
     modes = [mode for mode in result.document["modes"] if mode["radiation_efficiency"] > 1e-4]

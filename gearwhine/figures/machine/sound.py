@@ -206,7 +206,7 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
 def sound_field(line: "SoundLine") -> SoundField | None:
     """Return the field of a line by boundary elements; None by any other method."""
     fields = [field for field in line.sound.fields if isinstance(field, SoundField)]
-    return fields[0] if len(fields) == 1 and len(fields[0].surface.open_edges) == 0 else None
+    return fields[0] if len(fields) == 1 and not fields[0].baffled else None
 
 
 def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
