@@ -41,6 +41,8 @@ COUNTS = 1e-4
 
 _NO_PRESSURE = "the sound pressure at a point needs boundary elements, or Rayleigh's integral of one face"
 
+_STANDS = 0.02  # edges from the floor within which vertices of a wrap, which follows the skin as exactly, lie in it
+
 
 class Field(Protocol):
     """Pressure on a surface that moves, by any method."""
@@ -280,6 +282,13 @@ def require_balances(sounds: Sequence[RadiatedSound], *, alone: bool = False) ->
     return counted
 
 
+def _set_down(surface: RadiatingSurface, floor: HardPlane, reach: float) -> RadiatingSurface:
+    """Move the vertices within reach [m] of a floor into it."""
+    heights = floor.height(surface.points)
+    moved = np.where(np.abs(heights) < reach, heights, 0.0)
+    return RadiatingSurface(surface.points - np.outer(moved, floor.normal), surface.triangles)
+
+
 @dataclass(frozen=True)
 class HousingRadiation:
     """A housing's radiating surfaces and the normal velocities of its modes on them.
@@ -335,6 +344,7 @@ class HousingRadiation:
         method : {"boundary-elements", "erp"}
         medium : Medium
         floor : HardPlane, optional
+            The wrap stands on it where its vertices are within 2 % of an edge.
         still : sequence of str
             Surfaces of the mesh that do not radiate. Those that lie in the floor do not in any case.
         natural_modes : int, optional
@@ -351,6 +361,8 @@ class HousingRadiation:
             Where the housing cannot be wrapped, or does not stand on or above the floor.
         """
         surface = wrap(mesh, edge, close_holes)
+        if floor is not None:
+            surface = _set_down(surface, floor, _STANDS * edge)
         elements = BoundaryElements(surface, medium, floor)
         if method == "boundary-elements":
             elements.require_few()
