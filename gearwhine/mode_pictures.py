@@ -1,12 +1,13 @@
 """Mode pictures: the selection of mode shapes, and their drawing as pictures, films or animated models."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.output import file_stems
@@ -32,7 +33,7 @@ _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
 _SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
-_DB = 20.0 / np.log(10.0)  # of a level, in one relative change of an amplitude
+_DECADES = 1.0 / np.log(10.0)  # decades of a relative change
 _LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least part of the loudest one's power
 _MOST_MODES = 5000
 _DOMINANT = 8
@@ -260,9 +261,9 @@ def draw_deflection(
 def draw_sensitivity(
     housing: SolvedHousing, solved: "SolvedLoad", view: str, place: Path, progress: Progress
 ) -> list[str]:
-    """Draw where material on the housing changes the misalignment of each gear pair, and the level of a sensor's line.
+    """Draw where material on the housing changes the misalignment of each pair, a sensor's line and the sound power.
 
-    They are ``load-sensitivity-PAIR.png`` and ``load-sensitivity-line.png``.
+    They are ``load-sensitivity-PAIR.png``, ``load-sensitivity-line.png`` and ``load-sensitivity-sound.png``.
 
     Parameters
     ----------
@@ -306,31 +307,56 @@ def draw_sensitivity(
         quantity = "Change [µrad/(mm·dm²)]"
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
     # The shapes of one call have one scale and one quantity.
-    groups = [group for group in (shapes, _line_shapes(solved.sensitivity, surface.nodes)) if group]
+    groups = [group for group in (shapes, *_line_shapes(solved.sensitivity, surface.nodes)) if group]
     return [name for group in groups for name in draw_in_process(surface, group, place, "png", view, progress)]
 
 
-def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -> "list[DrawnShape]":
-    """Change of the ranked line's level by material on the surface, on the housing's motion at the line."""
+def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -> "Iterator[list[DrawnShape]]":
+    """Change of the level of the sensor's line and of the sound that are ranked, by material on the surface."""
     from gearwhine.figures.style import shortened
+    from housing.acoustics.sound_levels import power_level
+
+    if sensitivity.lines is None:
+        return
+    if sensitivity.line_density is not None:
+        line = sensitivity.sensor_lines[sensitivity.line]
+        assert isinstance(line.output, SensorAmplitude)
+        title = f"{shortened(line.output.sensor, 20)} at {line.frequency / _TWO_PI:.0f} Hz: level by added material"
+        values = 20.0 * _DECADES / line.value * sensitivity.line_density[nodes]
+        now = f"{line.value:.3g} m/s²"
+        yield _level_shape("load-sensitivity-line", title, now, sensitivity.lines.field(line.motion)[nodes], values)
+    if sensitivity.sound_density is not None:
+        powers = sensitivity.sound_weights * [one.line.value for one in sensitivity.loudest_lines]
+        line = sensitivity.loudest_lines[int(np.argmax(powers))].line
+        level, values = (
+            float(power_level(powers.sum())),
+            10.0 * _DECADES / powers.sum() * sensitivity.sound_density[nodes],
+        )
+        if sensitivity.sound_line is None:
+            what, now = f"{len(powers)} loudest lines", f"{level:.1f} dB(A)"
+        else:
+            what, now = f"Sound at {line.frequency / _TWO_PI:.0f} Hz", f"{level:.1f} dB"
+        title = f"{what}: sound power level by added material"
+        yield _level_shape("load-sensitivity-sound", title, now, sensitivity.lines.field(line.motion)[nodes], values)
+
+
+def _level_shape(
+    name: str, title: str, now: str, motion: npt.NDArray[np.complex128], density: FloatArray
+) -> "list[DrawnShape]":
+    """Change of a level by material on the surface [dB/m³], on the housing's motion at its line."""
     from housing.pictures.drawn_shapes import DrawnShape
 
-    if sensitivity.lines is None or sensitivity.line_density is None:
-        return []
-    line = sensitivity.sensor_lines[sensitivity.line]
-    motion = sensitivity.lines.field(line.motion)[nodes]
-    values = _PER_MM_DM2 * 1e-6 * _DB / line.amplitude * sensitivity.line_density[nodes]
+    values = _PER_MM_DM2 * 1e-6 * density
     largest = float(np.quantile(np.abs(values), _SHOWN_PART))
     if largest == 0.0:
         return []
     # At the instant of the largest motion.
     turned = motion * np.exp(-0.5j * np.angle(np.sum(motion**2)))
-    title = f"{shortened(line.sensor, 20)} at {line.frequency / _TWO_PI:.0f} Hz: level by added material"
     note = (
-        f"{line.amplitude:.3g} m/s² now; blue lowers, red raises it by each mm on a dm² of surface. "
+        f"{now} now; blue lowers, red raises it by each mm on a dm² of surface. "
         f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
     )
-    return [DrawnShape("load-sensitivity-line", title, note, turned.real, "Change [dB/(mm·dm²)]", largest, values)]
+    return [DrawnShape(name, title, note, turned.real, "Change [dB/(mm·dm²)]", largest, values)]
 
 
 def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) -> list[dict[str, Any]]:

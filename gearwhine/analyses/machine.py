@@ -145,10 +145,12 @@ def operating_point(
     over_torque : bool
         Whether to find it from 10 to 150 % of the torque as well.
     sensitivity : bool
-        Whether to rank walls, bearing stiffness and positions by their influence on gear pairs and sensors' lines.
+        Whether to rank walls, bearing stiffness and positions by their influence on gear pairs, on sensors' lines and,
+        of a case with acoustics, on the sound power of the loudest lines.
     line : str, optional
-        The line that is ranked and drawn, a sensor's name or with its frequency, ``roof@1377``; by default the highest.
-        It asks for the sensitivity too.
+        The line that is ranked and drawn, a sensor's name or with its frequency, ``roof@1377``, or a line of the sound,
+        ``sound@1377``; by default the highest, and the A-weighted sound power of the loudest together. It asks for the
+        sensitivity too.
     rigid_seats : bool
         Whether to leave the housing out and hold the bearings in rigid seats, as in a case without one.
     housing, folder, fresh, progress

@@ -61,15 +61,16 @@ def load(
         Parameter(
             name=["--sensitivity"],
             negative=(),
-            help="Also rank walls and bearings by what they change in gear pairs and in the lines of sensors.",
+            help="Also rank walls and bearings by what they change in gear pairs, in the lines of sensors and, with "
+            "[acoustics], in the sound power of the loudest lines.",
         ),
     ] = False,
     line: Annotated[
         str | None,
         Parameter(
             name=["--line"],
-            help="Line that --sensitivity ranks and draws: a sensor, or with its frequency in Hz, 'roof@1377'. "
-            "By default the highest.",
+            help="Line that --sensitivity ranks and draws: a sensor, or with its frequency in Hz, 'roof@1377'; or of "
+            "the sound, 'sound@1377'. By default the highest, and the A-weighted sum of the loudest.",
         ),
     ] = None,
     rigid_seats: Annotated[

@@ -8,8 +8,19 @@ import numpy as np
 
 from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
-from gearwhine.output.sections import Column, Document, Picture, Row, Section, Table, columns_of, table_of
+from gearwhine.output.sections import (
+    Column,
+    Document,
+    Picture,
+    Row,
+    Section,
+    Table,
+    columns_of,
+    counted,
+    table_of,
+)
 from gearwhine.output.store import Option, kept_sentence
+from housing.acoustics.sound_levels import power_level
 
 if TYPE_CHECKING:
     from gearwhine.solve.bearing_lives import BearingLife
@@ -394,7 +405,7 @@ TORQUE = (
 _HZ = 0.5 / np.pi
 
 SENSOR_LINE = (
-    Quantity("sensor", lambda one: one[0].sensor, "line_sensor", heading="sensor"),
+    Quantity("sensor", lambda one: one[0].output.sensor, "line_sensor", heading="sensor"),
     Quantity("excitation", lambda one: one[1], "line_excitation", heading="excitation"),
     Quantity(
         "frequency_hz",
@@ -408,7 +419,7 @@ SENSOR_LINE = (
     ),
     Quantity(
         "amplitude_m_per_s2",
-        lambda one: one[0].amplitude,
+        lambda one: one[0].value,
         "line_amplitude",
         (),
         "m/s2",
@@ -420,21 +431,77 @@ SENSOR_LINE = (
 )
 """Of a sensor's line, the mesh harmonics that drive it, and whether parameters are ranked by it."""
 
+SOUND_LINE = (
+    Quantity("excitation", lambda one: one[1], "loudest_line_excitation", heading="excitation"),
+    Quantity(
+        "frequency_hz",
+        lambda one: one[0].line.frequency * _HZ,
+        "loudest_line_frequency",
+        (),
+        "Hz",
+        "frequency of the line",
+        heading="[Hz]",
+        shown=".1f",
+    ),
+    Quantity(
+        "",
+        lambda one: one[0].line.value,
+        "loudest_line_power",
+        (),
+        "W",
+        "sound power of the line, linear about the operating point",
+    ),
+    Quantity(
+        "sound_power_db",
+        lambda one: float(power_level(one[0].line.value)),
+        heading="L_W [dB]",
+        shown=".1f",
+    ),
+    Quantity(
+        "sound_power_db_a",
+        lambda one: float(power_level(one[0].weighting * one[0].line.value)),
+        heading="L_WA [dB]",
+        shown=".1f",
+    ),
+    Quantity("ranked", lambda one: one[2]),
+)
+"""Of one of the loudest lines, the mesh harmonics that drive it, and whether parameters are ranked by it."""
+
+_POWER_LEVELS = (
+    Quantity("level_db", lambda one: one.level),
+    Quantity("first_order_db", lambda one: one.first_order_level),
+)
+
 INFLUENCE = (
     Quantity("parameter", lambda row: row[0].parameter),
     Quantity("kind", lambda row: row[0].kind),
     Quantity("step", lambda row: row[0].step_text),
     Rows(
         "lines",
-        lambda row: row[2].line_changes(row[0]) if row[2].sensor_lines else ABSENT,
+        lambda row: row[2].sensor_changes(row[0]) if row[2].sensor_lines else ABSENT,
         (
-            Quantity("sensor", lambda one: one.line.sensor),
+            Quantity("sensor", lambda one: one.line.output.sensor),
             Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
             Quantity("amplitude_m_per_s2", lambda one: one.change),
             Quantity("level_db", lambda one: one.level),
             Quantity("first_order_m_per_s2", lambda one: one.first_order),
             Quantity("first_order_db", lambda one: one.first_order_level),
         ),
+    ),
+    Rows(
+        "sound",
+        lambda row: row[2].sound_changes(row[0]) if row[2].loudest_lines else ABSENT,
+        (
+            Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
+            Quantity("power_w", lambda one: one.change),
+            Quantity("first_order_w", lambda one: one.first_order),
+            *_POWER_LEVELS,
+        ),
+    ),
+    Part(
+        "sound_a",
+        lambda row: row[2].total_sound_change(row[0]) if row[2].loudest_lines else ABSENT,
+        _POWER_LEVELS,
     ),
     Rows(
         "gear_pairs",
@@ -467,24 +534,48 @@ def _influence(name: str, unit: str, what: str, column: int) -> Quantity:
     return Quantity("", taken, f"{name}_change", ("influence", "loaded_pair"), unit, what)
 
 
-def _line_changes(of: str, name: str, what: str) -> Quantity:
-    """Declare changes of every line's amplitude by every parameter's step, for the file."""
+def _line_changes(name: str, of: str, what: str, unit: str, changes: str, dimension: str) -> Quantity:
+    """Declare changes of every line by every parameter's step, for the file."""
 
     def taken(solved: "SolvedLoad") -> Any:
-        if solved.sensitivity is None or not solved.sensitivity.sensor_lines:
+        found = solved.sensitivity
+        if found is None or not getattr(found, f"{dimension}s"):
             return None
-        return np.array([getattr(one, of) for one in solved.sensitivity.influences])
+        return np.array([[getattr(line, of) for line in getattr(found, changes)(one)] for one in found.influences])
 
-    what = f"change of the line's amplitude of acceleration by a step of the parameter, {what}"
-    return Quantity("", taken, name, ("influence", "sensor_line"), "m/s2", what)
+    how = "to first order" if of == "first_order" else "the response solved anew"
+    what = f"change of the line's {what} by a step of the parameter, {how}"
+    return Quantity("", taken, name, ("influence", dimension), unit, what)
 
 
 def _sensor_lines(solved: "SolvedLoad") -> Any:
     """Lines of the sensors with their causes, where there are any."""
     found = solved.sensitivity
-    if found is None or found.lines is None:
+    if found is None or found.lines is None or not found.sensor_lines:
         return ABSENT
     return [(one, found.lines.cause(one), n == found.line) for n, one in enumerate(found.sensor_lines)]
+
+
+def _loudest_lines(solved: "SolvedLoad") -> Any:
+    """Loudest lines with their causes, where there are any."""
+    found = solved.sensitivity
+    if found is None or found.lines is None or not found.loudest_lines:
+        return ABSENT
+    ranked = (found.sound_weights > 0.0).tolist()
+    return [(one, found.lines.cause(one.line), own) for one, own in zip(found.loudest_lines, ranked, strict=True)]
+
+
+def _loudest_level(solved: "SolvedLoad") -> Any:
+    """A-weighted sound power level of the loudest lines together, where there are any [dB]."""
+    found = _loudest_lines(solved)
+    if found is ABSENT:
+        return ABSENT
+    return float(power_level(sum(one.weighting * one.line.value for one, _, _ in found)))
+
+
+def _lines_without(solved: "SolvedLoad") -> Any:
+    found = solved.sensitivity
+    return ABSENT if found is None or found.lines is None else found.lines.held
 
 
 def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
@@ -498,6 +589,9 @@ def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
 
     return Quantity("", taken, f"{name}_over_torque", ("load_torque", "loaded_pair"), unit, f"{what} over torque")
 
+
+_OF_SENSORS = ("amplitude of acceleration", "m/s2", "sensor_changes", "sensor_line")
+_OF_SOUND = ("sound power", "W", "sound_changes", "loudest_line")
 
 LOAD = (
     Quantity("speed_rpm", lambda solved: solved.machine.speed * 30.0 / np.pi),
@@ -514,10 +608,9 @@ LOAD = (
     Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda one: one.load, PAIR), *TAKEN), "loaded_pair"),
     Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
-    Quantity(
-        "lines_without",
-        lambda solved: ABSENT if _sensor_lines(solved) is ABSENT else solved.sensitivity.lines.held,
-    ),
+    Rows("loudest_lines", _loudest_lines, SOUND_LINE, "loudest_line"),
+    Quantity("loudest_lines_db_a", _loudest_level),
+    Quantity("lines_without", _lines_without),
     Rows(
         "sensitivity",
         lambda solved: (
@@ -540,8 +633,10 @@ LOAD = (
     _influence("misalignment", "rad", "angle between the flanks", 0),
     _influence("face_load_factor", "1", "face load factor K_Hbeta", 1),
     _influence("transmission_error_peak_to_peak", "m", "peak-to-peak static transmission error", 2),
-    _line_changes("stepped", "line_amplitude_change", "the response solved anew"),
-    _line_changes("lines", "line_amplitude_first_order_change", "to first order"),
+    _line_changes("line_amplitude_change", "change", *_OF_SENSORS),
+    _line_changes("line_amplitude_first_order_change", "first_order", *_OF_SENSORS),
+    _line_changes("loudest_line_power_change", "change", *_OF_SOUND),
+    _line_changes("loudest_line_power_first_order_change", "first_order", *_OF_SOUND),
     Quantity(
         "",
         lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
@@ -570,7 +665,11 @@ def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
 
 LOAD_OPTIONS = (
     Option(("over_torque",), ("load_torque",), "load-over-torque.png"),
-    Option(("sensitivity", "sensor_lines", "lines_without"), ("influence", "sensor_line"), "load-sensitivity-*.png"),
+    Option(
+        ("sensitivity", "sensor_lines", "loudest_lines", "loudest_lines_db_a", "lines_without"),
+        ("influence", "sensor_line", "loudest_line"),
+        "load-sensitivity-*.png",
+    ),
 )
 """Of the operating point."""
 
@@ -644,6 +743,8 @@ _PICTURES = (
     Picture("load-pattern", "Contact pattern over the face and the path of contact: loaded edges shorten life."),
     Picture("load-shaft", "Deflected shaft in both planes, enlarged; arrows: forces on it."),
     Picture("load-housing", "Housing under the mean load, enlarged; colour: displacement."),
+    Picture("load-sensitivity-line", "Material added on blue places lowers the sensor's line, on red ones raises it."),
+    Picture("load-sensitivity-sound", "Material added on blue places lowers the sound power, on red ones raises it."),
     Picture(
         "load-sensitivity", "Material added on blue places lowers the misalignment of the pair, on red ones raises it."
     ),
@@ -699,25 +800,42 @@ _LINE_COLUMNS = (
 
 
 def _lines(document: Document) -> Iterator[str | Table]:
-    """Yield the sensors' lines, and the strongest parameters of the line that is ranked."""
-    lines = document.get("sensor_lines", ())
-    if not lines:
-        return
-    yield from table_of(columns_of(SENSOR_LINE), lines, "Sensors' lines at mesh harmonics, linear about the mean load")
-    number = next(n for n, one in enumerate(lines) if one["ranked"])
-    chosen = f"{lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
-    for of_bearings, what in ((False, "the housing"), (True, "a bearing")):
+    """Yield the lines of sensors and sound, and the strongest parameters of those that are ranked."""
+    lines, loudest = document.get("sensor_lines", ()), document.get("loudest_lines", ())
+    if lines:
+        caption = "Sensors' lines at mesh harmonics, linear about the mean load"
+        yield from table_of(columns_of(SENSOR_LINE), lines, caption)
+        number = next(n for n, one in enumerate(lines) if one["ranked"])
+        chosen = f"the line of {lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
+        yield from _ranked(document, chosen, lambda one: one["lines"][number])
+    if loudest:
+        caption = "Loudest mesh harmonics, A-weighted, linear about the mean load: sound power level re 1 pW"
+        yield from table_of(columns_of(SOUND_LINE), loudest, caption)
+        ranked = [n for n, one in enumerate(loudest) if one["ranked"]]
+        if len(ranked) > 1:
+            what = f"the A-weighted sound power of {counted(len(loudest), 'line')} together"
+            yield from _ranked(document, what, lambda one: one["sound_a"])
+        else:
+            chosen = f"the sound power at {loudest[ranked[0]]['frequency_hz']:.0f} Hz"
+            yield from _ranked(document, chosen, lambda one: one["sound"][ranked[0]])
+    if lines or loudest:
+        held = document["lines_without"]
+        fixed = "" if held is None else f"; the case fixes {held}, which do not follow the walls"
+        surface = ", and the radiating surface is held" if loudest else ""
+        yield f"In these changes damping ratios, friction of the teeth and mean mesh forces are kept{surface}{fixed}"
+
+
+def _ranked(document: Document, what: str, change: Callable[[Document], dict[str, Any]]) -> Iterator[str | Table]:
+    """Yield the strongest parameters of the housing and of the bearings by what they change in a level."""
+    for of_bearings, of in ((False, "the housing"), (True, "a bearing")):
         rows = [
-            {key: one[key] for key in ("parameter", "kind", "step")} | one["lines"][number]
+            {key: one[key] for key in ("parameter", "kind", "step")} | change(one)
             for one in document["sensitivity"]
             if one["kind"].startswith("bearing") is of_bearings
         ]
         rows.sort(key=lambda row: -abs(row["level_db"]))
-        caption = f"Change of the line of {chosen} by a step of one parameter of {what}"
+        caption = f"Change of {what} by a step of one parameter of {of}"
         yield from table_of(_LINE_COLUMNS, rows[:_MOST_INFLUENCES], caption)
-    held = document.get("lines_without")
-    fixed = "" if held is None else f"; the case fixes {held}, which do not follow the walls"
-    yield f"In these changes damping ratios, friction of the teeth and mean mesh forces are kept{fixed}"
 
 
 def _content(document: Document) -> Iterator[str | Table]:

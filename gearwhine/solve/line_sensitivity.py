@@ -1,19 +1,23 @@
-"""Sensitivity of a case's sensor lines: the machine linear about its operating point, and its housing's derivatives.
+"""Sensitivity of a case's lines: the machine linear about its operating point, and its housing's derivatives.
 
-The gradients are those of :mod:`coupling.linear.sensor_lines`, whose motion and adjoint fields must be exact in the
-housing's basis. Residual modes of the sensors, which the modes of a solved housing do not have, bring the fields close;
-then the responses of the housing's finite-element matrices at the lines' frequencies to the loads in both fields join
-the basis, and the lines are solved again.
+Lines are those of the sensors and, where the case has acoustics, of the sound power. The gradients are those of
+:mod:`coupling.linear.mesh_harmonics`, whose motion and adjoint fields must be exact in the housing's basis. Residual
+modes of the sensors, which the modes of a solved housing do not have, bring the fields close; then the responses of the
+housing's finite-element matrices at the lines' frequencies to the loads in both fields join the basis, and the lines
+are solved again. The adjoint load of a sensor is one on a point, that of the sound power one on the whole skin.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling import Machine
-from coupling.linear.sensor_lines import HousingRates, LineModel, SensorLine
+from coupling.linear.housing_rates import HousingRates
+from coupling.linear.line_outputs import SensorAmplitude
+from coupling.linear.mesh_harmonics import Line, LineModel
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case
 from gearwhine.from_case.fixtures import attach_all
@@ -27,6 +31,10 @@ from housing.modes.natural_modes import ModeSetExtension
 from housing.updating import ModelSensitivity, modal_sensitivities
 from housing.updating.static_sensitivity import PortRates
 
+if TYPE_CHECKING:
+    from gearwhine.solve.harmonic_sound import HarmonicSound
+    from housing.acoustics.radiation import HousingRadiation
+
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -38,22 +46,30 @@ _TWO_PI = 2.0 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class SolvedLines:
-    """Lines of a case's sensors, with the model that they are of.
+    """Lines of a case's sensors and of its sound, with the model that they are of.
 
     Attributes
     ----------
     model : LineModel
-    lines : tuple of SensorLine
+    of_sensors : tuple of Line
         The highest first.
+    sound : tuple of HarmonicSound
+        The loudest by their A-weighted power first.
     housing : SolvedHousing
         With residual modes of the sensors, and the harmonic responses at the lines.
     """
 
     model: LineModel
-    lines: tuple[SensorLine, ...]
+    of_sensors: tuple[Line, ...]
+    sound: "tuple[HarmonicSound, ...]"
     housing: SolvedHousing
 
-    def cause(self, line: SensorLine) -> str:
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """Lines of the sensors, and then of the sound."""
+        return (*self.of_sensors, *(one.line for one in self.sound))
+
+    def cause(self, line: Line) -> str:
         """Return the mesh harmonics that drive a line, in words."""
         contacts = self.model.machine.system.contacts
         return " and ".join(f"{harmonic}× {contacts[number].name}" for number, harmonic in line.causes)
@@ -107,6 +123,16 @@ class SolvedLines:
         omega = np.concatenate([omega, modes.residual_modes.frequencies])
         ratios = np.concatenate([ratios, np.full(extra, ratios.max(initial=0.0))])
         found = modal_sensitivities(self.housing.mesh, constants, shapes, rates)
+        motions = [self.field(one.line.motion) for one in self.sound]
+        powers = [
+            {}
+            if rate.velocity is None
+            else {
+                one.line.frequency: one.by_sliding(motion, rate.velocity)
+                for one, motion in zip(self.sound, motions, strict=True)
+            }
+            for rate in rates
+        ]
         flat = shapes.reshape(len(shapes), -1).T
         return HousingRates(
             omega,
@@ -116,6 +142,7 @@ class SolvedLines:
             [{name: np.asarray(rows @ flat) for name, rows in one.items()} for one in bearings],
             [{name: np.asarray(rows @ flat)[0] for name, rows in one.items()} for one in sensors],
             [{name: np.asarray(rows @ displacement.ravel()) for name, rows in one.items()} for one in bearings],
+            powers,
         )
 
 
@@ -128,7 +155,7 @@ def solve_lines(
     *,
     count: int = LINES,
 ) -> SolvedLines | None:
-    """Solve the highest lines of each sensor at the mesh harmonics; None where no mesh drives any sensor.
+    """Solve the highest lines of each sensor and the loudest of the sound; None where no mesh drives any.
 
     Parameters
     ----------
@@ -142,33 +169,78 @@ def solve_lines(
     progress : callable
     count : int
         Lines of each sensor.
+
+    Raises
+    ------
+    CaseError
+        Where the radiating surface cannot be made.
+    housing.HousingError
+        Where the powers of a line through the surface and in the far field differ by more than 10 %.
     """
-    if housing is None or not housing.sensors or not case.gear_pair or machine.speed == 0.0:
+    if housing is None or not case.gear_pair or machine.speed == 0.0:
+        return None
+    if not housing.loaded or not (housing.sensors or case.acoustics):
         return None
     progress("residual modes of the sensors")
     matrices = attach_all(case, housing.mesh, describe_housing(case, housing.mesh).free_matrices())
     extension = ModeSetExtension(matrices, housing.modes)
-    ports = [one.matrix for one in housing.sensors.values()]
-    modes = extension.with_ports(housing.modes, ports, orders=RESPONSE_ORDERS)
+    modes = housing.modes
+    if housing.sensors:
+        ports = [one.matrix for one in housing.sensors.values()]
+        modes = extension.with_ports(modes, ports, orders=RESPONSE_ORDERS)
     about = machine.at_operating_point(point)
     pairs = solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
     components = about.rotor_components(progress=progress)
     excitation = driving(case, components)
     found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
+    radiation = _radiation(case, replace(housing, modes=modes), progress)
 
-    def solved(modes: ModeSet) -> SolvedLines:
+    def solved(modes: ModeSet, heard: Sequence[float] | None = None) -> SolvedLines:
         damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
         extended = replace(housing, modes=modes, damping_matrix=damping)
         stands = replace(about, housing=full_housing_component(case, extended, progress))
         model = LineModel(stands.assemble(pairs, components, excitation), point, pairs, found)
-        return SolvedLines(model, model.lines(_TWO_PI * housing.trusted_limit_hz, count), extended)
+        lines = model.lines(_TWO_PI * housing.trusted_limit_hz, count)
+        return SolvedLines(model, lines, _sound(case, extended, model, radiation, heard, progress), extended)
 
     progress("lines of the sensors")
     first = solved(modes)
     if not first.lines:
         return None
     progress("responses of the housing at the lines")
-    return solved(extension.with_harmonic_responses(modes, _housing_loads(first)))
+    exact = extension.with_harmonic_responses(modes, _housing_loads(first))
+    return solved(exact, [one.line.frequency for one in first.sound])
+
+
+def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "HousingRadiation | None":
+    """Return the radiating surface of a case with acoustics."""
+    if case.acoustics is None:
+        return None
+    # The acoustics' kernels are for these cases alone.
+    from gearwhine.solve.sound import build_radiation
+
+    return build_radiation(case, housing, progress)
+
+
+def _sound(
+    case: Case,
+    housing: SolvedHousing,
+    model: LineModel,
+    radiation: "HousingRadiation | None",
+    heard: Sequence[float] | None,
+    progress: Progress,
+) -> "tuple[HarmonicSound, ...]":
+    """Solve for the loudest lines with the modes of a housing, or for those of known frequencies [rad/s]."""
+    if radiation is None:
+        return ()
+    from gearwhine.solve.harmonic_sound import loudest_lines
+    from gearwhine.solve.sound import highest_frequency
+
+    progress("sound of the lines")
+    assert housing.modes.residual_modes is not None
+    shapes = np.concatenate([housing.modes.shapes, housing.modes.residual_modes.shapes])
+    limit = min(highest_frequency(case, housing), housing.trusted_limit_hz)
+    return loudest_lines(model, radiation.with_shapes(shapes), _TWO_PI * limit, heard)
 
 
 def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:
@@ -181,14 +253,24 @@ def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:
     """
     found: dict[float, list[ComplexArray]] = {}
     limit = solved.housing.modes.certificate.limit
-    # At the limit itself residual modes have the responses.
-    for line in (one for one in solved.lines if one.frequency < limit):
+    loads = [_sensor_load(solved, line) for line in solved.of_sensors] + [one.nodal_load() for one in solved.sound]
+    for line, own in zip(solved.lines, loads, strict=True):
+        # At the limit itself residual modes have the responses.
+        if line.frequency >= limit:
+            continue
         motion = np.zeros(3 * len(solved.housing.mesh.points), dtype=np.complex128)
-        against = line.weight * solved.housing.sensors[line.sensor].matrix.toarray()[0]
+        against = own
         for name, port in solved.housing.loaded.items():
             load, adjoint = solved.model.bearing_loads(line, name)
             motion += np.asarray(port.T @ load)
             against = against + np.asarray(port.T @ adjoint)
-        # The motion is the same for every sensor.
+        # The motion is the same for every output.
         found.setdefault(line.frequency, [motion]).append(against)
     return [(w, np.concatenate([np.array(one).real, np.array(one).imag]).T) for w, one in found.items()]
+
+
+def _sensor_load(solved: SolvedLines, line: Line) -> ComplexArray:
+    """Adjoint load of a sensor's line on the housing's nodes, shape (3 n_nodes,)."""
+    assert isinstance(line.output, SensorAmplitude)
+    port = solved.housing.sensors[line.output.sensor].matrix.toarray()[0]
+    return np.asarray(line.output.weight(line.frequency, line.motion) * port)

@@ -1,6 +1,6 @@
-"""Sensitivity of a case's operating point: change of gear pairs and sensors' lines by walls and bearings.
+"""Sensitivity of a case's operating point: change of gear pairs, sensors' lines and sound power by walls and bearings.
 
-The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.sensor_lines`. Parameters of
+The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.mesh_harmonics`. Parameters of
 the housing are those of the case's ``[update]``, else the walls of a box; of any other housing, the flat faces of its
 surface.
 """
@@ -8,13 +8,15 @@ surface.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
 from coupling import Machine
-from coupling.linear.sensor_lines import SensorLine
+from coupling.linear.line_outputs import SensorAmplitude
+from coupling.linear.mesh_harmonics import Line
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter
@@ -34,11 +36,15 @@ from housing.updating.static_sensitivity import PortRates, StaticSensitivity, ha
 from meshes import Mesh
 from meshes.box.morph import MorphError, with_middles
 
+if TYPE_CHECKING:
+    from gearwhine.solve.harmonic_sound import HarmonicSound
+
 FloatArray = npt.NDArray[np.float64]
 Ports = dict[str, sparse.csr_array]
 
 _LENGTH, _PART = 1e-3, 0.1  # steps of the table: of lengths [m], and relative ones
 _OUT = 1e-3  # part of a line below which it is not told
+_SOUND = "sound"  # of --line, beside the sensors
 _TWO_PI = 2.0 * np.pi
 _LEAST_FACE = 0.01  # part of the whole surface from which a flat face is told
 
@@ -58,7 +64,7 @@ class Influence:
     changes : ndarray, shape (n_pairs, 3)
         Of the `OUTCOMES` by the step; NaN for the last two of an idle pair.
     lines : ndarray, shape (n_lines,)
-        Of the lines' amplitudes by the step to first order [m/s²].
+        Of the lines by the step to first order: amplitudes of sensors [m/s²], then powers of the sound [W].
     stepped : ndarray, shape (n_lines,)
         The same with the response at the step solved anew.
     """
@@ -79,31 +85,38 @@ class Influence:
 
 @dataclass(frozen=True, eq=False)
 class LineChange:
-    """Change of a line by a step of a parameter.
+    """Change of a line, or of a weighted sum of lines, by a step of a parameter.
 
     Attributes
     ----------
-    line : SensorLine
+    value : float
+        The line: amplitude of a sensor [m/s²], or sound power [W].
+    decibels : float
+        Change of its level for a factor of ten [dB].
     first_order : float
-        Of its amplitude to first order [m/s²].
+        Of the value to first order.
     change : float
-        Of its amplitude, the response solved anew [m/s²].
+        Of the value, the response solved anew.
+    line : Line or None
+        None of a sum.
     """
 
-    line: SensorLine
+    value: float
+    decibels: float
     first_order: float
     change: float
+    line: Line | None = None
 
     @property
     def first_order_level(self) -> float:
         """Change of its level to first order [dB]."""
-        return 20.0 / math.log(10.0) * self.first_order / self.line.amplitude
+        return self.decibels / math.log(10.0) * self.first_order / self.value
 
     @property
     def level(self) -> float:
         """Change of its level, the response solved anew [dB]."""
         # The part by the equilibrium is linear: a line that it would put out is as good as out.
-        return 20.0 * math.log10(max(1.0 + self.change / self.line.amplitude, _OUT))
+        return self.decibels * math.log10(max(1.0 + self.change / self.value, _OUT))
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,11 +132,15 @@ class LoadSensitivity:
     note : str or None
         Why flat faces stand in place of walls.
     lines : SolvedLines or None
-        Lines of the sensors; None where no mesh drives any.
+        Lines of the sensors and of the sound; None where no mesh drives any.
     line : int
-        Number of the line that is ranked and drawn.
+        Number of the sensor's line that is ranked and drawn.
     line_density : ndarray, shape (n_nodes,), or None
         Of that line, its amplitude by material added on the surface [(m/s²)/m³].
+    sound_line : int or None
+        Number of the sound's line that is ranked and drawn; None for the A-weighted sum of several.
+    sound_density : ndarray, shape (n_nodes,), or None
+        Of that line or sum, its power by material added on the surface [W/m³].
     """
 
     influences: tuple[Influence, ...]
@@ -132,16 +149,49 @@ class LoadSensitivity:
     lines: SolvedLines | None = None
     line: int = 0
     line_density: FloatArray | None = None
+    sound_line: int | None = None
+    sound_density: FloatArray | None = None
 
     @property
-    def sensor_lines(self) -> tuple[SensorLine, ...]:
+    def sensor_lines(self) -> tuple[Line, ...]:
         """Lines of the sensors, the highest first."""
-        return () if self.lines is None else self.lines.lines
+        return () if self.lines is None else self.lines.of_sensors
 
-    def line_changes(self, influence: Influence) -> list[LineChange]:
-        """Pair all lines with their changes by the step of a parameter."""
-        changes = zip(influence.lines.tolist(), influence.stepped.tolist(), strict=True)
-        return [LineChange(line, *one) for line, one in zip(self.sensor_lines, changes, strict=True)]
+    @property
+    def loudest_lines(self) -> "tuple[HarmonicSound, ...]":
+        """Lines of the sound, the loudest first."""
+        return () if self.lines is None else self.lines.sound
+
+    @property
+    def sound_weights(self) -> FloatArray:
+        """Weights of the sound's lines in the power that is ranked, shape (n_loudest_lines,)."""
+        return _sound_weights(self.loudest_lines, self.sound_line)
+
+    @property
+    def sound_power(self) -> float:
+        """Power that is ranked: of one line, or A-weighted of all [W]."""
+        return float(self.sound_weights @ [one.line.value for one in self.loudest_lines])
+
+    def sensor_changes(self, influence: Influence) -> list[LineChange]:
+        """Pair the sensors' lines with their changes by the step of a parameter."""
+        return self._changes(influence)[: len(self.sensor_lines)]
+
+    def sound_changes(self, influence: Influence) -> list[LineChange]:
+        """Pair the sound's lines with their changes by the step of a parameter."""
+        return self._changes(influence)[len(self.sensor_lines) :]
+
+    def total_sound_change(self, influence: Influence) -> LineChange:
+        """Change of the A-weighted power of the sound's lines together by the step of a parameter."""
+        weights, own = _sound_weights(self.loudest_lines, None), self.sound_changes(influence)
+        value, first, change = (
+            float(weights @ [getattr(one, of) for one in own]) for of in ("value", "first_order", "change")
+        )
+        return LineChange(value, own[0].decibels, first, change)
+
+    def _changes(self, influence: Influence) -> list[LineChange]:
+        lines = () if self.lines is None else self.lines.lines
+        changes = zip(lines, influence.lines.tolist(), influence.stepped.tolist(), strict=True)
+        return [LineChange(line.value, line.output.decibels, first, anew, line) for line, first, anew in changes]
 
 
 def solve_load_sensitivity(
@@ -153,7 +203,7 @@ def solve_load_sensitivity(
     *,
     line: str | None = None,
 ) -> LoadSensitivity:
-    """Compute the gradients of an operating point and of the sensors' lines about it, ranked.
+    """Compute the gradients of an operating point, and of the sensors' lines and the sound about it, ranked.
 
     Parameters
     ----------
@@ -166,15 +216,18 @@ def solve_load_sensitivity(
         That the machine stands in.
     progress : callable
     line : str, optional
-        The line that is ranked and drawn, such as ``roof`` or ``roof@1377``; by default the highest.
+        The line that is ranked and drawn, such as ``roof``, ``roof@1377`` or ``sound@1377``; by default the highest of
+        a sensor, and the A-weighted power of the sound.
 
     Raises
     ------
     CaseError
-        Where there is no such line.
+        Where there is no such line, or the radiating surface cannot be made.
+    housing.HousingError
+        Where the powers of a line through the surface and in the far field differ by more than 10 %.
     """
     solved = solve_lines(case, machine, point, housing, progress)
-    chosen = _chosen(line, () if solved is None else solved.lines)
+    chosen, chosen_sound = _chosen(line, solved)
     progress("adjoint states of gear pairs and lines")
     pairs = pair_adjoints(point)
     places = [(n, OUTCOMES.index(name)) for n, pair in enumerate(pairs) for name in pair]
@@ -208,20 +261,21 @@ def solve_load_sensitivity(
         direct = np.array([model.by_bearing_position(one, name) for one in lines if model is not None])
         anew = np.array([model.stepped_bearing_position(one, name, _LENGTH) for one in lines if model is not None])
         found.append(influence(name, "bearing position", (_LENGTH, True), derivatives, direct, anew))
-    density, note, line_density = None, None, None
+    density, note, line_density, sound_density = None, None, None, None
     if adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
         fields = housing_fields(case, housing, point, adjoints)
         surface = fields.surface_density()
         density = surface[[n for n, (_, outcome) in enumerate(places) if outcome == 0]]
         if solved is not None:
-            line_density = surface[len(places) + chosen] + harmonic_surface_density(
-                fields.mesh,
-                fields.constants,
-                solved.field(lines[chosen].motion),
-                solved.field(lines[chosen].adjoint),
-                lines[chosen].frequency,
-            )
+            by_equilibrium, first_sound = surface[len(places) :], len(solved.of_sensors)
+            if solved.of_sensors:
+                line_density = by_equilibrium[chosen] + _harmonic_density(solved, fields, lines[chosen])
+            if solved.sound:
+                sound_density = np.zeros(len(fields.mesh.points))
+                for n, weight in enumerate(_sound_weights(solved.sound, chosen_sound), start=first_sound):
+                    if weight > 0.0:
+                        sound_density += weight * (by_equilibrium[n] + _harmonic_density(solved, fields, lines[n]))
         parameters = housing_parameters(case)
         try:
             changes = case_changes(case, fields.mesh, parameters) if parameters else face_changes(case, fields.mesh)
@@ -248,17 +302,38 @@ def solve_load_sensitivity(
             found.append(one if size is None else replace(one, step=_PART))
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     found.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
-    return LoadSensitivity(tuple(found), density, note, solved, chosen, line_density)
+    return LoadSensitivity(tuple(found), density, note, solved, chosen, line_density, chosen_sound, sound_density)
 
 
-def _chosen(text: str | None, lines: Sequence[SensorLine]) -> int:
-    """Return the number of the line of this text, a sensor's name alone or with ``@`` and a frequency [Hz]."""
+def _harmonic_density(solved: SolvedLines, fields: StaticSensitivity, line: Line) -> FloatArray:
+    """Density of a line's output by material added on the surface at the same equilibrium, shape (n_nodes,)."""
+    motion, adjoint = solved.field(line.motion), solved.field(line.adjoint)
+    return harmonic_surface_density(fields.mesh, fields.constants, motion, adjoint, line.frequency)
+
+
+def _sound_weights(lines: "Sequence[HarmonicSound]", chosen: int | None) -> FloatArray:
+    """Weights of the sound's lines: one for a chosen line, else those of the frequency weighting A."""
+    return np.array([one.weighting if chosen is None else float(n == chosen) for n, one in enumerate(lines)])
+
+
+def _chosen(text: str | None, solved: SolvedLines | None) -> tuple[int, int | None]:
+    """Return the numbers of the sensor's line and of the sound's line, None for several, that a text chooses.
+
+    It is a sensor's name or ``sound``, alone or with ``@`` and a frequency [Hz].
+    """
+    together = 0 if solved is not None and len(solved.sound) == 1 else None
     if text is None:
-        return 0
-    names = {f"{one.sensor}@{one.frequency / _TWO_PI:.0f}": n for n, one in reversed(list(enumerate(lines)))}
-    names |= {one.sensor: n for n, one in reversed(list(enumerate(lines)))}
+        return 0, together
+    names: dict[str, tuple[int, int | None]] = {}
+    for n, line in enumerate(() if solved is None else solved.of_sensors):
+        assert isinstance(line.output, SensorAmplitude)
+        names.setdefault(line.output.sensor, (n, together))
+        names.setdefault(f"{line.output.sensor}@{line.frequency / _TWO_PI:.0f}", (n, together))
+    for n, one in enumerate(() if solved is None else solved.sound):
+        names.setdefault(_SOUND, (0, together))
+        names.setdefault(f"{_SOUND}@{one.line.frequency / _TWO_PI:.0f}", (0, n))
     if text not in names:
-        known = ", ".join(repr(name) for name in names) or "none: no mesh drives a sensor"
+        known = ", ".join(repr(name) for name in names) or "none: no mesh drives a sensor or a sound"
         raise CaseError([Problem("--line", text, f"one of the highest lines: {known}")])
     return names[text]
 

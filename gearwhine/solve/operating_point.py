@@ -196,7 +196,7 @@ def solve_load(
     sensitivity : bool
         Whether to compute its gradients, see :func:`gearwhine.solve.load_sensitivity.solve_load_sensitivity`.
     line : str, optional
-        The sensor's line that these are ranked by, such as ``roof@1377``; by default the highest.
+        The line that these are ranked by, see :func:`gearwhine.solve.load_sensitivity.solve_load_sensitivity`.
 
     Raises
     ------

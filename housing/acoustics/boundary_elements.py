@@ -483,8 +483,13 @@ def surface_product(
     surface: RadiatingSurface, one: FloatArray | ComplexArray, other: FloatArray | ComplexArray
 ) -> ComplexArray:
     """∫ ūᵢ wⱼ dS of fields that are linear on each triangle, given at its corners."""
-    weighted = np.einsum("e,ab,ebn->ean", surface.areas, _MASS, other.reshape(len(surface.areas), 3, -1))
-    return np.asarray(one.conj().T @ weighted.reshape(len(one), -1))
+    return np.asarray(one.conj().T @ surface_load(surface, other))
+
+
+def surface_load(surface: RadiatingSurface, field: FloatArray | ComplexArray) -> ComplexArray:
+    """∫ φ w dS of fields w with the linear shape function φ of every corner, shape (3 n_triangles, n)."""
+    weighted = np.einsum("e,ab,ebn->ean", surface.areas, _MASS, field.reshape(len(surface.areas), 3, -1))
+    return np.asarray(weighted.reshape(3 * len(surface.areas), -1))
 
 
 def _directions(degree: int) -> tuple[FloatArray, FloatArray]:

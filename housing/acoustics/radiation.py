@@ -9,7 +9,7 @@ turns it into a pressure on the surface:
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Protocol, TypeVar
 
@@ -19,6 +19,7 @@ import numpy.typing as npt
 from housing.acoustics.boundary_elements import BoundaryElements, SoundField, surface_product
 from housing.acoustics.medium import AIR, HardPlane, Medium
 from housing.acoustics.radiating_surface import RadiatingSurface
+from housing.acoustics.skin_points import SkinPoints
 from housing.acoustics.surface_velocity import face_surface, surface_velocity, transfer_error
 from housing.acoustics.wrapping import wrap
 from housing.errors import HousingError
@@ -302,6 +303,8 @@ class HousingRadiation:
         Normal velocity at the corners of the triangles per rate of each mode's coordinate.
     faces : tuple of str
         Label of every triangle.
+    skins : tuple of SkinPoints
+        Points of the housing that each surface moves with.
     cap_area : float
         Area of the surface that closes holes [m²].
     transfer_error : float
@@ -313,6 +316,7 @@ class HousingRadiation:
     elements: tuple[BoundaryElements, ...]
     modal: tuple[FloatArray, ...]
     faces: tuple[str, ...]
+    skins: tuple[SkinPoints, ...]
     cap_area: float = 0.0
     transfer_error: float = 0.0
 
@@ -371,13 +375,14 @@ class HousingRadiation:
         carried = surface_velocity(mesh, surface)
         error = transfer_error(carried, shapes[:natural_modes])
         error.require()
-        modal = carried.transfer(tuple(still)) @ shapes.reshape(len(shapes), -1).T
+        points = carried.points(tuple(still)).on(elements.uncovered)
         labels = np.array(carried.face_of_triangles())
         return cls(
             method,
             (elements,),
-            (np.ascontiguousarray(modal[np.repeat(elements.uncovered, 3)]),),
+            (_modal(points, shapes),),
             tuple(labels[elements.uncovered].tolist()),
+            (points,),
             carried.cap_area,
             float(np.sqrt(np.mean(error.relative**2))),
         )
@@ -395,13 +400,14 @@ class HousingRadiation:
         faces : dict of str to housing.fem.surface.FlatFace
         medium : Medium
         """
-        elements, modal, labels = [], [], []
+        elements, modal, labels, skins = [], [], [], []
         for name, face in faces.items():
-            surface, transfer = face_surface(mesh, face.facets)
+            surface, points = face_surface(mesh, face.facets)
             elements.append(BoundaryElements(surface, medium, HardPlane(face.center, face.normal)))
-            modal.append(np.ascontiguousarray(transfer @ shapes.reshape(len(shapes), -1).T))
+            modal.append(_modal(points, shapes))
             labels += [name] * len(surface.triangles)
-        return cls("rayleigh", tuple(elements), tuple(modal), tuple(labels))
+            skins.append(points)
+        return cls("rayleigh", tuple(elements), tuple(modal), tuple(labels), tuple(skins))
 
     @property
     def medium(self) -> Medium:
@@ -470,3 +476,12 @@ class HousingRadiation:
             surface_product(one.surface, modal, modal).real
             for one, modal in zip(self.elements, self.modal, strict=True)
         )
+
+    def with_shapes(self, shapes: FloatArray) -> "HousingRadiation":
+        """Take other modes of the same housing, shape (n_modes, n_nodes, 3)."""
+        return replace(self, modal=tuple(_modal(points, shapes) for points in self.skins))
+
+
+def _modal(points: SkinPoints, shapes: FloatArray) -> FloatArray:
+    """Return the normal velocity of modes at the corners of the triangles, shape (3 n_triangles, n_modes)."""
+    return np.ascontiguousarray(points.transfer @ shapes.reshape(len(shapes), -1).T)

@@ -15,6 +15,7 @@ from scipy import sparse
 
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.skin import NearestSkin, Skin, skin_of
+from housing.acoustics.skin_points import FacetPoints, SkinPoints
 from housing.errors import TriangleSizeError
 from housing.fem.surface import flat_face_numbers, surface_quadrature
 from meshes import Mesh
@@ -30,6 +31,8 @@ _SHARES = np.stack([1.0 - _RULE_POINTS.sum(axis=0), *_RULE_POINTS], axis=1)  # s
 _WEIGHTS = _RULE_WEIGHTS / _RULE_WEIGHTS.sum()
 # Corner values from values at the points: the inverse of the mass matrix area (1 + delta_ij) / 12, times the load.
 _PROJECTION = 12.0 * (np.eye(3) - 0.25) @ (_SHARES * _WEIGHTS[:, None]).T
+
+_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # of a triangle, in its own coordinates
 
 _SPACING = 0.35  # edges between the samples of a skin
 _TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
@@ -120,29 +123,27 @@ class SurfaceVelocity:
         meshes.GeometryError
             Where the mesh has no surface of a name.
         """
-        silent = np.isin(self.facets.ravel(), _members(self.mesh, without))
-        n_points = self.facets.size
-        normals = np.repeat(self.surface.normals, len(_WEIGHTS), axis=0)
-        places = np.einsum("pk,pki->pi", self.nearest.shares, self.skin.places[self.nearest.triangles])
-        rows, columns, values = [], [], []
-        first = 0
+        return self.points(without).transfer
+
+    def points(self, without: Sequence[str | Facets] = ()) -> SkinPoints:
+        """Points of the skin that the triangles move with; see :meth:`transfer`."""
+        facets = self.facets.ravel()
+        silent = np.isin(facets, _members(self.mesh, without))
+        groups, first = [], 0
         for block in self.mesh.boundary:
-            chosen = np.flatnonzero(
-                (self.facets.ravel() >= first) & (self.facets.ravel() < first + len(block)) & ~silent
-            )
+            chosen = np.flatnonzero((facets >= first) & (facets < first + len(block)) & ~silent)
             if len(chosen):
-                shape, _ = shape_functions(block.kind, places[chosen].T)
-                nodes = block.nodes[self.facets.ravel()[chosen] - first]
-                values.append((shape[:, :, None] * normals[chosen][:, None]).ravel())
-                columns.append((3 * nodes[:, :, None] + np.arange(3)).ravel())
-                rows.append(np.repeat(chosen, 3 * nodes.shape[1]))
+                triangles, shares = self.nearest.triangles[chosen], self.nearest.shares[chosen]
+                reference = self.skin.places[triangles]
+                shape, gradients = shape_functions(block.kind, np.einsum("pk,pki->ip", shares, reference))
+                nodes = block.nodes[facets[chosen] - first]
+                groups.append(
+                    FacetPoints(chosen, nodes, shape, gradients, self.skin.nodes[triangles], reference, shares)
+                )
             first += len(block)
-        size = (n_points, 3 * len(self.mesh.points))
-        if not rows:
-            return sparse.csr_array((3 * len(self.surface.triangles), size[1]))
-        at_points = sparse.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), size)
+        normals = np.repeat(self.surface.normals, len(_WEIGHTS), axis=0)
         project = sparse.kron(sparse.eye_array(len(self.surface.triangles)), _PROJECTION, format="csr")
-        return sparse.csr_array(project @ at_points)
+        return SkinPoints(self.mesh.points, tuple(groups), normals, project)
 
     def face_of_triangles(self) -> list[str]:
         """Label of the housing's face that each triangle lies on.
@@ -285,7 +286,7 @@ def transfer_error(velocity: SurfaceVelocity, shapes: FloatArray) -> TransferErr
     return TransferError(squares[outside].sum(axis=0), on_skin, float(surface.areas[outside].sum()), area)
 
 
-def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, sparse.csr_array]:
+def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, SkinPoints]:
     """Make a radiating surface of facets themselves, such as those of a flat face.
 
     Facets are split into triangles between their nodes, and the normal velocity at each corner is that of its node.
@@ -300,8 +301,8 @@ def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, sparse.c
     -------
     surface : RadiatingSurface
         Open, if the facets are.
-    transfer : csr_array, shape (3 n_triangles, 3 n_nodes)
-        From nodal velocities to normal velocities at the corners.
+    points : SkinPoints
+        The corners of the triangles.
 
     Raises
     ------
@@ -311,11 +312,12 @@ def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, sparse.c
     skin = skin_of(mesh, facets)
     used, triangles = np.unique(skin.nodes, return_inverse=True)
     surface = RadiatingSurface(mesh.points[used], triangles.reshape(-1, 3).astype(np.int64))
-    rows = np.repeat(np.arange(skin.nodes.size), 3)
-    columns = 3 * np.repeat(skin.nodes.ravel(), 3) + np.tile(np.arange(3), skin.nodes.size)
-    values = np.repeat(surface.normals, 3, axis=0).ravel()
-    shape = (skin.nodes.size, 3 * len(mesh.points))
-    return surface, sparse.csr_array((values, (rows, columns)), shape=shape)
+    count = len(skin.nodes)
+    nodes, reference = np.repeat(skin.nodes, 3, axis=0), np.tile(_CORNERS, (3 * count, 1, 1))
+    shape, gradients = shape_functions("triangle", np.tile(_CORNERS, (count, 1)).T)
+    corners = FacetPoints(np.arange(3 * count), nodes, shape, gradients, nodes, reference, shape)
+    normals = np.repeat(surface.normals, 3, axis=0)
+    return surface, SkinPoints(mesh.points, (corners,), normals, sparse.eye_array(3 * count, format="csr"))
 
 
 def _places(surface: RadiatingSurface) -> FloatArray:
@@ -326,7 +328,7 @@ def _places(surface: RadiatingSurface) -> FloatArray:
 def _triangle_skin(surface: RadiatingSurface) -> Skin:
     """Return the triangles of a radiating surface as a skin."""
     numbers = np.arange(len(surface.triangles))
-    places = np.tile(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), (len(numbers), 1, 1))
+    places = np.tile(_CORNERS, (len(numbers), 1, 1))
     return Skin(surface.triangles, surface.corners, numbers, places)
 
 

@@ -9,8 +9,9 @@ import pytest
 
 import gearwhine as gw
 from coupling import assemble_machine
-from coupling.linear import sensor_lines
-from coupling.linear.sensor_lines import HousingRates, LineModel, SensorLine
+from coupling.linear import mesh_harmonics
+from coupling.linear.housing_rates import HousingRates
+from coupling.linear.mesh_harmonics import Line, LineModel
 from coupling.machine import description
 from coupling.machine.connectors import MountedBearing
 from coupling.statics.operating_point import OperatingPoint
@@ -88,13 +89,13 @@ def solved(case: Case) -> Solved:
     return solve(case, build_mesh(case))
 
 
-def chosen(lines: Sequence[SensorLine]) -> list[SensorLine]:
+def chosen(lines: Sequence[Line]) -> list[Line]:
     """Lines up to the second mesh harmonic, by sensor and frequency."""
-    return sorted((one for one in lines if one.frequency < LIMIT), key=lambda one: (one.sensor, one.frequency))
+    return sorted((one for one in lines if one.frequency < LIMIT), key=lambda one: (one.output.sensor, one.frequency))
 
 
 def amplitudes(solved: Solved) -> FloatArray:
-    return np.array([one.amplitude for one in chosen(solved[2].lines)])
+    return np.array([one.value for one in chosen(solved[2].lines)])
 
 
 def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
@@ -155,7 +156,7 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     # The basis of the shafts stays, so that the difference has no part by it.
     assembled = machine.assemble(pairs, found.model.machine.rotors)
     model = LineModel(assembled, point, pairs, found.model.found)
-    return np.array([one.amplitude for one in chosen(model.lines(2.0 * np.pi * 8e3, 9))])
+    return np.array([one.value for one in chosen(model.lines(2.0 * np.pi * 8e3, 9))])
 
 
 def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved) -> None:
@@ -197,15 +198,15 @@ def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
     assert faces is not None
     (pair,) = solved[1].pairs
     assert pair.carrying_part == 1.0
-    places = sensor_lines.face_stations(faces.face_width)
+    places = mesh_harmonics.face_stations(faces.face_width)
     tilt = 2.0 * places / faces.face_width
     step, either = 0.2e-6, []
     for way in (1.0, -1.0):
         gap = faces.gap + way * step * 2.0 * faces.z / faces.face_width
         contact = replace(mesh.contact, faces=replace(faces, gap=gap))
         damping = contact.damping * np.sqrt(
-            sensor_lines.loaded_transmission_error(contact, pair.force).mean_mesh_stiffness
-            / sensor_lines.loaded_transmission_error(mesh.contact, pair.force).mean_mesh_stiffness
+            mesh_harmonics.loaded_transmission_error(contact, pair.force).mean_mesh_stiffness
+            / mesh_harmonics.loaded_transmission_error(mesh.contact, pair.force).mean_mesh_stiffness
         )
         changed = replace(mesh, contact=contact.with_damping(float(damping), contact.damping_depth))
         machine = assemble_machine(
@@ -216,7 +217,7 @@ def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
             meshes=[changed],
             torques=given.torques,
         )
-        either.append(np.array([one.amplitude for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))]))
+        either.append(np.array([one.value for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))]))
     expected = (either[0] - either[1]) / (2.0 * step)
     own = np.array([model._by_gap(one, 0) @ tilt for one in lines])
     np.testing.assert_allclose(own, expected, atol=0.04 * np.abs(expected).max())
@@ -228,7 +229,7 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
     found = solved[2]
     model, lines = found.model, chosen(found.lines)
     given = model.machine
-    before = np.array([one.amplitude for one in lines])
+    before = np.array([one.value for one in lines])
 
     def with_bearing(changed: MountedBearing) -> FloatArray:
         machine = assemble_machine(
@@ -239,7 +240,7 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
             meshes=given.meshes,
             torques=given.torques,
         )
-        return np.array([one.amplitude for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))])
+        return np.array([one.value for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))])
 
     first = given.bearings[0]
     name, made = first.bearing.name, first.bearing
@@ -255,7 +256,7 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
     slopes = [model.by_bearing_position(one, name) for one in lines]
     # The part by the bearing's own deflection is another test's.
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sensor_lines, "deflection_slope", lambda *_: np.zeros(5))
+        patch.setattr(mesh_harmonics, "deflection_slope", lambda *_: np.zeros(5))
         own = np.array([model.by_bearing_position(one, name) for one in lines])
         stepped = [model.stepped_bearing_position(one, name, 1e-7) for one in lines]
     either = [with_bearing(replace(first, bearing=replace(made, at=made.at + way * 1e-5))) for way in (1.0, -1.0)]
@@ -274,7 +275,7 @@ def test_the_damping_follows_the_modes() -> None:
     stiffness, mass = stiffness + stiffness.T, mass + mass.T
     stiffness[0] = stiffness[:, 0] = 0.0  # a rigid motion stays one
     mass[0] = mass[:, 0] = 0.0
-    rates = HousingRates(omega, ratios, stiffness[None], mass[None], [{}], [{}], [{}])
+    rates = HousingRates(omega, ratios, stiffness[None], mass[None], [{}], [{}], [{}], [{}])
 
     def damping(size: float) -> FloatArray:
         inertia = np.linalg.cholesky(np.eye(5) + size * mass)

@@ -137,11 +137,11 @@ def test_long_waves_pass_and_short_ones_are_refused(boxed: SurfaceVelocity) -> N
 @pytest.mark.parametrize("order", [1, 2])
 def test_a_face_of_facets_is_exact_at_its_nodes(block: Callable[..., Mesh], order: int) -> None:
     mesh = block(SIZE, (2, 2, 2), order)
-    surface, transfer = face_surface(mesh, mesh.surface("top"))
+    surface, points = face_surface(mesh, mesh.surface("top"))
     assert surface.area == pytest.approx(SIZE[0] * SIZE[1])
     assert surface.normals == pytest.approx(np.tile([0.0, 0.0, 1.0], (len(surface.triangles), 1)))
     motion = np.sin(20.0 * mesh.points + np.array([0.1, 0.2, 0.3]))
-    normal = (transfer @ motion.ravel()).reshape(-1, 3)
+    normal = (points.transfer @ motion.ravel()).reshape(-1, 3)
     assert normal == pytest.approx(np.sin(20.0 * surface.corners[..., 2] + 0.3))
     expected = {tuple(np.round(place, 9)) for place in mesh.points[np.isclose(mesh.points[:, 2], SIZE[2])]}
     assert {tuple(np.round(place, 9)) for place in surface.points} == expected

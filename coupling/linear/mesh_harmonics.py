@@ -1,33 +1,32 @@
-r"""Sensor lines: amplitudes of the mesh harmonics at accelerometers about the operating point, and their gradients.
+r"""Mesh harmonics: response of the machine about its operating point, its outputs at sensors and in sound, gradients.
 
 About the operating point a mesh under its mean force F acts as its mean mesh stiffness k and damping c, driven by its
 loaded transmission error e(t) and by the moments of its shuttling load. At a mesh harmonic ω the motion q of the
-machine and the acceleration y of a sensor are
+machine is
 
-    Z q = f,      Z = K + iωC - ω² I,      f = Σ k e d + moments of shuttling,      y = -ω² sᵀ q,
+    Z q = f,      Z = K + iωC - ω² I,      f = Σ k e d + moments of shuttling,
 
-K and C with the tangents of bearings and meshes, d the directions of the meshes, s that of the sensor. One adjoint
-solve for each line gives the derivative of its amplitude by any parameter of the machine,
+K and C with the tangents of bearings and meshes, d the directions of the meshes. A line is an output J(q) of this
+motion, such as the amplitude of a sensor or the sound power (:mod:`coupling.linear.line_outputs`), with the adjoint
+load g: dJ = Re gᵀ dq. One adjoint solve for each line gives its derivative by any parameter of the machine,
 
-    Zᵀ μ = -ω² (y* / |y|) s,      d|y| = Re [μᵀ (df - dZ q) - ω² (y* / |y|) dsᵀ q]
+    Zᵀ μ = g,      dJ = Re [μᵀ (df - dZ q)] + ∂J
 
-(Choi and Kim, *Structural Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the frequency response).
+(Choi and Kim, *Structural Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the frequency response), with
+∂J its change at the same motion. Of a sensor this is the gradient of one point, of the sound power one over the
+housing's surface; the sound power is that of the same linear lines.
 
-*Housing*: dZ has dK + iω dC - ω² dM of its coordinates, projected, and the motions of its ports. Its modes and residual
-modes are a fixed basis for the derivative. The amplitude errs by the product of what the basis lacks of the motion and
-of the adjoint field, the derivative by either. So both fields must be exact in it, which residual modes of bearings and
-sensors are nearly, and the harmonic responses of the housing's finite-element matrices to the loads of both fields make
-them (:func:`housing.modes.residual_modes.missing_harmonic_responses`). What is differentiated is then the line of these
-matrices, of which that of any other basis differs by second order. Modal damping of the ratios ζ follows the modes:
-C = g(A) with g(ω²) = 2ζω and A the projected M⁻¹K, so that
-
-    dC_ab = [(g_a - g_b) dK_ab + (ω_a² g_b - ω_b² g_a) dM_ab] / (ω_a² - ω_b²),
-
-which for one ratio is 2ζ (dK_ab + ω_a ω_b dM_ab) / (ω_a + ω_b).
+*Housing*: dZ has dK + iω dC - ω² dM of its coordinates, projected, and the motions of its ports
+(:mod:`coupling.linear.housing_rates`). Its modes and residual modes are a fixed basis for the derivative. The output
+errs by the product of what the basis lacks of the motion and of the adjoint field, the derivative by either. So both
+fields must be exact in it, which residual modes of bearings and sensors are nearly, and the harmonic responses of the
+housing's finite-element matrices to the loads of both fields make them
+(:func:`housing.modes.residual_modes.missing_harmonic_responses`). What is differentiated is then the line of these
+matrices, of which that of any other basis differs by second order.
 
 *Operating point*: where the tangent of a rolling bearing and the gap of flanks are those of the static equilibrium,
 these, and with them k, c, e and the shuttling, change with the deflections there. Their derivatives by bearing
-deflections and approaches of flanks, central differences of the laws, are the gradient of the amplitude by the static
+deflections and approaches of flanks, central differences of the laws, are the gradient of the output by the static
 coordinates; its adjoint (:mod:`coupling.statics.sensitivity`) gives the rest of the derivative.
 
 A first-order change is right for steps that move no resonance past the line. For others the response is solved anew
@@ -38,7 +37,6 @@ of the teeth, and all that is not linear about the mean mesh: contact loss and t
 times the motion.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -57,6 +55,8 @@ from coupling.gears.loaded.transmission_error import (
     mesh_period_phases,
     transmission_error_phasors,
 )
+from coupling.linear.housing_rates import HousingRates
+from coupling.linear.line_outputs import LineOutput, SensorAmplitude
 from coupling.machine.assembly import CoupledMachine
 from coupling.machine.connectors import LinearConnector
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
@@ -73,86 +73,43 @@ _SAME = 1e-9  # relative difference of frequencies that are one
 _GAP_STEP = 0.03  # of the flanks' compression: slices that come into touch one by one change the stiffness in steps
 _BEARING_STEP = 1e-4  # of a bearing's deflection, in the differences of its tangent
 _SHAFT_STEP = 1e-5  # of the shaft's length, in the differences of its motions
-_EQUAL = 1e-6  # relative difference of eigenvalues below which they count as one in a divided difference
 
 
 @dataclass(frozen=True, eq=False)
-class SensorLine:
-    """Line of a sensor at a mesh harmonic.
+class Response:
+    """Motion of the machine at a mesh harmonic.
 
     Attributes
     ----------
-    sensor : str
     frequency : float
         ω [rad/s].
     causes : tuple of (int, int)
-        Number of the contact in the system, and harmonic of its mesh frequency, of each mesh that drives the line.
-    value : complex
-        y [m/s²]: the acceleration is Re y e^{iωt}.
+        Number of the contact in the system, and harmonic of its mesh frequency, of each mesh that drives it.
     motion : ndarray of complex, shape (n,)
         q by the coordinates of the system.
-    adjoint : ndarray of complex, shape (n,)
-        μ, amplitude per unit of a load [(m/s²)/N and its like].
     """
 
-    sensor: str
     frequency: float
     causes: tuple[tuple[int, int], ...]
-    value: complex
     motion: ComplexArray
-    adjoint: ComplexArray
-
-    @property
-    def amplitude(self) -> float:
-        """|y| [m/s²]."""
-        return abs(self.value)
-
-    @property
-    def weight(self) -> complex:
-        """-ω² y* / |y|, by which a motion of the sensor adds to the amplitude [1/s²]."""
-        return -(self.frequency**2) * self.value.conjugate() / self.amplitude
 
 
 @dataclass(frozen=True, eq=False)
-class HousingRates:
-    """Derivatives of a housing of h coordinates by p parameters.
+class Line(Response):
+    """Line of an output at a mesh harmonic, beside its response.
 
     Attributes
     ----------
-    frequencies, ratios : ndarray, shape (h,)
-        ω [rad/s] and ζ of the coordinates.
-    stiffness, mass : ndarray, shape (p, h, h)
-        dK [1/s²] and dM [1] per unit of each parameter.
-    bearings : sequence of mapping of str to ndarray, shape (5, h)
-        Of each parameter, the change of the seats' motions at bearings; where there is none it may be absent.
-    sensors : sequence of mapping of str to ndarray, shape (h,)
-        Of each parameter, the change of the sensors' motions likewise.
-    static : sequence of mapping of str to ndarray, shape (5,)
-        Of each parameter, the change of the seats' motions at bearings in the static displacement field [m, rad].
+    output : LineOutput
+    value : float
+        J, in the unit of the output.
+    adjoint : ndarray of complex, shape (n,)
+        μ, output per unit of a load.
     """
 
-    frequencies: FloatArray
-    ratios: FloatArray
-    stiffness: FloatArray
-    mass: FloatArray
-    bearings: Sequence[Mapping[str, FloatArray]]
-    sensors: Sequence[Mapping[str, FloatArray]]
-    static: Sequence[Mapping[str, FloatArray]]
-
-    @cached_property
-    def damping(self) -> FloatArray:
-        """Derivatives of the modal damping matrix [1/s], shape (p, h, h)."""
-        omega, ratios = self.frequencies, self.ratios
-        values, gains = omega**2, 2.0 * ratios * omega
-        apart = values[:, None] - values[None, :]
-        alike = np.abs(apart) <= _EQUAL * np.maximum(values[:, None], values[None, :])
-        distance = np.where(alike, 1.0, apart)
-        total = omega[:, None] + omega[None, :]
-        equal = (ratios[:, None] + ratios[None, :]) / np.where(total > 0.0, total, np.inf)
-        by_stiffness = np.where(alike, equal, (gains[:, None] - gains[None, :]) / distance)
-        crossed = values[:, None] * gains[None, :] - values[None, :] * gains[:, None]
-        by_mass = np.where(alike, equal * omega[:, None] * omega[None, :], crossed / distance)
-        return np.asarray(by_stiffness * self.stiffness + by_mass * self.mass)
+    output: LineOutput
+    value: float
+    adjoint: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +163,7 @@ class LineModel:
         contacts = self.machine.system.contacts
         return tuple(n for n, one in enumerate(contacts) if force is not None and force[n] > 0.0 and one.rate != 0.0)
 
-    def lines(self, limit: float, count: int) -> tuple[SensorLine, ...]:
+    def lines(self, limit: float, count: int) -> tuple[Line, ...]:
         """Return the highest lines of each sensor, the highest of all first.
 
         Parameters
@@ -223,21 +180,29 @@ class LineModel:
         """
         if count < 1:
             raise CouplingError(f"{count} lines of each sensor; expected 1 or more")
-        rows = self.machine.sensor_rows
-        motions = {w: linalg.solve(self._dynamic(w), self._load(w, causes)) for w, causes in self._harmonics(limit)}
+        responses = self.responses(limit)
         found = []
-        for sensor, row in rows.items():
-            heard = [(-(w**2) * complex(row @ q), w) for w, q in motions.items()]
-            for value, w in sorted(heard, key=lambda one: -abs(one[0]))[:count]:
-                if value == 0.0:
-                    continue
-                weight = -(w**2) * value.conjugate() / abs(value)
-                adjoint = linalg.solve(self._dynamic(w).T, weight * row)
-                causes = next(causes for at, causes in self._harmonics(limit) if at == w)
-                found.append(SensorLine(sensor, w, causes, value, motions[w], adjoint))
-        return tuple(sorted(found, key=lambda one: -one.amplitude))
+        for name, row in self.machine.sensor_rows.items():
+            output = SensorAmplitude(name, row, self.housing)
+            heard = [(output.value(one.frequency, one.motion), one) for one in responses]
+            heard.sort(key=lambda pair: -pair[0])
+            found += [self.line(output, one) for value, one in heard[:count] if value > 0.0]
+        return tuple(sorted(found, key=lambda one: -one.value))
 
-    def bearing_loads(self, line: SensorLine, bearing: str) -> tuple[ComplexArray, ComplexArray]:
+    def responses(self, limit: float) -> tuple[Response, ...]:
+        """Solve the motions at the mesh harmonics up to a limit [rad/s], ascending."""
+        return tuple(
+            Response(w, causes, linalg.solve(self._dynamic(w), self._load(w, causes)))
+            for w, causes in self._harmonics(limit)
+        )
+
+    def line(self, output: LineOutput, response: Response) -> Line:
+        """Take an output of a motion, and solve its adjoint state."""
+        w, motion = response.frequency, response.motion
+        adjoint = linalg.solve(self._dynamic(w).T, output.adjoint_load(w, motion))
+        return Line(w, response.causes, motion, output, output.value(w, motion), adjoint)
+
+    def bearing_loads(self, line: Line, bearing: str) -> tuple[ComplexArray, ComplexArray]:
         """Return the loads of a bearing on its seat, x, y, z and about x, y, in the motion and in the adjoint field.
 
         Returns
@@ -245,7 +210,7 @@ class LineModel:
         load : ndarray of complex, shape (5,)
             [N, N m].
         adjoint : ndarray of complex, shape (5,)
-            Amplitude per unit of the seat's motion [(m/s²)/m, (m/s²)/rad].
+            Output per unit of the seat's motion [1/m, 1/rad].
         """
         law = self._connector(bearing)
         loads = np.zeros((2, 5), dtype=np.complex128)
@@ -253,8 +218,8 @@ class LineModel:
         loads[1, list(law.axes)] = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
         return loads[0], loads[1]
 
-    def by_static(self, line: SensorLine) -> FloatArray:
-        """Differentiate a line's amplitude by the coordinates of the static machine, shape (n_static,)."""
+    def by_static(self, line: Line) -> FloatArray:
+        """Differentiate a line's output by the coordinates of the static machine, shape (n_static,)."""
         tangent = self.point.tangent
         total = np.zeros(len(tangent.stiffness))
         for load in self.point.bearings:
@@ -270,14 +235,14 @@ class LineModel:
                 total += tangent.pairs[mesh] @ by_approach
         return total
 
-    def by_bearing_stiffness(self, line: SensorLine, bearing: str) -> float:
-        """Differentiate the amplitude by a factor 1 + p on a bearing's tangent stiffness, at the same equilibrium."""
+    def by_bearing_stiffness(self, line: Line, bearing: str) -> float:
+        """Differentiate the output by a factor 1 + p on a bearing's tangent stiffness, at the same equilibrium."""
         law = self._connector(bearing)
         moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
         return -float((adjoint @ law.stiffness @ moved).real)
 
-    def by_bearing_position(self, line: SensorLine, bearing: str) -> float:
-        """Differentiate the amplitude by a bearing's position on its shaft, towards +z, at the same static motions."""
+    def by_bearing_position(self, line: Line, bearing: str) -> float:
+        """Differentiate the output by a bearing's position on its shaft, towards +z, at the same static motions."""
         law, axes = self._connector(bearing), list(self._connector(bearing).axes)
         force = self._dynamic_force(law, line.frequency, line.motion)
         against = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
@@ -287,13 +252,13 @@ class LineModel:
         # Its static deflection changes with its place too.
         return own + float(self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load))
 
-    def by_housing(self, line: SensorLine, rates: HousingRates) -> FloatArray:
-        """Differentiate the amplitude by parameters of the housing, at the same operating point, shape (p,)."""
-        own, w = self._housing, line.frequency
+    def by_housing(self, line: Line, rates: HousingRates) -> FloatArray:
+        """Differentiate the output by parameters of the housing, at the same operating point, shape (p,)."""
+        own, w = self.housing, line.frequency
         motion, adjoint = line.motion[own], line.adjoint[own]
         dynamic = rates.stiffness - w**2 * rates.mass + 1j * w * rates.damping
         total = -np.einsum("a,pab,b->p", adjoint, dynamic, motion, optimize=True).real
-        for number, (bearings, sensors) in enumerate(zip(rates.bearings, rates.sensors, strict=True)):
+        for number, bearings in enumerate(rates.bearings):
             for name, rows in bearings.items():
                 law = self._connector(name)
                 held = rows[list(law.axes)]
@@ -301,18 +266,17 @@ class LineModel:
                 against = self._dynamic_force(law, w, line.adjoint, transposed=True)
                 total[number] += float(((held @ adjoint) @ force + against @ (held @ motion)).real)
             total[number] += self._by_seats(line, rates, number)
-            if line.sensor in sensors:
-                total[number] += (line.weight * complex(sensors[line.sensor] @ motion)).real
+            total[number] += line.output.by_housing(rates, number, w, line.motion)
         return np.asarray(total)
 
-    def stepped_bearing_stiffness(self, line: SensorLine, bearing: str, part: float) -> float:
-        """Change of the amplitude by a factor 1 + part on a bearing's tangent, the response solved anew [m/s²]."""
+    def stepped_bearing_stiffness(self, line: Line, bearing: str, part: float) -> float:
+        """Change of the output by a factor 1 + part on a bearing's tangent, the response solved anew."""
         law = self._connector(bearing)
         change = part * law.directions @ law.stiffness @ law.directions.T
         return self._solved_anew(line, self._dynamic(line.frequency) + change)
 
-    def stepped_bearing_position(self, line: SensorLine, bearing: str, step: float) -> float:
-        """Change of the amplitude as a bearing moves along its shaft, the response solved anew [m/s²]."""
+    def stepped_bearing_position(self, line: Line, bearing: str, step: float) -> float:
+        """Change of the output as a bearing moves along its shaft, the response solved anew."""
         law, load = self._connector(bearing), self.point.bearing(bearing)
         inner = law.stiffness + 1j * line.frequency * law.damping
         moved = law.directions + step * self._bearing_slope(load)[list(law.axes)].T
@@ -320,12 +284,12 @@ class LineModel:
         by_tangent = self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load)
         return self._solved_anew(line, self._dynamic(line.frequency) + change) + step * float(by_tangent)
 
-    def stepped_housing(self, line: SensorLine, rates: HousingRates, number: int, step: float) -> float:
-        """Change of the amplitude by a step of a parameter of the housing, the response solved anew [m/s²].
+    def stepped_housing(self, line: Line, rates: HousingRates, number: int, step: float) -> float:
+        """Change of the output by a step of a parameter of the housing, the response solved anew.
 
         Matrices and ports change to first order, so that resonances move with them.
         """
-        own, w = self._housing, line.frequency
+        own, w = self.housing, line.frequency
         dynamic = self._dynamic(w)
         change = rates.stiffness[number] - w**2 * rates.mass[number] + 1j * w * rates.damping[number]
         dynamic[own, own] += step * change
@@ -335,30 +299,28 @@ class LineModel:
             moved[own] -= step * rows[list(law.axes)].T
             inner = law.stiffness + 1j * w * law.damping
             dynamic += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
-        sensor = self.machine.sensor_rows[line.sensor].copy()
-        if line.sensor in rates.sensors[number]:
-            sensor[own] += step * rates.sensors[number][line.sensor]
-        return self._solved_anew(line, dynamic, sensor) + step * self._by_seats(line, rates, number)
+        moved_output = line.output.moved(rates, number, step)
+        return self._solved_anew(line, dynamic, moved_output) + step * self._by_seats(line, rates, number)
 
-    def _by_seats(self, line: SensorLine, rates: HousingRates, number: int) -> float:
-        """Differentiate the amplitude by the seats' motions in the static field, through the bearings' tangents."""
+    def _by_seats(self, line: Line, rates: HousingRates, number: int) -> float:
+        """Differentiate the output by the seats' motions in the static field, through the bearings' tangents."""
         # The deflection is that of the shaft against its seat.
         return -sum(
             float(self._by_bearing_deflection(line, name) @ moved) for name, moved in rates.static[number].items()
         )
 
-    def _solved_anew(self, line: SensorLine, dynamic: ComplexArray, sensor: FloatArray | None = None) -> float:
-        """Change of the amplitude with another dynamic stiffness [m/s²]."""
-        row = self.machine.sensor_rows[line.sensor] if sensor is None else sensor
+    def _solved_anew(self, line: Line, dynamic: ComplexArray, output: LineOutput | None = None) -> float:
+        """Change of the output with another dynamic stiffness."""
         motion = linalg.solve(dynamic, self._load(line.frequency, line.causes))
-        return line.frequency**2 * abs(complex(row @ motion)) - line.amplitude
+        return (output or line.output).value(line.frequency, motion) - line.value
 
     @cached_property
     def _matrices(self) -> tuple[FloatArray, FloatArray]:
         return linear_matrices(self.machine.system, self.contact)
 
     @cached_property
-    def _housing(self) -> slice:
+    def housing(self) -> slice:
+        """Place of the housing among the coordinates."""
         components = self.machine.system.components
         place = next(n for n, part in enumerate(components) if part is self.machine.housing)
         first = sum(part.size for part in components[:place])
@@ -456,8 +418,8 @@ class LineModel:
                         shuttling[station, order - 1] += part * load.amplitude
         return _GapRates(stiffness, error, shuttling)
 
-    def _by_gap(self, line: SensorLine, number: int) -> FloatArray:
-        """Differentiate the amplitude by a contact's gap at the stations of the face, shape (j,)."""
+    def _by_gap(self, line: Line, number: int) -> FloatArray:
+        """Differentiate the output by a contact's gap at the stations of the face, shape (j,)."""
         rates, mesh = self._gap_rates[number], self.machine.flanks(number)[0]
         contact, stiffness = self.machine.system.contacts[number], float(self.contact.stiffness[number])
         along, deflection = line.adjoint @ contact.direction, line.motion @ contact.direction
@@ -473,8 +435,8 @@ class LineModel:
                 total = total + along * driven + rates.shuttling[:, harmonic - 1] @ line.adjoint
         return np.asarray(total.real)
 
-    def _by_bearing_deflection(self, line: SensorLine, bearing: str) -> FloatArray:
-        """Differentiate the amplitude by a bearing's static deflection, through its tangent, shape (5,)."""
+    def _by_bearing_deflection(self, line: Line, bearing: str) -> FloatArray:
+        """Differentiate the output by a bearing's static deflection, through its tangent, shape (5,)."""
         if bearing not in self._tangent_rates:
             return np.zeros(5)
         law = self._connector(bearing)

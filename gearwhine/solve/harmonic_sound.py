@@ -1,0 +1,113 @@
+"""Loudest mesh harmonics of a case's sound: lines of its machine that is linear about its operating point.
+
+Candidates are the mesh harmonics of the most power by an estimate; their sound is solved, and the loudest by their
+A-weighted power are taken. Of these the sound of every mode and residual mode is known, and with it the gradient of
+the power, :mod:`housing.acoustics.power_gradient`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.linear.line_outputs import SoundPower
+from coupling.linear.mesh_harmonics import Line, LineModel, Response
+from gearwhine.solve.motion_lines import AUDIBLE, pulsating_efficiency
+from housing.acoustics.power_gradient import PowerGradient
+from housing.acoustics.radiation import HousingRadiation
+from housing.acoustics.sound_levels import a_weighting
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+LINES = 3
+"""Lines of the sound, the loudest."""
+
+_CANDIDATES = 6  # lines that are solved to find these
+_TWO_PI = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicSound:
+    """Sound power of a mesh harmonic, and its gradient.
+
+    Attributes
+    ----------
+    line : Line
+        With a :class:`coupling.linear.line_outputs.SoundPower`.
+    power : PowerGradient
+        At its frequency.
+    """
+
+    line: Line
+    power: PowerGradient
+
+    @property
+    def weighting(self) -> float:
+        """Factor of the power by the frequency weighting A."""
+        return float(10.0 ** (0.1 * a_weighting(self.power.unit.frequency_hz)))
+
+    @property
+    def rates(self) -> ComplexArray:
+        """q̇ of the housing's coordinates."""
+        output = self.line.output
+        assert isinstance(output, SoundPower)
+        return np.asarray(1j * self.line.frequency * self.line.motion[output.housing])
+
+    def nodal_load(self) -> ComplexArray:
+        """Adjoint load of the power on the housing's nodes, shape (3 n_nodes,)."""
+        return self.power.nodal_load(self.rates)
+
+    def by_sliding(self, motion: ComplexArray, velocity: FloatArray) -> float:
+        """Differentiate the power as the mesh slides along the radiating surface, its nodes' motion given."""
+        return self.power.by_sliding(self.rates, motion, velocity)
+
+
+def loudest_lines(
+    model: LineModel, radiation: HousingRadiation, limit: float, chosen: Sequence[float] | None = None
+) -> tuple[HarmonicSound, ...]:
+    """Solve for the sound of the loudest mesh harmonics, the loudest first.
+
+    Parameters
+    ----------
+    model : LineModel
+    radiation : HousingRadiation
+        With the modes and residual modes of its housing.
+    limit : float
+        Highest frequency [rad/s].
+    chosen : sequence of float, optional
+        Frequencies of the lines [rad/s], if they are known.
+
+    Raises
+    ------
+    housing.HousingError
+        Where the powers of a line through the surface and in the far field differ by more than 10 %.
+    """
+    responses = [one for one in model.responses(limit) if one.frequency >= _TWO_PI * AUDIBLE]
+    if chosen is None:
+        responses = _candidates(model, radiation, responses)
+    else:
+        responses = [one for one in responses if one.frequency in chosen]
+    found = []
+    for one in responses:
+        power = PowerGradient.at(radiation, one.frequency / _TWO_PI)
+        output = SoundPower(one.frequency, power.resistance, model.housing)
+        if output.value(one.frequency, one.motion) > 0.0:
+            found.append(HarmonicSound(model.line(output, one), power))
+    found.sort(key=lambda one: -one.weighting * one.line.value)
+    for loud in found[:LINES]:
+        loud.power.sound(loud.rates).require_balance()
+    return tuple(found[:LINES])
+
+
+def _candidates(model: LineModel, radiation: HousingRadiation, responses: Sequence[Response]) -> list[Response]:
+    """Return the responses of the most A-weighted power by an estimate."""
+    if not responses:
+        return []
+    hertz = np.array([one.frequency for one in responses]) / _TWO_PI
+    rates = np.array([1j * one.frequency * one.motion[model.housing] for one in responses]).T
+    efficiency = pulsating_efficiency(hertz, radiation.area, radiation.medium.speed_of_sound)
+    estimate = radiation.equivalent_power(rates) * efficiency * 10.0 ** (0.1 * a_weighting(hertz))
+    order = np.argsort(-estimate, kind="stable")[:_CANDIDATES]
+    return [responses[n] for n in order]

@@ -1,0 +1,208 @@
+"""Gradients of the sound power of mesh harmonics, against that of machines whose housing is moved and solved anew."""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import gearwhine as gw
+from coupling.linear.housing_rates import HousingRates
+from coupling.statics.operating_point import OperatingPoint
+from coupling.statics.sensitivity import adjoint
+from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.from_case.machine import describe_machine, full_housing_component
+from gearwhine.from_case.mesh import build_mesh
+from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.progress import silent
+from gearwhine.results.operating_point import sections
+from gearwhine.solve import housing_modes, sound
+from gearwhine.solve.harmonic_sound import HarmonicSound
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
+from gearwhine.solve.load_sensitivity import case_changes, housing_fields
+from housing.acoustics.radiation import HousingRadiation
+from housing.acoustics.sound_levels import a_weighting
+from meshes import Mesh
+from meshes.shape_functions import shape_functions
+
+FloatArray = npt.NDArray[np.float64]
+
+PARAMETERS = [
+    UpdateParameter(name="front wall", keys=("housing.box.wall.front",), range=("5 mm", "20 mm")),
+    UpdateParameter(name="bottom wall", keys=("housing.box.wall.bottom",), range=("5 mm", "20 mm")),
+    UpdateParameter(name="top wall", keys=("housing.box.wall.top",), range=("5 mm", "20 mm")),
+    UpdateParameter(name="feet", keys=("housing.support.*.stiffness.y",), range=(0.5, 2.0), factor=True),
+]
+
+Solved = tuple[SolvedHousing, OperatingPoint, SolvedLines]
+
+
+def sounding(acoustics: dict[str, object]) -> Case:
+    """The small gearbox without sensors, its gears out of the middle; its modes reach up to 8 kHz."""
+    overrides = ["housing.box.mesh_size=60 mm", "gear.*.at=70 mm", "housing.frequency_limit=8 kHz"]
+    document = case_document(load_case("small-gearbox", overrides).case)
+    document["material"]["iron"] = {"youngs_modulus": "110 GPa", "poisson_ratio": 0.25, "density": "7200 kg/m^3"}
+    document["housing"]["material"] = "iron"
+    document["housing"]["support"][0]["stiffness"]["y"] = 2e9
+    document["housing"]["sensor"] = []
+    document["acoustics"] = acoustics
+    return parse_case(document)
+
+
+def solve(case: Case, mesh: Mesh, base: HousingRadiation | None = None) -> Solved:
+    """Solve a case anew on a mesh, its radiating surface too, or one whose points keep their facets."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
+        if base is not None:
+            patch.setattr(sound, "build_radiation", lambda *_: on_same_facets(base, mesh))
+        housing = solve_housing(case)
+        machine = describe_machine(case, full_housing_component(case, housing))
+        point = machine.operating_point()
+        lines = solve_lines(case, machine, point, housing, silent)
+    assert lines is not None
+    return housing, point, lines
+
+
+def on_same_facets(radiation: HousingRadiation, mesh: Mesh) -> HousingRadiation:
+    """The radiating surface, with its points where they are in space, in the same triangles of a moved mesh.
+
+    The choice of the nearest facet jumps at a few points as the mesh moves, beside holes, by 1e-4 of the power.
+    """
+    kinds = {block.nodes.shape[1]: block.kind for block in mesh.boundary}
+    skins = []
+    for skin in radiation.skins:
+        groups = []
+        for group in skin.groups:
+            places = np.einsum("mc,mci->mi", group.shares, skin.places[group.corners])
+            first, *others = np.moveaxis(mesh.points[group.corners], 1, 0)
+            edges = np.stack([one - first for one in others], axis=2)
+            two = np.einsum("mki,mi->mk", np.linalg.pinv(edges), places - first)
+            shares = np.column_stack([1.0 - two.sum(axis=1), two])
+            reference = np.einsum("mc,mci->im", shares, group.reference)
+            shape, gradients = shape_functions(kinds[group.nodes.shape[1]], reference)
+            groups.append(replace(group, shape=shape, gradients=gradients, shares=shares))
+        skins.append(replace(skin, places=mesh.points, groups=tuple(groups)))
+    return replace(radiation, skins=tuple(skins))
+
+
+def sound_lines(solved: Solved) -> list[HarmonicSound]:
+    return sorted(solved[2].sound, key=lambda one: one.line.frequency)
+
+
+def derivatives(case: Case, solved: Solved) -> tuple[FloatArray, HousingRates, FloatArray]:
+    """Derivatives of the lines by the parameters, shape (n_lines, n_parameters), of the housing, and their slopes."""
+    housing, point, found = solved
+    lines = [one.line for one in sound_lines(solved)]
+    fields = housing_fields(case, housing, point, [adjoint(point, found.model.by_static(one)) for one in lines])
+    changes = case_changes(case, housing.mesh, PARAMETERS)
+    rates = found.rates(fields.constants, changes.rates, changes.bearings, changes.sensors, fields.displacement)
+    static = fields.by_parameters(changes.rates, changes.bearings)
+    own = (static + [found.model.by_housing(one, rates) for one in lines]) / changes.slopes
+    return np.asarray(own), rates, changes.slopes
+
+
+CHAINS = {
+    "erp": ({"method": "erp", "mesh_size": "30 mm", "highest_frequency": "6 kHz"}, 5e-4, 1e-5, True),
+    "rayleigh": ({"method": "rayleigh", "faces": ["top"], "highest_frequency": "3 kHz"}, 5e-4, 1e-3, False),
+    "boundary elements": ({"mesh_size": "30 mm", "highest_frequency": "3 kHz"}, 1e-2, 1e-3, False),
+}
+"""Acoustics, step of the differences, error relative to the sum of the parts, and whether facets are kept.
+
+The gradient by the modes' resistance is exact, so that of the equivalent power is; where the mesh slides along the
+surface, reciprocity of the integrals takes part.
+"""
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_the_whole_chain_by_the_housing(chain: str) -> None:
+    """Walls and feet together: fourth-order differences of mesh, modes, equilibrium, assembly, line and sound."""
+    acoustics, step, bound, held = CHAINS[chain]
+    case = sounding(acoustics)
+    mesh = build_mesh(case)
+    solved = solve(case, mesh)
+    lines, (own, rates, slopes) = sound_lines(solved), derivatives(case, solved)
+    assert len(lines) == (2 if chain == "erp" else 1)
+    fitted = fitted_case(case, parameters=PARAMETERS)
+    meshed = MeshedParameters(fitted, fitted.start, case, mesh)
+    values = np.array([number.start for number in fitted.numbers])
+    way = values * np.random.default_rng(1).normal(size=len(values))
+    base = lines[0].power.radiation if held else None
+    either = []
+    for size in (step, -step, 2.0 * step, -2.0 * step):
+        there = fitted.at((values + size * way).tolist())
+        geometry = geometry_of(there)
+        assert geometry is not None
+        moved = solve(there, meshed.morph.moved(geometry), base)
+        either.append(np.array([one.line.value for one in sound_lines(moved)]))
+    expected = (8.0 * (either[0] - either[1]) - (either[2] - either[3])) / (12.0 * step)
+    assert (np.abs(own @ way - expected) < bound * np.abs(own * way).sum(axis=1)).all()
+    # Each line answers to a step as its slope says, and to a bearing that is stiffer.
+    model = solved[2].model
+    for one, slope in zip(lines, own[:, 1] * slopes[1], strict=True):
+        small = 1e-7 / slopes[1]
+        assert model.stepped_housing(one.line, rates, 1, small) == pytest.approx(small * slope, rel=1e-3)
+        name = case.bearing[0].name
+        stiffer = model.stepped_bearing_stiffness(one.line, name, 1e-6)
+        assert stiffer == pytest.approx(1e-6 * model.by_bearing_stiffness(one.line, name), rel=1e-3)
+
+
+SOUNDING = {
+    "housing.box.mesh_size": "60 mm",
+    "housing.frequency_limit": "8 kHz",
+    "acoustics.method": "erp",
+    "acoustics.mesh_size": "40 mm",
+    "acoustics.highest_frequency": "6 kHz",
+}
+
+
+def test_the_document_ranks_by_the_sound() -> None:
+    study = gw.load("small-gearbox", SOUNDING)
+    result = study.operating_point(sensitivity=True)
+    loudest = result.document["loudest_lines"]
+    assert [one["excitation"] for one in loudest] == ["2× pinion -> wheel", "1× pinion -> wheel"]
+    # The steady motion follows the whole law of the teeth, which counts less at the mesh frequency than above.
+    steady = {one["name"]: one["sound_power_db"] for one in study.sound().document["lines"]}
+    assert loudest[1]["sound_power_db"] == pytest.approx(steady["1× pinion -> wheel"], abs=0.3)
+    for one in loudest:
+        weight = float(a_weighting(one["frequency_hz"]))
+        assert one["sound_power_db_a"] == pytest.approx(one["sound_power_db"] + weight)
+        assert one["ranked"]
+    powers = np.array([1e-12 * 10.0 ** (0.1 * one["sound_power_db"]) for one in loudest])
+    weighted = np.array([10.0 ** (0.1 * (one["sound_power_db_a"] - one["sound_power_db"])) for one in loudest])
+    total = float(weighted @ powers)
+    assert result.document["loudest_lines_db_a"] == pytest.approx(10.0 * np.log10(total / 1e-12))
+    levels = {}
+    for row in result.document["sensitivity"]:
+        change = np.array([one["power_w"] for one in row["sound"]])
+        first = np.array([one["first_order_w"] for one in row["sound"]])
+        own = [one["level_db"] for one in row["sound"]]
+        assert own == pytest.approx(list(10.0 * np.log10(1.0 + change / powers)))
+        assert row["sound_a"]["level_db"] == pytest.approx(10.0 * np.log10(1.0 + weighted @ change / total))
+        expected = 10.0 / np.log(10.0) * (weighted @ first) / total
+        assert row["sound_a"]["first_order_db"] == pytest.approx(expected)
+        levels[row["parameter"], row["kind"]] = abs(row["sound_a"]["level_db"])
+    (section,) = sections(result.document)
+    tables = [one for one in section.tables if "A-weighted sound power of 2 lines together" in one.caption]
+    assert len(tables) == 2
+    for table in tables:
+        shown = [levels[row["parameter"], row["kind"]] for row in table.rows]
+        assert shown == sorted(shown, reverse=True)
+    data = result.dataset["loudest_line_power_change"]
+    assert (data.dims, data.attrs["units"]) == (("influence", "loudest_line"), "W")
+    assert data.values[-1] == pytest.approx([one["power_w"] for one in result.document["sensitivity"][-1]["sound"]])
+
+
+def test_a_line_of_the_sound_is_chosen() -> None:
+    study = gw.load("small-gearbox", SOUNDING)
+    result = study.operating_point(line="sound@5133")
+    assert [one["ranked"] for one in result.document["loudest_lines"]] == [True, False]
+    (section,) = sections(result.document)
+    table = next(one for one in section.tables if one.caption.startswith("Change of the sound power at 5133 Hz"))
+    levels = {(row["parameter"], row["kind"]): row["sound"][0]["level_db"] for row in result.document["sensitivity"]}
+    assert [row["level_db"] for row in table.rows] == [levels[row["parameter"], row["kind"]] for row in table.rows]
+    sensitivity = result.solved.sensitivity
+    assert sensitivity is not None
+    assert sensitivity.sound_weights.tolist() == [1.0, 0.0]
+    with pytest.raises(CaseError, match="'sound@2567'"):
+        study.operating_point(line="sound@100")
