@@ -239,7 +239,7 @@ class FaceContact:
             Where the touching slices do not converge.
         """
         prepared = self._mean_phases if phases is None else _Prepared(self, phases)
-        gap = prepared.gap - np.einsum("pnm,m->pn", prepared.basis, shape)
+        gap = prepared.gap - prepared.basis @ shape
         n = prepared.phases.size
         compression, loads = face_equilibrium(
             self._faces, prepared.base, gap, prepared.meeting, prepared.owner, np.full(n, force)
@@ -248,7 +248,7 @@ class FaceContact:
         deformation = np.where(loads.touching, compression[prepared.owner, None] - gap, 0.0)
         width, shared = self._faces.width, self._contact.shared_compliance
         energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
-        each = width * np.einsum("pnm,pn->pm", prepared.basis, loads.line_load)
+        each = width * (loads.line_load[:, None] @ prepared.basis)[:, 0]
         line_loads = np.zeros((*prepared.positions.shape, self.z.size))
         line_loads[prepared.owner, prepared.column] = loads.line_load
         return FaceLoad(
@@ -357,7 +357,7 @@ class FaceContact:
         flat = np.where(touching, faces.flattening, 0.0)
         pushed = flat[:, :, None] * motions
         yielding = face_yield(faces, prepared.base, touching, pushed)
-        each = faces.width * np.einsum("pnk,pnm->pkm", pushed, motions - yielding)
+        each = faces.width * (pushed.swapaxes(1, 2) @ (motions - yielding))
         whole = np.add.reduceat(each, prepared.first, axis=0)
         by_shapes = whole[:, size:, :size]
         shared = faces.shared[: faces.shapes.shape[1], : faces.shapes.shape[1]]
@@ -393,5 +393,5 @@ class _Prepared:
 
     def first_touch(self, shape: FloatArray) -> float:
         """Mean over the phases of the approach at which the first slice touches [m]."""
-        gap = np.where(self.meeting, self.gap - np.einsum("pnm,m->pn", self.basis, shape), np.inf).min(axis=1)
+        gap = np.where(self.meeting, self.gap - self.basis @ shape, np.inf).min(axis=1)
         return float(np.minimum.reduceat(gap, self.first).mean())
