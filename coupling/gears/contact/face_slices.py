@@ -298,6 +298,8 @@ def face_equilibrium(
     meeting: BoolArray,
     owner: IntArray,
     force: FloatArray,
+    *,
+    touching: BoolArray | None = None,
 ) -> tuple[FloatArray, FaceLoads]:
     """Compressions (m,) at which the pairs of m meshes carry their loads, and the loaded faces.
 
@@ -309,6 +311,8 @@ def face_equilibrium(
         Mesh of each pair.
     force : ndarray, shape (m,)
         Load of each mesh along the line of action [N].
+    touching : ndarray of bool, shape (p, n), optional
+        Slices in contact where the search starts: those of a load alike.
 
     Raises
     ------
@@ -318,7 +322,9 @@ def face_equilibrium(
     meshes = force.size
     nearest = np.full(meshes, np.inf)
     np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
-    touching = _touching_alone(slices, base, gap, meeting, owner, force)
+    if touching is None:
+        touching = _touching_alone(slices, base, gap, meeting, owner, force)
+    touching = touching & meeting
     # Motions y of a mesh over its face: its compression, and minus its bodies' shared deflections in `shapes`.
     motions = np.column_stack([np.ones(slices.z.size), slices.shapes])
     size = motions.shape[1]
