@@ -20,6 +20,7 @@ from coupling.periodic import periodic_response
 from coupling.time.settings import Method
 from gearwhine.cli import run_command
 from housing.acoustics.boundary_elements import BoundaryElements
+from housing.acoustics.boundary_integrals import solid_angles
 from housing.acoustics.medium import HardPlane
 from housing.acoustics.radiating_surface import RadiatingSurface
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
@@ -65,6 +66,7 @@ def radiate() -> None:
     baffle = HardPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     solved = BoundaryElements(square, plane=baffle).solve(100.0, np.ones((6, 1)))
     solved.far_field(np.eye(3))
+    solid_angles(square, np.ones((1, 3)))
 
 
 def motions() -> None:
