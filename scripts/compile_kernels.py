@@ -19,6 +19,10 @@ from coupling.machine.connectors import ContactConnector
 from coupling.periodic import periodic_response
 from coupling.time.settings import Method
 from gearwhine.cli import run_command
+from housing.acoustics.boundary_elements import BoundaryElements
+from housing.acoustics.boundary_integrals import solid_angles
+from housing.acoustics.medium import HardPlane
+from housing.acoustics.radiating_surface import RadiatingSurface
 from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 
 MASS = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
@@ -54,12 +58,24 @@ def rotors_and_gears() -> None:
     tell("run", "--no-pictures", *(part for change in short for part in ("--set", change)))
 
 
+def radiate() -> None:
+    """Sound of a square plate of 0.1 m in a baffle."""
+    square = RadiatingSurface(
+        0.1 * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    )
+    baffle = HardPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+    solved = BoundaryElements(square, plane=baffle).solve(100.0, np.ones((6, 1)))
+    solved.far_field(np.eye(3))
+    solid_angles(square, np.ones((1, 3)))
+
+
 def motions() -> None:
     for method in METHODS:
         settings = TransientSettings(20.0, 0.0, 0.1, 0.1, method=method)
         for machine in (small_machine(), CoupledSystem((HELD,), (0.0,))):
             simulate(machine, settings, TransientOutputs(*[np.ones((1, 1))] * 3))
     periodic_response(small_machine())
+    radiate()
 
 
 def tell(command: str, *options: str) -> None:

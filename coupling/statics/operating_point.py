@@ -59,7 +59,8 @@ _TOLERANCE = 1e-12
 _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
-_ROUNDED = 1e-13  # part of the deflections below which steps are whole, and end where their error does not fall
+_ROUNDED = 1e-11  # part of the deflections below which steps are whole, and end where their error hardly falls
+_FALLS = 0.5  # part of the error that a step beyond rounding leaves at most
 _ROUNDINGS = 8.0  # units of rounding of the terms of an elastic force
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
 _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
@@ -657,13 +658,14 @@ class _StaticModel:
         for _ in range(_NEWTON_STEPS):
             gap, slope, left = here
             step = size * np.linalg.lstsq(slope, gap, rcond=None)[0]
-            for halving in range(1 if left <= _ROUNDED * float(np.linalg.norm(z / size)) else _HALVINGS):
+            rounded = left <= _ROUNDED * float(np.linalg.norm(z / size))
+            for halving in range(1 if rounded else _HALVINGS):
                 there = z - 0.5**halving * step
                 trial = unbalanced(there)
                 if trial[2] < left:
                     z, here, iterations = there, trial, iterations + 1
                     break
-            if here[2] == left:
+            if here[2] == left or (rounded and here[2] > _FALLS * left):
                 break
         x, _ = motions(z)
         return self._result(x, extra, free, iterations)

@@ -208,10 +208,13 @@ def with_loaded_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> Co
 
     ``backs`` has, for each of the first contacts, the number of its back flanks, or None where these never meet.
     """
-    forces = mean_mesh_forces(system)
+    meeting = [(number, back) for number, back in enumerate(backs) if back is not None]
+    forces = mean_mesh_forces(system) if meeting else np.zeros(0)
+    exchanged = [(number, back) for number, back in meeting if forces[number] < 0.0]
+    if not exchanged:
+        return system
     contacts: list[ContactConnector] = list(system.contacts)
-    for number, back in enumerate(backs):
-        if back is not None and forces[number] < 0.0:
-            contacts[number] = replace(contacts[number], drives=False)
-            contacts[back] = replace(contacts[back], drives=True)
+    for number, back in exchanged:
+        contacts[number] = replace(contacts[number], drives=False)
+        contacts[back] = replace(contacts[back], drives=True)
     return replace(system, contacts=tuple(contacts))

@@ -245,8 +245,14 @@ class Table(BaseModel):
     later: ClassVar[frozenset[str]] = frozenset()
     """Keys that are known to be missing so far."""
 
+    # Tables within others are built as parts of these: by themselves they would take a third of the import.
     model_config = ConfigDict(
-        frozen=True, extra="forbid", populate_by_name=True, hide_input_in_errors=True, protected_namespaces=()
+        frozen=True,
+        extra="forbid",
+        populate_by_name=True,
+        hide_input_in_errors=True,
+        protected_namespaces=(),
+        defer_build=True,
     )
 
 

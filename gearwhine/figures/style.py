@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 from pathlib import Path
 from textwrap import wrap
@@ -405,6 +406,7 @@ def draw_column(axes: Axes, labels: Sequence[Label]) -> None:
         )
 
 
+@lru_cache(maxsize=1024)
 def _size(text: str) -> tuple[float, float]:
     """Width and height of a label that lies, mm."""
     figure = Figure(dpi=_MEASURING_DPI)

@@ -200,6 +200,10 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
         if any(dimension not in data.coords or data[dimension].dtype.kind not in "UO" for dimension in others):
             continue  # along numbers, such as those of modes
         phase = data.get(f"{name}_phase")
+        # At once: each row of its own is sought in the file anew.
+        variable.load()
+        if phase is not None:
+            phase.load()
         abscissa = np.asarray(data[axis].values, dtype=np.float64)
         for labels in product(*(data[dimension].values.tolist() for dimension in others)):
             at = dict(zip(others, labels, strict=True))

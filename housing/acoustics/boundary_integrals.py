@@ -336,6 +336,27 @@ def _phases(directions, places, center, k, cosines, sines):  # type: ignore[no-u
             sines[d, q] = math.copysign(1.0, along) * sine
 
 
+@_compiled
+def _solid_angles(points, corners, angles):  # type: ignore[no-untyped-def]
+    """Solid angles of all triangles together, see `solid_angles`."""
+    to, length = np.empty((3, 3)), np.empty(3)
+    for p in range(points.shape[0]):
+        total = 0.0
+        for e in range(corners.shape[0]):
+            for i in range(3):
+                for j in range(3):
+                    to[i, j] = corners[e, i, j] - points[p, j]
+                length[i] = math.sqrt(to[i, 0] * to[i, 0] + to[i, 1] * to[i, 1] + to[i, 2] * to[i, 2])
+            above, below = 0.0, length[0] * length[1] * length[2]
+            for j in range(3):
+                k, m = (j + 1) % 3, (j + 2) % 3
+                above += to[0, j] * (to[1, k] * to[2, m] - to[1, m] * to[2, k])
+                below += length[2] * to[0, j] * to[1, j] + length[0] * to[1, j] * to[2, j]
+                below += length[1] * to[2, j] * to[0, j]
+            total += math.atan2(above, below)
+        angles[p] = 2.0 * total
+
+
 def far_field_amplitudes(
     source: SourcePoints, directions: FloatArray, center: FloatArray, wavenumber: float,
     pressure: ComplexArray, flux: ComplexArray,
@@ -367,11 +388,5 @@ def solid_angles(surface: RadiatingSurface, points: FloatArray) -> FloatArray:
     30 (1983), 125-126.
     """
     angles = np.empty(len(points))
-    for start in range(0, len(points), _ROWS):
-        a, b, c = np.moveaxis(surface.corners[None] - points[start : start + _ROWS, None, None], 2, 0)
-        la, lb, lc = (np.linalg.norm(one, axis=-1) for one in (a, b, c))
-        above = np.einsum("tej,tej->te", a, np.cross(b, c))
-        ab, bc, ca = (np.einsum("tej,tej->te", u, w) for u, w in ((a, b), (b, c), (c, a)))
-        below = la * lb * lc + ab * lc + bc * la + ca * lb
-        angles[start : start + _ROWS] = 2.0 * np.arctan2(above, below).sum(axis=1)
+    _solid_angles(np.ascontiguousarray(points, dtype=np.float64), surface.corners, angles)
     return angles

@@ -165,13 +165,13 @@ def write_netcdf(
         for name, scale in scales.items():
             scale.attrs["_Netcdf4Dimid"] = numbers[name]
         for name, dataset in datasets.items():
-            if not dimensions[name]:
+            # The one dimension of a coordinate is told by its name; to look a number up, readers look at every scale.
+            if not dimensions[name] or name in along_itself:
                 continue
             dataset.attrs["_Netcdf4Coordinates"] = np.array([numbers[one] for one in dimensions[name]], dtype=np.int32)
-            if name not in along_itself:
-                dataset.attrs["_Netcdf4Dimid"] = numbers[dimensions[name][0]]
-                for axis, one in enumerate(dimensions[name]):
-                    dataset.dims[axis].attach_scale(scales[one])
+            dataset.attrs["_Netcdf4Dimid"] = numbers[dimensions[name][0]]
+            for axis, one in enumerate(dimensions[name]):
+                dataset.dims[axis].attach_scale(scales[one])
         file.attrs["_NCProperties"] = np.bytes_(f"version=2,hdf5={h5py.version.hdf5_version},h5py={h5py.__version__}")
 
 

@@ -124,7 +124,7 @@ class ShaftFields:
         motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))
         energy_rows(
             self.frequency_squared,
-            self.states,
+            np.ascontiguousarray(self.states),  # as wherever the kernel is called, which is compiled for each layout
             GAUSS_FRACTIONS,
             table.lengths,
             table.coefficients,

@@ -2,7 +2,6 @@
 
 import json
 import tomllib
-from collections.abc import Iterator
 from math import pi, remainder
 from typing import Any, NamedTuple
 
@@ -83,14 +82,16 @@ class Written(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Written]:
+def written(tmp_path_factory: pytest.TempPathFactory) -> Written:
     folder = tmp_path_factory.mktemp("lopsided")
     case = folder / "lopsided.toml"
     case.write_text(lopsided(housing=False, more=ANALYSIS), encoding="utf-8")
     assert run_command(["rotors", str(case), "-q", "-o", str(folder / "out")]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
-    with xr.open_dataset(folder / "out" / "results.nc") as data:
-        yield Written(data, {rotor["name"]: rotor for rotor in summary["rotors"]})
+    # As a whole: each quantity that is looked at would be sought in the file anew.
+    return Written(
+        xr.load_dataset(folder / "out" / "results.nc"), {rotor["name"]: rotor for rotor in summary["rotors"]}
+    )
 
 
 def test_every_quantity_has_its_dimensions_and_unit(written: Written) -> None:

@@ -1,7 +1,6 @@
 """What `system` writes of a machine with nothing alike, each number held against the physics that it claims to show."""
 
 import json
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -68,7 +67,7 @@ class Written(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Written]:
+def written(tmp_path_factory: pytest.TempPathFactory) -> Written:
     folder = tmp_path_factory.mktemp("lopsided")
     case = folder / "lopsided.toml"
     speeds = ", ".join(f'"{speed} rpm"' for speed in SWEPT)
@@ -76,8 +75,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Written]:
     case.write_text(text, encoding="utf-8")
     assert run_command(["system", str(case), "-q", "-o", str(folder / "out")]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
-    with xr.open_dataset(folder / "out" / "results.nc") as data, xr.open_dataset(folder / "out" / "modes.nc") as modes:
-        yield Written(data, summary, modes)
+    # As a whole: each quantity that is looked at would be sought in the file anew.
+    data, modes = (xr.load_dataset(folder / "out" / name) for name in ("results.nc", "modes.nc"))
+    return Written(data, summary, modes)
 
 
 def test_every_quantity_has_its_dimensions_and_unit(written: Written) -> None:

@@ -5,7 +5,6 @@ The machine has nothing alike, so that a swapped axis, sign, bearing or gear pai
 
 import csv
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -81,7 +80,7 @@ class Written(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Written]:
+def written(tmp_path_factory: pytest.TempPathFactory) -> Written:
     folder = tmp_path_factory.mktemp("lopsided")
     case = folder / "lopsided.toml"
     transient = (
@@ -92,8 +91,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Written]:
     assert run_command(["run", str(case), "-q", "--no-pictures", "-o", str(folder / "out"), "--set", FEW_WHIRLS]) == 0
     assert run_command(["export", str(case), "-q", "--all-signals", "-o", str(folder / "out")]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
-    with xr.open_dataset(folder / "out" / "results.nc") as data, xr.open_dataset(folder / "out" / "modes.nc") as modes:
-        yield Written(data, summary, modes, folder / "out" / "exports")
+    # As a whole: each quantity that is looked at would be sought in the file anew.
+    data, modes = (xr.load_dataset(folder / "out" / name) for name in ("results.nc", "modes.nc"))
+    return Written(data, summary, modes, folder / "out" / "exports")
 
 
 def lines_of(signal: npt.NDArray[Any]) -> ComplexArray:

@@ -298,6 +298,8 @@ def face_equilibrium(
     meeting: BoolArray,
     owner: IntArray,
     force: FloatArray,
+    *,
+    touching: BoolArray | None = None,
 ) -> tuple[FloatArray, FaceLoads]:
     """Compressions (m,) at which the pairs of m meshes carry their loads, and the loaded faces.
 
@@ -309,6 +311,8 @@ def face_equilibrium(
         Mesh of each pair.
     force : ndarray, shape (m,)
         Load of each mesh along the line of action [N].
+    touching : ndarray of bool, shape (p, n), optional
+        Slices in contact where the search starts: those of a load alike.
 
     Raises
     ------
@@ -318,7 +322,9 @@ def face_equilibrium(
     meshes = force.size
     nearest = np.full(meshes, np.inf)
     np.minimum.at(nearest, owner, np.where(meeting, gap, np.inf).min(axis=1, initial=np.inf))
-    touching = _touching_alone(slices, base, gap, meeting, owner, force)
+    if touching is None:
+        touching = _touching_alone(slices, base, gap, meeting, owner, force)
+    touching = touching & meeting
     # Motions y of a mesh over its face: its compression, and minus its bodies' shared deflections in `shapes`.
     motions = np.column_stack([np.ones(slices.z.size), slices.shapes])
     size = motions.shape[1]
@@ -336,7 +342,7 @@ def face_equilibrium(
     for _ in range(_MOST_ROUNDS):
         flat = np.where(touching[changed], slices.flattening * slices.width, 0.0)
         fixed[changed], moved[changed] = _fields(slices, base[changed], gap[changed], touching[changed], motions)
-        slopes[changed] = np.einsum("pn,nk,pnm->pkm", flat, motions, motions - moved[changed])
+        slopes[changed] = (flat[:, :, None] * motions).swapaxes(1, 2) @ (motions - moved[changed])
         constants[changed] = (flat * (gap[changed] + fixed[changed])) @ motions
         stiffness = np.add.reduceat(slopes, first, axis=0)
         resisting, apart = stiffness.copy(), stiffness[:, 0, 0] <= 0.0
@@ -352,7 +358,7 @@ def face_equilibrium(
         # Pairs of meshes in which nothing changed stay as they are.
         whose = owner[unsettled]
         deep = motion[whose] @ motions.T
-        yielding = fixed[unsettled] + np.einsum("pnm,pm->pn", moved[unsettled], motion[whose])
+        yielding = fixed[unsettled] + _combined(moved[unsettled], motion[whose])
         touches = meeting[unsettled] & (deep - gap[unsettled] - yielding > 0.0)
         # At least the nearest slice carries.
         none = np.bincount(whose, touches.any(axis=1), meshes) == 0
@@ -376,8 +382,8 @@ def face_equilibrium(
     rate = rate / rate[:, :1]
     flat = np.where(touching, slices.flattening, 0.0)
     deep = motion[owner] @ motions.T
-    load = flat * (deep - gap - fixed - np.einsum("pnm,pm->pn", moved, motion[owner]))
-    tangent = flat * np.einsum("pnm,pm->pn", motions - moved, rate[owner])
+    load = flat * (deep - gap - fixed - _combined(moved, motion[owner]))
+    tangent = flat * _combined(motions - moved, rate[owner])
     width = slices.width
     loads = FaceLoads(load, tangent, width * load.sum(axis=1), width * tangent.sum(axis=1), touching)
     carried = np.bincount(owner, loads.force, meshes)
@@ -385,6 +391,11 @@ def face_equilibrium(
     if np.any(np.abs(carried - force) > rounding) or np.any(loads.line_load < -rounding.max()):
         raise ContactAccuracyError("the slices of the face do not balance the load; check the stiffness and the gaps")
     return motion[:, 0], loads
+
+
+def _combined(fields: FloatArray, parts: FloatArray) -> FloatArray:
+    """Sum m fields of each pair, (p, n, m), by parts (p, m)."""
+    return np.asarray((fields @ parts[:, :, None])[:, :, 0])
 
 
 def _touching_alone(

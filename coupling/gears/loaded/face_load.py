@@ -44,7 +44,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.contact.contact_law import ToothContact
-from coupling.gears.contact.face_slices import face_equilibrium, face_yield, lagrange
+from coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield, lagrange
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.loaded.transmission_error import LoadedMesh
@@ -180,7 +180,9 @@ class FaceContact:
         """From the middle of the face [m], shape (j,)."""
         self.over_face = lagrange(stations, self.z)
         """N_j at the slices, shape (s, j)."""
+        # Of the last approach: mesh force and mean deflection, and slices in contact. The next search starts there.
         self._last: tuple[float, float] | None = None
+        self._touching: npt.NDArray[np.bool_] | None = None
 
     @property
     def tooth_contact(self) -> ToothContact:
@@ -219,7 +221,8 @@ class FaceContact:
 
     def stiffness_of(self, load: FaceLoad) -> FloatArray:
         """Mesh stiffness at the phases of a load, all slices approaching alike, shared compliance included [N/m]."""
-        return np.asarray(1.0 / (1.0 / self._uniform_stiffness(load) + self._contact.shared_compliance))
+        stiffness = load.tangents @ self.uniform @ self.uniform
+        return np.asarray(1.0 / (1.0 / stiffness + self._contact.shared_compliance))
 
     def under_force(self, force: float, shape: FloatArray, phases: FloatArray | None = None) -> FaceLoad:
         """Solve static equilibrium under a force, at the phases of a mesh period.
@@ -239,28 +242,7 @@ class FaceContact:
             Where the touching slices do not converge.
         """
         prepared = self._mean_phases if phases is None else _Prepared(self, phases)
-        gap = prepared.gap - np.einsum("pnm,m->pn", prepared.basis, shape)
-        n = prepared.phases.size
-        compression, loads = face_equilibrium(
-            self._faces, prepared.base, gap, prepared.meeting, prepared.owner, np.full(n, force)
-        )
-        # The work of the loads on slices and shared deflection of the bodies is that on their sum.
-        deformation = np.where(loads.touching, compression[prepared.owner, None] - gap, 0.0)
-        width, shared = self._faces.width, self._contact.shared_compliance
-        energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
-        each = width * np.einsum("pnm,pn->pm", prepared.basis, loads.line_load)
-        line_loads = np.zeros((*prepared.positions.shape, self.z.size))
-        line_loads[prepared.owner, prepared.column] = loads.line_load
-        return FaceLoad(
-            force=force,
-            phases=prepared.phases,
-            deflection=compression + shared * force,
-            loads=np.add.reduceat(each, prepared.first, axis=0),
-            tangents=self._tangents(prepared, loads.touching),
-            energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
-            positions=prepared.positions,
-            pair_line_loads=line_loads,
-        )
+        return self._load(prepared, force, shape, *self._balanced(prepared, force, shape))
 
     def evenly(self, force: float, phases: FloatArray) -> FaceLoad:
         """Return static equilibrium under a force of flanks that approach evenly, without helix modifications.
@@ -298,12 +280,15 @@ class FaceContact:
         first = self._mean_phases.first_touch(shape)
         if target <= first:
             return MeanContactState(0.0, np.zeros(size), np.zeros((size, size)), 0.0)
-        force = self._guess(target - first)
+        force, prepared = self._guess(target - first), self._mean_phases
+        shared = self._contact.shared_compliance
         low, high = 0.0, np.inf
+        touching = self._touching
         for _ in range(_ROUNDS):
-            load = self.under_force(force, shape)
-            reached = float(load.deflection.mean())
-            slope = float(np.mean(1.0 / self._uniform_stiffness(load))) + self._contact.shared_compliance
+            compression, loads = self._balanced(prepared, force, shape, touching)
+            touching = loads.touching
+            reached = float(compression.mean()) + shared * force
+            slope = float(np.mean(1.0 / np.add.reduceat(loads.tangent, prepared.first))) + shared
             if abs(reached - target) <= _CONVERGED * abs(target) + 1e-22:
                 break
             low, high = (force, high) if reached < target else (low, force)
@@ -315,8 +300,42 @@ class FaceContact:
             raise ContactAccuracyError(
                 f"loaded tooth contact: no mesh force for a mean approach of {target:.6g} m; expected one"
             )
-        self._last = (force, target - first)
-        return self._state(load, force, target)
+        self._last, self._touching = (force, target - first), touching
+        return self._state(self._load(prepared, force, shape, compression, loads), force, target)
+
+    def _balanced(
+        self, prepared: _Prepared, force: float, shape: FloatArray, touching: npt.NDArray[np.bool_] | None = None
+    ) -> tuple[FloatArray, FaceLoads]:
+        """Compressions of the phases under a force, the shared compliance excluded, and the loaded faces."""
+        gap = prepared.gap - prepared.basis @ shape
+        forces = np.full(prepared.phases.size, force)
+        return face_equilibrium(
+            self._faces, prepared.base, gap, prepared.meeting, prepared.owner, forces, touching=touching
+        )
+
+    def _load(
+        self, prepared: _Prepared, force: float, shape: FloatArray, compression: FloatArray, loads: FaceLoads
+    ) -> FaceLoad:
+        """Return the load of what `_balanced` found."""
+        n = prepared.phases.size
+        gap = prepared.gap - prepared.basis @ shape
+        # The work of the loads on slices and shared deflection of the bodies is that on their sum.
+        deformation = np.where(loads.touching, compression[prepared.owner, None] - gap, 0.0)
+        width, shared = self._faces.width, self._contact.shared_compliance
+        energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
+        each = width * (loads.line_load[:, None] @ prepared.basis)[:, 0]
+        line_loads = np.zeros((*prepared.positions.shape, self.z.size))
+        line_loads[prepared.owner, prepared.column] = loads.line_load
+        return FaceLoad(
+            force=force,
+            phases=prepared.phases,
+            deflection=compression + shared * force,
+            loads=np.add.reduceat(each, prepared.first, axis=0),
+            tangents=self._tangents(prepared, loads.touching),
+            energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
+            positions=prepared.positions,
+            pair_line_loads=line_loads,
+        )
 
     def _state(self, load: FaceLoad, force: float, target: float) -> MeanContactState:
         shared, mean, uniform = self._contact.shared_compliance, self.face_mean, self.uniform
@@ -343,9 +362,6 @@ class FaceContact:
             return force * beyond / deep
         return self._contact.unloaded_mean_mesh_stiffness * beyond
 
-    def _uniform_stiffness(self, load: FaceLoad) -> FloatArray:
-        return np.asarray(load.tangents @ self.uniform @ self.uniform)
-
     def _tangents(self, prepared: _Prepared, touching: npt.NDArray[np.bool_]) -> FloatArray:
         """Sum w Bᵀ k_h (B - W) over the touching slices of the pairs of each phase, (n, m, m).
 
@@ -357,7 +373,7 @@ class FaceContact:
         flat = np.where(touching, faces.flattening, 0.0)
         pushed = flat[:, :, None] * motions
         yielding = face_yield(faces, prepared.base, touching, pushed)
-        each = faces.width * np.einsum("pnk,pnm->pkm", pushed, motions - yielding)
+        each = faces.width * (pushed.swapaxes(1, 2) @ (motions - yielding))
         whole = np.add.reduceat(each, prepared.first, axis=0)
         by_shapes = whole[:, size:, :size]
         shared = faces.shared[: faces.shapes.shape[1], : faces.shapes.shape[1]]
@@ -393,5 +409,5 @@ class _Prepared:
 
     def first_touch(self, shape: FloatArray) -> float:
         """Mean over the phases of the approach at which the first slice touches [m]."""
-        gap = np.where(self.meeting, self.gap - np.einsum("pnm,m->pn", self.basis, shape), np.inf).min(axis=1)
+        gap = np.where(self.meeting, self.gap - self.basis @ shape, np.inf).min(axis=1)
         return float(np.minimum.reduceat(gap, self.first).mean())

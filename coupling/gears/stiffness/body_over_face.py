@@ -154,6 +154,7 @@ def _elastic_energy(inner: float, width: float, poisson_ratio: float, parity: in
     return np.asarray(sum(modulus * (strain.T * measure) @ strain for modulus, strain in strains), dtype=np.float64)
 
 
+@lru_cache(maxsize=8)
 def _legendre(points: int, count: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Points and weights of Gauss's quadrature with Legendre's polynomials and their slopes there, (points, count)."""
     x, weight = np.polynomial.legendre.leggauss(points)

@@ -1,11 +1,12 @@
 """Sweep figures: levels of sensors and of the sound over the swept key, and a waterfall for each sensor."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -30,6 +31,9 @@ from gearwhine.figures.style import (
 )
 from gearwhine.output import file_stems
 from gearwhine.output.sections import arrowed
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _MOST_WATERFALLS = 12  # of a grid over several keys
 _LOUD = 40.0  # levels below the highest that have colours of their own [dB]
