@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
+from scipy.signal import resample_poly
 
 from coupling import amplitude_spectrum
 from coupling.signals import decibels
@@ -226,8 +227,6 @@ _PERIODS = 6  # of the mesh that are drawn
 _FINE = 40  # points of a mesh period that a curve has at least
 _SMOOTH = 24  # the same of an orbit
 _EDGE = 64  # samples on either side that a curve between samples is made of
-_TAPS = 10  # of them, to which its filter reaches
-_BETA = 8.0  # of Kaiser's window
 _ROW, _ROW_GAP = 42.0, 18.0  # height of a row of panels, and between two for axis and title [mm of paper]
 _FIRST = 5.0  # above the first row, for its titles [mm of paper]
 
@@ -274,24 +273,11 @@ def _refined(values: FloatArray, factor: int) -> FloatArray:
     # Mirrored about its ends, so that these are met without ringing.
     begin, after = values[1 : reach + 1][::-1], values[-reach - 1 : -1][::-1]
     whole = np.concatenate([2.0 * values[:1] - begin, values, 2.0 * values[-1:] - after])
-    beside = [(_TAPS, _TAPS), *[(0, 0)] * (values.ndim - 1)]
-    # Not scipy.signal.resample_poly, which is the same: its import takes as long as some ten figures.
-    windows = np.lib.stride_tricks.sliding_window_view(np.pad(whole, beside), 2 * _TAPS + 1, axis=0)
-    fine = np.moveaxis(windows @ _interpolation(factor), -1, 1).reshape(-1, *values.shape[1:])
-    found = fine[factor * reach : factor * (reach + len(values) - 1) + 1]
+    fine = resample_poly(whole, factor, 1, axis=0, window=("kaiser", 8.0))
+    found = np.array(fine[factor * reach : factor * (reach + len(values) - 1) + 1])
     # The filter's gain is one to five digits; the samples stand as they are.
     found[::factor] = values
     return found
-
-
-def _interpolation(factor: int) -> FloatArray:
-    """Shares of `_TAPS` samples on either side in the values after a sample, shape (2 _TAPS + 1, factor)."""
-    places = np.arange(-_TAPS * factor, _TAPS * factor + 1)
-    taps = np.sinc(places / factor) * np.kaiser(places.size, _BETA)
-    taps *= factor / taps.sum()
-    # A value that is k of the steps to the next sample beyond one takes tap k - factor * j of the j-th from there.
-    taken = np.arange(factor) + factor * np.arange(2 * _TAPS, -1, -1)[:, None]
-    return np.asarray(np.pad(taps, (0, factor - 1))[taken])
 
 
 def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, float], *, note: str = "") -> Figure:
