@@ -27,7 +27,11 @@ matrices, of which that of any other basis differs by second order.
 *Operating point*: where the tangent of a rolling bearing and the gap of flanks are those of the static equilibrium,
 these, and with them k, c, e and the shuttling, change with the deflections there. Their derivatives by bearing
 deflections and approaches of flanks, central differences of the laws, are the gradient of the output by the static
-coordinates; its adjoint (:mod:`coupling.statics.sensitivity`) gives the rest of the derivative.
+coordinates; its adjoint (:mod:`coupling.statics.sensitivity`) gives the rest of the derivative. The energy of the
+flanks has continuous first derivatives, so e and the shuttling have a derivative by the gap at every phase, to which
+short steps converge. k is a second derivative: at each phase it has a step where a slice of the face comes into touch.
+Its mean over a mesh period is continuous, its mean over some phases is constant but for such steps. So its differences
+are taken over ten times as many phases and over many steps, and are good to a tenth of the derivative by a tilt.
 
 A first-order change is right for steps that move no resonance past the line. For others the response is solved anew
 with the matrices changed to first order (:meth:`LineModel.stepped_housing`), which needs no new modes.
@@ -70,7 +74,9 @@ ComplexArray = npt.NDArray[np.complex128]
 _HARMONICS = 12  # of a mesh, at most
 _POINTS = 200  # phases of a mesh period, as in the mean mesh
 _SAME = 1e-9  # relative difference of frequencies that are one
-_GAP_STEP = 0.03  # of the flanks' compression: slices that come into touch one by one change the stiffness in steps
+_GAP_STEP = 1e-6  # of the flanks' compression, in the differences of transmission error and shuttling
+_STIFFNESS_STEP = 0.01  # likewise in those of k, which has a step where a slice comes into touch at one of the phases
+_STIFFNESS_POINTS = 2000  # phases of a mesh period in those of k
 _BEARING_STEP = 1e-4  # of a bearing's deflection, in the differences of its tangent
 _SHAFT_STEP = 1e-5  # of the shaft's length, in the differences of its motions
 
@@ -366,13 +372,13 @@ class LineModel:
         contacts = self.machine.system.contacts
         return {n: self._error(n, self._mesh(n, contacts[n].contact)) for n in self.loaded}
 
-    def _mesh(self, number: int, law: ToothContact) -> LoadedMesh:
+    def _mesh(self, number: int, law: ToothContact, points: int = _POINTS) -> LoadedMesh:
         """Mesh of a contact by some law under its mean force."""
         assert self.contact.force is not None
         force = float(self.contact.force[number])
         if law.hunting_period > 1:
             return hunting_period_mesh(law, force)
-        return loaded_transmission_error(law, force, mesh_period_phases(law, _POINTS))
+        return loaded_transmission_error(law, force, mesh_period_phases(law, points))
 
     def _error(self, number: int, mesh: LoadedMesh) -> ComplexArray:
         """Harmonics of the transmission error of a contact at t = 0 [m], shape (harmonics,)."""
@@ -399,23 +405,28 @@ class LineModel:
         assert self.contact.force is not None
         system, faces = self.machine.system, law.faces
         rate, force = abs(system.contacts[number].rate), float(self.contact.force[number])
-        step = _GAP_STEP * force / float(self.contact.stiffness[number])
+        compression = force / float(self.contact.stiffness[number])
         over = lagrange(face_stations(faces.face_width), faces.z)
         stiffness = np.zeros(FACE_STATIONS)
         error = np.zeros((FACE_STATIONS, _HARMONICS), dtype=np.complex128)
         shuttling = np.zeros((FACE_STATIONS, _HARMONICS, system.size), dtype=np.complex128)
+
+        def moved(station: int, step: float) -> ToothContact:
+            found = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
+            return found.back_flanks if back else found
+
         for station in range(FACE_STATIONS):
             for way in (1.0, -1.0):
-                moved = replace(law, faces=replace(faces, gap=faces.gap + way * step * over[:, station]))
-                moved = moved.back_flanks if back else moved
-                part = way / (2.0 * step)
-                mesh = self._mesh(number, moved)
-                stiffness[station] += part * mesh.mean_mesh_stiffness
-                error[station] += part * self._error(number, mesh)
-                for load in self.machine.shuttling(number, moved, force)[1]:
+                step = way * _STIFFNESS_STEP * compression
+                far = self._mesh(number, moved(station, step), _STIFFNESS_POINTS)
+                stiffness[station] += far.mean_mesh_stiffness / (2.0 * step)
+                step = way * _GAP_STEP * compression
+                near = moved(station, step)
+                error[station] += self._error(number, self._mesh(number, near)) / (2.0 * step)
+                for load in self.machine.shuttling(number, near, force)[1]:
                     order = round(load.frequency / (2.0 * np.pi * rate))
                     if order <= _HARMONICS:
-                        shuttling[station, order - 1] += part * load.amplitude
+                        shuttling[station, order - 1] += load.amplitude / (2.0 * step)
         return _GapRates(stiffness, error, shuttling)
 
     def _by_gap(self, line: Line, number: int) -> FloatArray:

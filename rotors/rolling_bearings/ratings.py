@@ -15,7 +15,8 @@ with λ = 0.95 for grooves and 1 for self-aligning balls, λν = 0.83. b_m = 1.3
 rollers and 1.15 for spherical ones. Within ISO's limits the standard takes grooves of 0.52 D for all, and so does the
 rating here; wider ones are rated by their own.
 
-**Ratings of one contact** (ISO/TS 16281:2008), by which the loads of the elements are weighed,
+**Ratings of one contact** (ISO/TS 16281:2008), by which the loads of the elements are weighed, t with the grooves as
+they are,
 
     balls    Q_ci = C / (0.407 Z cos α i^{0.7}) [1 + (1.044 t)^{10/3}]^{3/10}
              Q_co = C / (0.389 Z cos α i^{0.7}) [1 + (1.044 t)^{−10/3}]^{3/10}
@@ -61,10 +62,10 @@ def dynamic_rating(row: Row, rows: int = 1) -> float:
     gamma, count, rows = row.gamma, row.count, rows * _diagonals(row)
     cosine = math.cos(row.contact_angle)
     if isinstance(row, BallRow):
-        f_i, _ = _grooves(row)
+        f_i, f_o = _rated_grooves(row)
         scale = 98.0665 * 0.41 * (1.0 if row.self_aligning else 0.95)
         shape = gamma**0.3 * (1.0 - gamma) ** 1.39 * (1.0 + gamma) ** (-1.0 / 3.0)
-        both = (1.0 + (1.04 * _ball_ratio(row)) ** (10.0 / 3.0)) ** -0.3
+        both = (1.0 + (1.04 * _ball_ratio(row.gamma, f_i, f_o)) ** (10.0 / 3.0)) ** -0.3
         factor = 1.3 * scale * both * shape * (2.0 * f_i / (2.0 * f_i - 1.0)) ** 0.41
         diameter = 1e3 * row.ball_diameter
         size = diameter**1.8 if diameter <= _LARGE_BALL else 3.647 * diameter**1.4
@@ -82,7 +83,8 @@ def contact_ratings(row: Row, dynamic: float, rows: int = 1) -> tuple[float, flo
     share, rows = row.count * math.cos(row.contact_angle), rows * _diagonals(row)
     if isinstance(row, BallRow):
         share *= rows**0.7
-        ratio, power, mean = 1.044 * _ball_ratio(row), 10.0 / 3.0, 0.3
+        ratio = 1.044 * _ball_ratio(row.gamma, row.inner_groove, row.outer_groove)
+        power, mean = 10.0 / 3.0, 0.3
         inner, outer = 0.407 * share, 0.389 * share
     else:
         share *= rows ** (7.0 / 9.0) * _EDGE_LOSS
@@ -95,8 +97,8 @@ def _diagonals(row: Row) -> int:
     return 2 if isinstance(row, FourPointRow) else 1
 
 
-def _grooves(row: BallRow) -> tuple[float, float]:
-    """Grooves with which a row is rated."""
+def _rated_grooves(row: BallRow) -> tuple[float, float]:
+    """Grooves of the dynamic rating C."""
     if row.self_aligning:
         return max(row.inner_groove, _WIDEST_OUTER), row.outer_groove
     inner = _RATED_GROOVE if row.inner_groove <= _WIDEST_INNER else row.inner_groove
@@ -104,9 +106,7 @@ def _grooves(row: BallRow) -> tuple[float, float]:
     return inner, outer
 
 
-def _ball_ratio(row: BallRow) -> float:
-    f_i, f_o = _grooves(row)
-    gamma = row.gamma
+def _ball_ratio(gamma: float, f_i: float, f_o: float) -> float:
     groove = f_i / f_o * (2.0 * f_o - 1.0) / (2.0 * f_i - 1.0)
     return float(((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * groove**0.41)
 

@@ -93,7 +93,7 @@ def test_ball_bearing_under_combined_load(
     tilt: float | None,
     life: float,
 ) -> None:
-    """Displacements to 1e-4; lives to 0.5 %, the radial one without clearance to 2e-5."""
+    """Displacements and lives to 1e-4, the life under a moment alone to 3e-4: some 7e-5 of the balls' loads."""
     row = BallRow(7, 11.5e-3, 43.5e-3, inner_groove=0.52, outer_groove=0.53, clearance=1e-6 * clearance)
     lever = 1.0 + (0.52 - 0.5) * 11.5 / (0.5 * 43.5)
     bearing = RollingBearing([row])
@@ -108,8 +108,8 @@ def test_ball_bearing_under_combined_load(
         if printed is not None:
             published(MASTA, f"{what}, {under}", printed, found, unit, rel=1e-4)
     million = 1e-6 * reference_revolutions(state, 23400.0)
-    plain = load == (1000.0, 0.0, 0.0) and clearance == 0.0
-    published(MASTA, f"reference life, {under}", life, million, "million revolutions", rel=2e-5 if plain else 5e-3)
+    alone = load[:2] == (0.0, 0.0)
+    published(MASTA, f"reference life, {under}", life, million, "million revolutions", rel=3e-4 if alone else 1e-4)
 
 
 # Of table 7.4: epsilon, F_r tan(alpha) / F_a, J_r and J_a; 1.67 stands for 5/3.
