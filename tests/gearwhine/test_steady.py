@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import gearwhine as gw
 from gearwhine.case import CaseError, load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.from_case.gear_pairs import solve_gears
@@ -66,6 +67,13 @@ def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytes
         assert data["branch_peak_force"].attrs["units"] == "N"
         moduli = np.hypot(*data["floquet_multiplier"].values[0].T)
         assert moduli.max() == pytest.approx(motion["largest_multiplier"], rel=1e-12)
+
+
+def test_a_branch_shows_parting_teeth_only_where_drive_flanks_part() -> None:
+    """The back flanks are apart all the time, which says nothing."""
+    study = gw.load("spur-pair", [*FEW, BALANCED, "sweep.speed=['5000 rpm', '5200 rpm']"])
+    figure = study.steady(curve=True, points=3).plot("steady-curve")
+    assert [axes.get_ylabel() for axes in figure.axes] == ["largest mesh force [N]", "compression, a.c. rms [µm]"]
 
 
 def test_a_branch_that_is_left_is_told_on_screen() -> None:
