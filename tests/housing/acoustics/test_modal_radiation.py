@@ -29,7 +29,7 @@ def radiation() -> HousingRadiation:
     surface = sphere(4)
     modal = np.ascontiguousarray(at_corners(surface, harmonics).real)
     labels = ("sphere",) * len(surface.triangles)
-    return HousingRadiation("boundary-elements", (BoundaryElements(surface, UNIT),), (modal,), labels)
+    return HousingRadiation("boundary-elements", (BoundaryElements(surface, UNIT),), (modal,), labels, ())
 
 
 @pytest.fixture(scope="module")
