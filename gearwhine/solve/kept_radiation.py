@@ -12,7 +12,7 @@ from gearwhine.case import Case
 from gearwhine.output.files import source_digest
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
-from housing.acoustics.modal_radiation import POINTS, ModalRadiation
+from housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from housing.acoustics.radiation import HousingRadiation
 from housing.storage.netcdf import content_key
 
@@ -57,7 +57,9 @@ def kept_radiation(
     if record.notes.get(_NOTE) == key:
         return ModalRadiation.of_arrays(record.extras), housing
     found = ModalRadiation.solve(radiation, places, *between, points=POINTS, each=partial(_each, progress=progress))
-    extras = {**record.extras, **found.arrays()}
+    # All of an earlier table go: its microphones must not stay where there are none now.
+    others = {name: array for name, array in record.extras.items() if name not in ARRAYS}
+    extras = others | found.arrays()
     kept = replace(record, extras=extras, notes={**record.notes, _NOTE: key})
     return found, replace(housing, record=kept, source_holds=False)
 

@@ -30,6 +30,16 @@ Each = Callable[[Solve, Sequence[float]], Iterable[tuple[FloatArray, FloatArray,
 _TWO_PI = 2.0 * np.pi
 POINTS = 41
 """Frequencies at which the matrices are solved; every second one is the coarser table of the estimate."""
+ARRAYS = (
+    "radiation_frequency",
+    "radiation_resistance",
+    "surface_resistance",
+    "radiation_interior_residual",
+    "point_pressure",
+    "point_delay",
+)
+"""Names of the labelled arrays of a table; one without points has not the last two."""
+
 _AXIS = "radiation_frequency"
 _MATRIX = (_AXIS, "coordinate", "other_coordinate")
 

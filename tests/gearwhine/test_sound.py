@@ -235,6 +235,14 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
     again = solve_housing(study.case, folder=tmp_path / "out")
     monkeypatch.setattr("gearwhine.solve.kept_radiation.ModalRadiation.solve", None)  # needs no solution
     assert heard(5, again)[0] == interpolated
+    deaf = gw.load("small-gearbox", low).case
+    monkeypatch.undo()
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.POINTS", 5)
+    without, same = kept_radiation(deaf, again, build_radiation(deaf, again), np.zeros((0, 3)), (900.0, 2400.0))
+    assert len(without.delays) == 0
+    read, _ = kept_radiation(deaf, same, None, np.zeros((0, 3)), (900.0, 2400.0))
+    assert len(read.delays) == 0  # no microphones of the table before
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.ModalRadiation.solve", None)
     louder = gw.load("small-gearbox", low | {"acoustics.mesh_size": "33 mm"}).case
     with pytest.raises(TypeError):
         kept_radiation(louder, again, build_radiation(louder, again), np.zeros((0, 3)), (20.0, 3000.0))

@@ -8,7 +8,7 @@ from scipy.special import spherical_jn, spherical_yn
 
 from housing.acoustics.boundary_elements import BoundaryElements
 from housing.acoustics.medium import Medium
-from housing.acoustics.modal_radiation import ModalRadiation
+from housing.acoustics.modal_radiation import ARRAYS, ModalRadiation
 from housing.acoustics.radiation import HousingRadiation
 from housing.errors import HousingError
 from tests.housing.acoustics.surfaces import at_corners, sphere
@@ -80,6 +80,7 @@ def test_a_weak_radiator_has_a_large_estimate(table):
 def test_arrays_hold_the_table_bit_for_bit(table):
     for given in (table, replace(table, pressure=table.pressure[:, :0], delays=table.delays[:0])):
         again = ModalRadiation.of_arrays(given.arrays())
+        assert tuple(given.arrays()) == ARRAYS[: 6 if len(given.delays) else 4]
         for name in ("frequencies", "resistance", "surface_resistance", "pressure", "delays", "interior_residual"):
             np.testing.assert_array_equal(getattr(again, name), getattr(given, name))
 
