@@ -264,7 +264,7 @@ def test_the_table_carries_what_the_slices_carry_beside_a_deep_spall(degrees: fl
 
 
 def test_what_a_table_misses_beside_a_spall_is_what_the_slices_miss() -> None:
-    """A slice is in the pit or out of it: the table, of twice the slices, is no farther from few than they from many."""
+    """A slice is in the pit or out of it: the table of twice as many is no farther from few than both from many."""
     middle = PINION.roll_angle(PINION.pitch_radius)
     pair = helical(14.0, faults=(Spall(3, middle - 0.02, middle + 0.03, 0.2e-3),))
     phases = np.arange(3.552, 3.72, 0.013)
