@@ -14,6 +14,7 @@
 
 The figures of Zhang and of Kumar are as a public MATLAB program quotes them (github.com/Legaspiiii/TRB); neither text
 was at hand. The paper's own model, written down from that program, meets the outer loads of its table to every digit.
+The book was not at hand either: each of its values is checked against the integral that it must be.
 """
 
 import math
