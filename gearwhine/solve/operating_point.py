@@ -332,7 +332,7 @@ def _sound_warnings(ranked: LoadSensitivity | None) -> Iterator[dict[str, Any]]:
     if ranked is None or not ranked.loudest_lines:
         return
     # The acoustics' kernels are for these cases alone.
-    from gearwhine.solve.sound_proofs import doubts
+    from gearwhine.solve.sound.proofs import doubts
 
     for one in ranked.loudest_lines:
         yield from doubts(one.sound, "a mesh harmonic")

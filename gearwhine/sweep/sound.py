@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
-from gearwhine.solve.sound_proofs import doubts, interior_pressure, power_balance_db
+from gearwhine.solve.sound.proofs import doubts, interior_pressure, power_balance_db
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
 from housing.acoustics.modal_radiation import POINTS, ModalRadiation
@@ -67,12 +67,12 @@ def add_sound(
     Raises
     ------
     CaseError, housing.HousingError
-        As :func:`gearwhine.solve.sound.solve_sound`; where the powers of a line disagree, if they do at every point. A
-        single point is left without sound, with a warning.
+        As :func:`gearwhine.solve.sound.solution.solve_sound`; where the powers of a line disagree, if they do at
+        every point. A single point is left without sound, with a warning.
     """
-    from gearwhine.solve.kept_radiation import kept_radiation
-    from gearwhine.solve.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
-    from gearwhine.solve.sound import build_radiation, highest_frequency, microphones_of
+    from gearwhine.solve.sound.kept_radiation import kept_radiation
+    from gearwhine.solve.sound.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
+    from gearwhine.solve.sound.solution import build_radiation, highest_frequency, microphones_of
 
     if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):
         message = "the sound of a sweep is left out: its housing, materials or acoustics change from point to point"

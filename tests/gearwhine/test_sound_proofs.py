@@ -10,9 +10,9 @@ from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing
 
 import gearwhine as gw
 from gearwhine.case import swept_keys
-from gearwhine.solve.motion_lines import MotionLines
-from gearwhine.solve.sound import build_radiation, solve_sound
-from gearwhine.solve.sound_proofs import interior_pressure, power_balance_db
+from gearwhine.solve.sound.motion_lines import MotionLines
+from gearwhine.solve.sound.proofs import interior_pressure, power_balance_db
+from gearwhine.solve.sound.solution import build_radiation, solve_sound
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing import HousingError

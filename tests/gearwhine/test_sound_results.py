@@ -14,9 +14,9 @@ from gearwhine.results import chapters_of, run
 from gearwhine.results.first_page import first_page
 from gearwhine.results.sound import SOUND, left_out_sentence, sections, sound_document
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.motion_lines import LeftOut
-from gearwhine.solve.sound import SolvedSound, SoundLine
-from gearwhine.solve.sound_proofs import doubts
+from gearwhine.solve.sound.motion_lines import LeftOut
+from gearwhine.solve.sound.proofs import doubts
+from gearwhine.solve.sound.solution import SolvedSound, SoundLine
 from housing.acoustics.boundary_elements import SoundField
 from housing.acoustics.radiation import HousingRadiation
 

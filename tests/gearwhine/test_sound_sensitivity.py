@@ -17,10 +17,10 @@ from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes, sound
-from gearwhine.solve.harmonic_sound import HarmonicSound
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
 from gearwhine.solve.load_sensitivity import case_changes, housing_fields
+from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 from housing.acoustics.radiation import HousingRadiation
 from housing.acoustics.sound_levels import a_weighting
 from meshes import Mesh

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from coupling.linear.line_outputs import SoundPower
 from coupling.linear.mesh_harmonics import Line, LineModel, Response
-from gearwhine.solve.motion_lines import AUDIBLE, pulsating_efficiency
+from gearwhine.solve.sound.motion_lines import AUDIBLE, pulsating_efficiency
 from housing.acoustics.power_gradient import PowerGradient
 from housing.acoustics.radiation import HousingRadiation, RadiatedSound
 from housing.acoustics.sound_levels import a_weighting
