@@ -81,8 +81,8 @@ KernelArguments = tuple[FloatArray, int]
 
 _MEAN_PHASES = 256
 """Phases for the mean stiffness of helical teeth, whose mesh stiffness is smooth."""
-_TILT_PHASES = 96
-"""Phases at which the tilt of the bodies is solved; a spline between them."""
+_TILT_PHASES, _TILT_HARMONICS, _TILT_KNOTS = 128, 20, 80
+"""Phases at which the tilt of the bodies is solved, mesh harmonics of it that are kept, and knots of their spline."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -279,12 +279,12 @@ class ToothContact:
             faces, slices.base, slices.gap, slices.meeting, owner, force, touching=loads.touching
         )
         deflection = tilting - even
-        return PiecewiseCubic(
-            np.append(phases, 1.0),
-            piecewise.unit_coefficients(
-                CubicSpline(np.append(phases, 1.0), np.append(deflection, deflection[0]), bc_type="periodic")
-            ),
-        )
+        # Slices come into touch one by one: harmonics beyond these are their steps.
+        harmonics = np.fft.rfft(deflection)[: _TILT_HARMONICS + 1]
+        values = np.fft.irfft(harmonics, _TILT_KNOTS) * (_TILT_KNOTS / phases.size)
+        knots = np.arange(_TILT_KNOTS + 1.0) / _TILT_KNOTS
+        curve = CubicSpline(knots, np.append(values, values[0]), bc_type="periodic")
+        return PiecewiseCubic(knots, piecewise.unit_coefficients(curve))
 
     @property
     def entering(self) -> FloatArray:
