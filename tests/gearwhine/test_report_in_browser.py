@@ -360,6 +360,15 @@ def test_curves_are_drawn_and_zoom(browser: Browser, pages: dict[str, Path]) -> 
     browser.value("document.querySelector('.plot').scrollIntoView({block: 'start'})")
     browser.wait_for("document.querySelector('.plot .scatterlayer path')")
     browser.wait_for("document.querySelectorAll('.plot .heatmaplayer image').length === 1")
+    # The name of the axis has its unit on one line, and stands clear of the numbers.
+    title = browser.value("document.querySelector('.plot').layout.yaxis.title.text")
+    assert title == "peak amplitude of acceleration<br>[m/s²]"
+    right, left = browser.value(
+        "(() => { const plot = document.querySelector('.plot'), box = (one) => one.getBoundingClientRect();"
+        " const numbers = [...plot.querySelectorAll('.ytick text')].map((one) => box(one).left);"
+        " return [box(plot.querySelector('.ytitle')).right, Math.min(...numbers)]; })()"
+    )
+    assert right <= left + 1.0
     # No button sends the data away.
     titles = browser.value("[...document.querySelectorAll('.modebar-btn')].map((one) => one.dataset.title)")
     assert "Zoom" in titles

@@ -176,14 +176,14 @@
     const { x, y, z, curves, value, axes, logarithmic } = JSON.parse(read.get(data(frame)));
     const ink = dark.matches ? "#e3e7ea" : "#1d2125";
     const rule = dark.matches ? "#343b42" : "#e4e7ea";
-    const axis = { gridcolor: rule, zerolinecolor: rule, linecolor: ink, exponentformat: "power" };
+    const axis = { gridcolor: rule, zerolinecolor: rule, linecolor: ink, exponentformat: "power", automargin: true };
     const layout = {
       font: { family: "system-ui, sans-serif", size: 13, color: ink },
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      margin: { l: 84, r: 16, t: 36, b: 52 }, hovermode: "closest",
+      margin: { l: 48, r: 16, t: 36, b: 52 }, hovermode: "closest",
       modebar: { bgcolor: "rgba(0,0,0,0)", color: "#8a9097", activecolor: ink },
       xaxis: { ...axis, title: { text: axes[0] } },
-      yaxis: { ...axis, title: { text: lines(curves ? value : axes[1]) }, type: curves && logarithmic ? "log" : "linear" },
+      yaxis: { ...axis, title: { text: lines(curves ? value : axes[1]), standoff: 6 }, type: curves && logarithmic ? "log" : "linear" },
       legend: { orientation: "h", y: 1.14, x: 0 },
     };
     let traces;

@@ -11,6 +11,7 @@ import base64
 import gzip
 import hashlib
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -21,6 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.output.report.elements import NO_BREAK, in_cell
 from gearwhine.output.sections import Curves, Section, arrowed
 
 _RESULTS = "results.nc"
@@ -28,6 +30,7 @@ _POINTS = 4000  # of a curve; of more, the largest of each stretch is shown
 _CELLS = 240, 600  # of colours over two axes
 _DIGITS = 4
 _LIBRARIES = {"model-viewer": "model-viewer.min.js", "plotly": "plotly-cartesian.min.js"}
+_EXPONENT, _RAISED = re.compile(r"(?<=[A-Za-z])-?\d"), str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LIMIT = "trusted_below_hz"  # attribute: values along the abscissa end there
 
 
@@ -90,7 +93,7 @@ class Scripts:
             return ""
         entries = "".join(
             f'<li id="{identifier}"><button type="button" data-shape="{number}" '
-            f'data-picture="{escape(shape.name)}">{escape(arrowed(" ".join(shape.title.split())))}</button></li>\n'
+            f'data-picture="{escape(shape.name)}">{in_cell(" ".join(shape.title.split()))}</button></li>\n'
             for number, (identifier, shape) in enumerate(zip(identifiers, self.shapes, strict=True))
         )
         return (
@@ -189,7 +192,13 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
 def _named(array: Any, otherwise: str) -> str:
     unit = array.attrs.get("units", "")
     name = str(array.attrs.get("long_name", otherwise)).rstrip(".")
-    return f"{name} [{unit}]" if unit and unit != "1" else name
+    return f"{name} [{_read(unit)}]" if unit and unit != "1" else name
+
+
+def _read(unit: str) -> str:
+    """Return a unit as it is read, on one line: ``m s-2`` has a raised exponent."""
+    raised = _EXPONENT.sub(lambda found: found[0].translate(_RAISED), unit)
+    return raised.replace(" ", NO_BREAK)
 
 
 def _listed(values: npt.NDArray[np.float64]) -> list[float | None]:
