@@ -101,6 +101,9 @@ def test_names_stand_once_and_marks_whole_on_a_branch_of_two_pairs() -> None:
         motions=[SimpleNamespace(speed=150.0)],
     )
     figure = draw_response_curve("Branch", solved, curve)
+    assert figure.texts[1].get_text() == "955 to 1910 rpm; dash-dotted: speed of operation"
+    solved.motions[0].speed = 250.0
+    assert draw_response_curve("Branch", solved, curve).texts[1].get_text() == "955 to 1910 rpm"
     named = {axes.get_ylabel(): axes.get_legend() for axes in figure.axes}
     texts = {name: [text.get_text() for text in one.get_texts()] for name, one in named.items() if one is not None}
     assert texts == {"compression, a.c. rms [µm]": ["a → b", "b → c"], "acceleration, rms [m/s²]": ["top", "end"]}

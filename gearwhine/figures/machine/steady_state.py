@@ -78,7 +78,10 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
     if solved.branch_rms:
         quantities.append(("acceleration, rms [m/s²]", solved.branch_rms))
     speeds = RPM * np.abs(curve.speeds)
-    told += [f"{speeds.min():.0f} to {speeds.max():.0f} rpm", "dash-dotted: speed of operation"]
+    operation = RPM * abs(solved.motions[0].speed)
+    told.append(f"{speeds.min():.0f} to {speeds.max():.0f} rpm")
+    if speeds.min() <= operation <= speeds.max():
+        told.append("dash-dotted: speed of operation")
     if curve.ending != "end":
         told.append(f"left at {speeds[-1]:.4g} rpm")
     foot = FOOT + legend_height(1)
@@ -88,7 +91,7 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
     for number, (what, lines) in enumerate(reversed(quantities)):
         axes = panel(figure, foot + number * (_HEIGHT + _BETWEEN), _HEIGHT)
         _draw_branch(axes, speeds, lines, curve)
-        axes.axvline(RPM * abs(solved.motions[0].speed), color=INK, lw=0.8, ls="-.", zorder=1)
+        axes.axvline(operation, color=INK, lw=0.8, ls="-.", zorder=1)
         axes.set(xlim=(speeds.min(), speeds.max()), ylabel=what)
         axes.set_ylim(bottom=0.0)
         if number:
