@@ -279,7 +279,10 @@ def test_shapes_move_pause_and_are_chosen(browser: Browser, pages: dict[str, Pat
     assert browser.requests() == []
 
 
-SETTLED = "new Promise((done) => requestIdleCallback(() => requestIdleCallback(done)))"
+# A page that draws all the time has no idle time, hence the limit.
+SETTLED = """
+new Promise((done) => requestIdleCallback(() => requestIdleCallback(done, { timeout: 500 }), { timeout: 500 }))
+"""
 RUNNING = "[typeof window.Plotly !== 'undefined', customElements.get('model-viewer') !== undefined]"
 UNPACKED = """
 (() => { const counts = { count: 0 }, real = window.DecompressionStream;

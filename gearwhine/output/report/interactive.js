@@ -31,8 +31,11 @@
     script.textContent = read.get(libraries[name]);
     document.head.append(script);
   }
-  const idle = window.requestIdleCallback
-    ? () => new Promise((done) => requestIdleCallback(done)) : () => new Promise((done) => setTimeout(done, 200));
+  // A page that draws all the time has no idle time at all: the wait ends.
+  const wait = 500; // ms
+  const idle = () => new Promise((done) => {
+    if (window.requestIdleCallback) requestIdleCallback(done, { timeout: wait }); else setTimeout(done, wait);
+  });
 
   // ---- tables: a click on a heading sorts, and once more turns the order round; a button copies.
   const number = (text) => {
