@@ -86,8 +86,8 @@ def pair_on(
 def test_a_slender_pinion_between_its_bearings(published: Published, remark: Remark, size: float) -> None:
     """K_Hβ = λb (cosh λb + cos λb) / (sinh λb + sin λb), λ = (c / 4 E I)^{1/4}: c δ over the mean of both reactions.
 
-    A face of 1 m on a section of 60 mm, so that shear takes no part, with the torque in the middle, where it twists least; the wheel is 9 000 times as stiff. The shape of the deflection is a polynomial
-    through five stations.
+    A face of 1 m on a section of 60 mm, so that shear takes no part, with the torque in the middle, where it twists
+    least; the wheel is 9 000 times as stiff. The shape of the deflection is a polynomial through five stations.
     """
     remark(
         BENT,
@@ -174,9 +174,9 @@ def test_deflection_of_pinion_and_shaft_by_iso_6336(
     remark(
         METHOD_C,
         "An approximation of the norm. Its slope by the offset s of the pinion grows as s, that of a beam as "
-        "s (1 − 4 s²/l²), 64 % of it at s/l = 0.3. Ours is above the norm without offset, as its pinion "
-        "twists as a circle near the root, and the norm's as the reference circle. The load that grows at one end bends that end away, which the norm leaves out; it "
-        "takes 0.02 to 0.10 off K_Hβ.",
+        "s (1 − 4 s²/l²), 64 % of it at s/l = 0.3. Ours is above the norm without offset, as its pinion twists as a "
+        "circle near the root, and the norm's as the reference circle. The load that grows at one end bends that end "
+        "away, which the norm leaves out; it takes 0.02 to 0.10 off K_Hβ.",
     )
     width, apart, shaft, per_width, line_load = 0.06, 0.2, 0.055, 1.7e10, 2e5
     reference = MODULE * PINION
