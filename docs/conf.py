@@ -26,7 +26,7 @@ author = "The Gearwhine developers"
 release = gearwhine.__version__
 language = "en"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton", "mathml"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton", "mathml", "navigation"]
 
 root_doc = "docs/index"
 # Nothing else of the tree is read, whatever lies in it.

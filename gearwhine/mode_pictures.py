@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.load_sensitivity import LoadSensitivity
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
-    from gearwhine.solve.sound import SolvedSound
+    from gearwhine.solve.sound.solution import SolvedSound
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey
     from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
-    from gearwhine.solve.sound import SolvedSound
+    from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.solve.steady_state import SolvedSteady
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint

@@ -1,7 +1,8 @@
 r"""Operating point: static equilibrium of the whole machine under its torques, weight and preloads.
 
 Shafts are exact Timoshenko beams between the stations of bearings, gears and torques, within the face of a solid gear
-at least as thick as its root circle (:mod:`rotors.analyses.static_stiffness`). The housing is its modes with the
+as stiff as its section with the teeth (:mod:`rotors.analyses.static_stiffness`,
+:mod:`coupling.gears.geometry.toothed_section`). The housing is its modes with the
 residual ones, whose static compliance at the seats is exact. Rolling bearings act by each of their elements, gear
 pairs by slices of their faces, averaged over a mesh period (:mod:`coupling.gears.loaded.face_load`). With x the
 motions of all stations and the housing's coordinates, K their linear stiffness, f the loads, and connectors of

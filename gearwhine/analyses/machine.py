@@ -36,7 +36,7 @@ from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.solve.sound import SolvedSound
+    from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.sweep.run import SweptPoint
 
 
@@ -375,8 +375,8 @@ def sound(
         Where the power through the surface and in the far field differ by more than 10 %.
     """
     # The acoustics' kernels are for this analysis alone.
-    from gearwhine.solve.motion_lines import left_out_warnings, lines_of_steady
-    from gearwhine.solve.sound import highest_estimated, solve_sound
+    from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_steady
+    from gearwhine.solve.sound.solution import highest_estimated, solve_sound
 
     require(case, "housing", command="sound")
     if case.acoustics is None:

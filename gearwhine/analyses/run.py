@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import SolvedSignature
-    from gearwhine.solve.sound import SolvedSound
+    from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.solve.transient import SolvedTransient
     from housing.correlation import Comparison
 
@@ -169,8 +169,8 @@ def run(
             seconds["time_stepping"] = transient.result.seconds
 
     if case.acoustics is not None and housing is not None:
-        from gearwhine.solve.motion_lines import left_out_warnings, lines_of_run
-        from gearwhine.solve.sound import highest_estimated, solve_sound, with_histories
+        from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_run
+        from gearwhine.solve.sound.solution import highest_estimated, solve_sound, with_histories
 
         begin = time.perf_counter()
         motion, without = None, []

@@ -65,7 +65,7 @@ _CHAPTERS = {
 _PICTURES = (
     SPECTRUM,
     Picture("sound-power", "Sound power level of each line, the loudest with names, and of third octaves."),
-    Picture("steady-motion", "One period of the motion: mesh force, and its harmonics."),
+    Picture("steady-motion", "Mesh force of the motion over a period or some teeth, and its harmonics."),
     Picture("sweep-rms", "Level of each sensor over the sweep: peaks are resonances of the machine."),
     Picture("load-misalignment", "Misalignment of the flanks by its causes, which may cancel; black: their sum."),
     Picture("modes", "Modes side by side, each to a scale of its own; grey lines: at rest."),

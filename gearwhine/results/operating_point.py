@@ -355,7 +355,7 @@ _CAUSE_COLUMNS = (
 _PLACE = ("shaft_place",)
 SHAFT = (
     Quantity("name", lambda one: one.name, "deflected_shaft", heading="shaft"),
-    Quantity("largest_deflection_m", lambda one: one.largest[0], heading="largest [µm]", shown=".3g", scale=_MICRO),
+    Quantity("largest_deflection_m", lambda one: one.largest[0], heading="largest [µm]", shown=".4g", scale=_MICRO),
     Quantity(
         "largest_deflection_at_m",
         lambda one: one.largest[1],
@@ -363,7 +363,7 @@ SHAFT = (
         shown=".4g",
         scale=1e3,
     ),
-    Quantity("twist_rad", lambda one: one.twist, heading="twist [µrad]", shown=".3g", scale=_MICRO),
+    Quantity("twist_rad", lambda one: one.twist, heading="twist [µrad]", shown=".4g", scale=_MICRO),
     Quantity("", lambda one: one.at, "shaft_position", _PLACE, "m", "distance from the left end of the shaft"),
     Quantity("", lambda one: one.z, "shaft_z", _PLACE, "m", "z of the machine"),
     Quantity(

@@ -21,7 +21,7 @@ from gearwhine.output.sections import (
 from housing.acoustics.sound_levels import power_level, pressure_level
 
 if TYPE_CHECKING:
-    from gearwhine.solve.sound import SolvedSound
+    from gearwhine.solve.sound.solution import SolvedSound
 
 _METHODS = {
     "boundary-elements": "boundary elements over the whole surface",

@@ -320,7 +320,10 @@ def report(document: Document) -> Section:
 
 
 _PICTURES = (
-    Picture("steady-motion", "One period of the motion: mesh force, zero where flanks part, and its harmonics."),
+    Picture(
+        "steady-motion",
+        "Mesh force of the motion over a period or some teeth, zero where flanks part, and its harmonics.",
+    ),
     Picture(
         "steady-curve",
         "Periodic motions over speed, dashed where disturbances grow: the machine jumps where a branch turns back.",

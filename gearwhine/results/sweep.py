@@ -35,7 +35,7 @@ _PICTURES = (
 def _content(document: Document) -> Iterator[str | Table]:
     done = [point for point in document["points"] if point["status"] == "done"]
     if done:
-        yield from table_of(_columns(document, done[0]), done)
+        yield from table_of(_columns(document, done), done)
     for point in document["points"]:
         if point["status"] == "failed":
             where = ", ".join(f"{key}={text}" for key, text in point["settings"].items())
@@ -45,8 +45,9 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield f"{document['done']} of {counted(len(document['points']), 'point')} done{resumed}{failed}"
 
 
-def _columns(document: Document, first: Document) -> tuple[Column, ...]:
+def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
     """Return columns of the swept keys, some sensor levels, some mesh forces, and the energy balance."""
+    first = done[0]
     columns = [
         Column(
             axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""),
@@ -66,7 +67,7 @@ def _columns(document: Document, first: Document) -> tuple[Column, ...]:
             ),
             Column("apart", partial(_apart, place)),
         ]
-    if "sound" in first:
+    if any("sound" in point for point in done):
         columns.append(Column("sound power\n[dB(A)]", partial(_sound, "total_db_a")))
     return (*columns, Column("energy\nerror", lambda point: f"{point['energy_error']:.0e}"))
 

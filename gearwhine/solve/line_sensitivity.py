@@ -32,7 +32,7 @@ from housing.updating import ModelSensitivity, modal_sensitivities
 from housing.updating.static_sensitivity import PortRates
 
 if TYPE_CHECKING:
-    from gearwhine.solve.harmonic_sound import HarmonicSound
+    from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
     from housing.acoustics.radiation import HousingRadiation
 
 FloatArray = npt.NDArray[np.float64]
@@ -217,7 +217,7 @@ def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "Housi
     if case.acoustics is None:
         return None
     # The acoustics' kernels are for these cases alone.
-    from gearwhine.solve.sound import build_radiation
+    from gearwhine.solve.sound.solution import build_radiation
 
     return build_radiation(case, housing, progress)
 
@@ -233,8 +233,8 @@ def _sound(
     """Solve for the loudest lines with the modes of a housing, or for those of known frequencies [rad/s]."""
     if radiation is None:
         return ()
-    from gearwhine.solve.harmonic_sound import loudest_lines
-    from gearwhine.solve.sound import highest_frequency
+    from gearwhine.solve.sound.mesh_harmonics import loudest_lines
+    from gearwhine.solve.sound.solution import highest_frequency
 
     progress("sound of the lines")
     assert housing.modes.residual_modes is not None

@@ -37,7 +37,7 @@ from meshes import Mesh
 from meshes.box.morph import MorphError, with_middles
 
 if TYPE_CHECKING:
-    from gearwhine.solve.harmonic_sound import HarmonicSound
+    from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 
 FloatArray = npt.NDArray[np.float64]
 Ports = dict[str, sparse.csr_array]

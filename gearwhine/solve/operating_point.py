@@ -311,11 +311,12 @@ def require_load(case: Case) -> None:
 
 def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
     """Warnings of an operating point that is formally right and physically doubtful."""
-    note = None if solved.sensitivity is None else solved.sensitivity.note
+    ranked = solved.sensitivity
     told = bearing_load_warnings(case, {one.name: one.force[:3] for one in solved.point.bearings}, "the equilibrium")
     loads = {entry["bearing"] for entry in told}
     return [
-        *([] if note is None else [warning("sensitivity", note)]),
+        *([] if ranked is None or ranked.note is None else [warning("sensitivity", ranked.note)]),
+        *_sound_warnings(ranked),
         *told,
         *(found for one in solved.bearings for found in _bearing_warnings(one)),
         *_speed_warnings(solved),
@@ -324,6 +325,17 @@ def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
         *_misalignment_warnings(solved),
         *_free_motion_warnings(solved),
     ]
+
+
+def _sound_warnings(ranked: LoadSensitivity | None) -> Iterator[dict[str, Any]]:
+    """Warn of mesh harmonics whose sound the pressure inside does not prove."""
+    if ranked is None or not ranked.loudest_lines:
+        return
+    # The acoustics' kernels are for these cases alone.
+    from gearwhine.solve.sound.proofs import doubts
+
+    for one in ranked.loudest_lines:
+        yield from doubts(one.sound, "a mesh harmonic")
 
 
 def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:

@@ -179,7 +179,7 @@ def _reduced(
     forces = solved.histories.bearing_load
     frequencies, rates, names = np.empty(0), np.empty((0, 0, 2)), list[LineName]()
     if case.acoustics is not None and solved.machine.housing is not None:
-        from gearwhine.solve.motion_lines import strongest_lines
+        from gearwhine.solve.sound.motion_lines import strongest_lines
 
         frequencies, rates, names = strongest_lines(case, solved)
     return PointResult(

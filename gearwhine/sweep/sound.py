@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
-from gearwhine.solve.sound_proofs import doubts, interior_pressure, power_balance_db
+from gearwhine.solve.sound.proofs import doubts, interior_pressure, power_balance_db
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
 from housing.acoustics.modal_radiation import POINTS, ModalRadiation
@@ -67,11 +67,12 @@ def add_sound(
     Raises
     ------
     CaseError, housing.HousingError
-        As :func:`gearwhine.solve.sound.solve_sound`.
+        As :func:`gearwhine.solve.sound.solution.solve_sound`; where the powers of a line disagree, if they do at
+        every point. A single point is left without sound, with a warning.
     """
-    from gearwhine.solve.kept_radiation import kept_radiation
-    from gearwhine.solve.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
-    from gearwhine.solve.sound import build_radiation, highest_frequency, microphones_of
+    from gearwhine.solve.sound.kept_radiation import kept_radiation
+    from gearwhine.solve.sound.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
+    from gearwhine.solve.sound.solution import build_radiation, highest_frequency, microphones_of
 
     if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):
         message = "the sound of a sweep is left out: its housing, materials or acoustics change from point to point"
@@ -111,12 +112,16 @@ def add_sound(
         order = line.entry["frequency_hz"] * _TWO_PI / abs(point.case.operation.speed)
         line.entry.update(order=order, name=outcome.line_names[place], kind=outcome.line_kinds[place])
         lines.setdefault(number, []).append(line)
+    failures: list[HousingError] = []
     for number, found in lines.items():
         counted = counting(found)
-        for line in counted:
-            if line.refused is not None:
-                raise line.refused
-            told += line.told
+        refused = next((line.refused for line in counted if line.refused is not None), None)
+        if refused is not None:
+            failures.append(refused)
+            where = ", ".join(f"{key.key}={text}" for key, text in zip(keys, swept[number].point.texts, strict=True))
+            told.append(warning("sound_of_point", f"the sound at {where} is left out: {refused}"))
+            continue
+        told += [entry for line in counted for entry in line.told]
         balances = [line.entry["power_balance_db"] for line in counted]
         leaks = [line.entry["interior_pressure"] for line in counted]
         entries = [line.entry for line in found]
@@ -130,6 +135,8 @@ def add_sound(
             "interior_pressure": max((one for one in leaks if one is not None), default=None),
             "lines": sorted(entries, key=lambda entry: -float(entry["sound_power_db"])),
         }
+    if failures and len(failures) == len(lines):
+        raise failures[0]
     return told, housing
 
 

@@ -72,10 +72,9 @@ class SoundField:
         Normal velocity at the corners of each triangle [m/s].
     pressure : ndarray, shape (n_points, n)
         At the vertices [Pa], of linear functions that pass the pressure in the mean.
-    interior_residual : float
-        Root mean square of the pressure at points inside that the solution did not use, where zero is exact, relative
-        to that on the surface; the largest of all distributions. Infinite where no point inside is far enough from the
-        surface, as in a thin plate: there is no proof. Zero for a baffled face, which has no inside.
+    inside : ndarray, shape (n_checks, n)
+        Pressure at points inside that the solution did not use [Pa], where zero is exact. None for a baffled face,
+        which has no inside, and where no point inside is far enough from the surface, as in a thin plate.
     """
 
     surface: RadiatingSurface
@@ -84,7 +83,7 @@ class SoundField:
     frequency_hz: float
     velocity: ComplexArray
     pressure: ComplexArray
-    interior_residual: float
+    inside: ComplexArray
 
     @property
     def wavenumber(self) -> float:
@@ -95,6 +94,19 @@ class SoundField:
     def baffled(self) -> bool:
         """Whether the surface is a flat face in a baffle, which has no inside."""
         return self.plane is not None and _lies_in(self.surface, self.plane)
+
+    @property
+    def interior_residual(self) -> float:
+        """Root mean square of the pressure inside relative to that on the surface; the largest of all distributions.
+
+        Zero for a baffled face. Infinite where there is an inside but no point to prove the solution.
+        """
+        if self.baffled:
+            return 0.0
+        if not len(self.inside):
+            return np.inf
+        size, left = (np.sqrt((np.abs(one) ** 2).mean(axis=0)) for one in (self.pressure, self.inside))
+        return float((left / np.where(size > 0.0, size, 1.0)).max())
 
     @property
     def flux(self) -> ComplexArray:
@@ -334,21 +346,18 @@ class BoundaryElements:
         given = np.ascontiguousarray(given.reshape(len(given), -1))
         wavenumber = _TWO_PI * frequency_hz / self.medium.speed_of_sound
         flux = -1j * wavenumber * self.medium.impedance * given
+        inside = np.zeros((0, given.shape[1]), dtype=np.complex128)
         if self.baffled:
             assert self.plane is not None
             vertices = self.surface.points
             own = np.arange(len(vertices))
             pressure = -2.0 * surface_integrals(self.surface, vertices, own, wavenumber, flux).single
-            return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, 0.0)
+            return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside)
         pressure = self._solve_closed(wavenumber, flux)
-        residual = np.inf
         if self._checks:
             checks = self._inner_points[: self._checks]
             inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)
-            size = np.sqrt((np.abs(pressure) ** 2).mean(axis=0))
-            left = np.sqrt((np.abs(inside) ** 2).mean(axis=0)) / np.where(size > 0.0, size, 1.0)
-            residual = float(left.max())
-        return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, residual)
+        return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside)
 
     def _solve_closed(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
         vertices = self.surface.points

@@ -122,4 +122,5 @@ def _superposed(field: Field, rates: ComplexArray) -> Field:
     if isinstance(field, EquivalentField):
         return replace(field, velocity=field.velocity @ rates)
     assert isinstance(field, SoundField)
-    return replace(field, velocity=field.velocity @ rates, pressure=field.pressure @ rates)
+    summed = {name: getattr(field, name) @ rates for name in ("velocity", "pressure", "inside")}
+    return replace(field, **summed)

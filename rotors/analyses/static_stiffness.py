@@ -56,7 +56,7 @@ _MASS_ROWS = [2, 9]
 # Asymmetry of a stiffness, as a part of its largest entry, above which it is not rounding.
 _ASYMMETRY = 1e-9
 
-Stiffened = Sequence[tuple[float, float, float]]
+Stiffened = Sequence[tuple[float, float, float, float]]
 
 
 @dataclass(frozen=True)
@@ -168,9 +168,9 @@ def static_shaft(rotor: Rotor, stations: Sequence[float], *, stiffened: Stiffene
         The stiffness of a short span is exact to rounding, but a solution on it for displacements loses digits: between
         nodes a micrometre apart on a shaft of 0.4 m, it keeps nine.
     stiffened
-        Intervals (left, right, outer diameter), m, within which the shaft is at least this thick against deformation,
-        such as the root circle of a pinion cut into its shaft. Of overlapping ones the thickest counts. Couplings and
-        the mass stay as they are.
+        Intervals (left, right, outer diameter in bending and tension, outer diameter in torsion), m, within which the
+        shaft is at least this thick against deformation, such as a pinion cut into its shaft. Of overlapping ones the
+        thickest counts. Couplings and the mass stay as they are.
 
     Raises
     ------
@@ -183,15 +183,18 @@ def static_shaft(rotor: Rotor, stations: Sequence[float], *, stiffened: Stiffene
         raise RotorError(f"{where} has no stations; expected at least one")
     for at in stations:
         rotor.require_on_shaft(f"{where} station", at)
-    stiff = _stiffened_profile(rotor, stiffened) if stiffened else rotor.profile
-    others = [*rotor.profile.edges.tolist(), *stiff.edges.tolist(), *(disc.at for disc in rotor.discs), *stations]
-    nodes = _short_of_buckling(stiff, merged_positions(rotor.joints, others))
+    stiff = _stiffened_profile(rotor, [(left, right, outer) for left, right, outer, _ in stiffened])
+    twisted = _stiffened_profile(rotor, [(left, right, outer) for left, right, _, outer in stiffened])
+    edges = np.concatenate([profile.edges for profile in (rotor.profile, stiff, twisted)]).tolist()
+    nodes = _short_of_buckling(stiff, merged_positions(rotor.joints, [*edges, *(d.at for d in rotor.discs), *stations]))
     station = np.unique([station_index(nodes, at) for at in stations])
 
     # Stiffened parts keep the mass they have; they are cylinders where cones may have been.
-    given, heavy = _between(stiff, nodes), _between(rotor.profile, nodes)[:, _MASS_ROWS]
+    heavy = _between(rotor.profile, nodes)[:, _MASS_ROWS]
     coefficients = np.zeros((nodes.size - 1, 10, heavy.shape[2]))
-    coefficients[:, :, : given.shape[2]] = given
+    for profile, rows in ((stiff, BENDING), (stiff, AXIAL), (twisted, TORSION)):
+        given = _between(profile, nodes)[:, rows]
+        coefficients[:, rows, : given.shape[2]] = given
     coefficients[:, _MASS_ROWS] = heavy * float(rotor.mass_model == "distributed")
     mass = station_inertias(rotor, nodes)[:, 0]
     bending, axial = (_motion(nodes, coefficients[:, rows], mass, station) for rows in (BENDING, AXIAL))
@@ -368,8 +371,10 @@ def _short_of_buckling(profile: Profile, nodes: FloatArray) -> FloatArray:
     return np.append(nodes[number] + within * (np.diff(nodes) / counts)[number], nodes[-1])
 
 
-def _stiffened_profile(rotor: Rotor, stiffened: Stiffened) -> Profile:
+def _stiffened_profile(rotor: Rotor, stiffened: Sequence[tuple[float, float, float]]) -> Profile:
     """Profile of the shaft with at least the given outer diameters within intervals."""
+    if not stiffened:
+        return rotor.profile
     places = []
     for left, right, outer in stiffened:
         rotor.require_on_shaft(f"rotor {rotor.name!r} stiffened interval", left)

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from coupling import Machine, MountedBearing, Shaft, ShaftGear
 from coupling.gears import ConstantStiffness, Gear
+from coupling.gears.geometry.toothed_section import toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from rotors import Bearing, Rotor, Segment, ShaftMaterial
 
@@ -83,8 +84,11 @@ def linear_bearing(name: str, at: float, stiffness: npt.ArrayLike, **more: Any) 
     return Bearing(name, at, matrix, np.zeros(matrix.shape), **more)
 
 
-def element(part: Segment, diameter: float, length: float) -> FloatArray:
-    """Stiffness (12, 12) of a round uniform element over x, y, z, and the rotations about them, of both ends."""
+def element(part: Segment, diameter: float, twisted: float, length: float) -> FloatArray:
+    """Stiffness (12, 12) of a round uniform element over x, y, z, and the rotations about them, of both ends.
+
+    It twists as if it had a diameter of its own.
+    """
     inner, E, G = part.inner_diameter, part.material.youngs_modulus, part.material.shear_modulus
     area, second = math.pi / 4 * (diameter**2 - inner**2), math.pi / 64 * (diameter**4 - inner**4)
     nu = E / (2 * G) - 1
@@ -92,7 +96,7 @@ def element(part: Segment, diameter: float, length: float) -> FloatArray:
     kappa = 6 * (1 + nu) / (7 + 6 * nu)  # Cowper, solid
     phi = 12 * E * second / (kappa * G * area * length**2)
     found = np.zeros((12, 12))
-    for at, stiffness in ((2, E * area / length), (5, 2 * G * second / length)):
+    for at, stiffness in ((2, E * area / length), (5, G * math.pi / 32 * twisted**4 / length)):
         found[np.ix_([at, at + 6], [at, at + 6])] = stiffness * np.array([[1, -1], [-1, 1]])
     c = E * second / ((1 + phi) * length**3)
     near, far, arm = (4 + phi) * length**2, (2 - phi) * length**2, 6 * length
@@ -142,9 +146,9 @@ class OwnStatics:
         self.size = size + 2 * len(self.feet)
         self.linear = np.zeros((self.size, self.size))
         for shaft in machine.shafts:
-            for at, part, diameter, length in self._elements(shaft.name):
+            for at, part, diameters, length in self._elements(shaft.name):
                 here = slice(self.first[shaft.name] + 6 * at, self.first[shaft.name] + 6 * at + 12)
-                self.linear[here, here] += element(part, diameter, length)
+                self.linear[here, here] += element(part, *diameters, length)
         if compliance is not None:
             here = slice(self.seat_first, self.seat_first + 5 * len(self.seated))
             self.linear[here, here] = np.linalg.inv(compliance)
@@ -163,14 +167,17 @@ class OwnStatics:
     def stations(self, pair: GearPair) -> FloatArray:
         return 0.5 * self.width(pair) * np.cos(np.pi * np.arange(STATIONS)[::-1] / (STATIONS - 1))
 
-    def bodies(self, shaft: str) -> list[tuple[float, float, float]]:
-        """Ends and root diameters of the gears on a shaft."""
+    def bodies(self, shaft: str) -> list[tuple[float, float, float, float]]:
+        """Ends of the gears' bodies and of their teeth on a shaft, and diameters in bending and torsion."""
         found = []
         for one in self.machine.gears:
             if one.shaft == shaft:
                 gear, half = one.gear, 0.5 * one.gear.face_width
                 root = gear.module * gear.teeth / math.cos(gear.helix_angle) - 2.5 * gear.module
-                found.append((one.at - half, one.at + half, root))
+                found.append((one.at - half, one.at + half, root, root))
+                teeth = toothed_section(gear)
+                half -= teeth.end_length
+                found.append((one.at - half, one.at + half, teeth.bending_diameter, teeth.torsion_diameter))
         return found
 
     def _nodes(self, shaft: str) -> FloatArray:
@@ -179,22 +186,23 @@ class OwnStatics:
         places += [one.bearing.at for one in self.machine.bearings if one.rotor == shaft]
         places += [torque.at for torque in self.machine.constant_torques if torque.rotor == shaft]
         places += [one.at for one in self.machine.forces if one.rotor == shaft]
-        places += [end for low, high, _ in self.bodies(shaft) for end in (low, high)]
+        places += [end for low, high, *_ in self.bodies(shaft) for end in (low, high)]
         for pair in self.machine.gear_pairs:
             for name in (pair.driver, pair.driven):
                 if self.gears[name].shaft == shaft:
                     places += [self.gears[name].at, *(self.gears[name].at + self.stations(pair))]
         return np.unique(np.round(places, 12))
 
-    def _elements(self, shaft: str) -> list[tuple[int, Segment, float, float]]:
+    def _elements(self, shaft: str) -> list[tuple[int, Segment, tuple[float, float], float]]:
         rotor, nodes, found = self.machine.shaft(shaft).rotor, self.nodes[shaft], []
         joints = np.cumsum([part.length for part in rotor.segments])
         for at, (left, right) in enumerate(pairwise(nodes)):
             middle = 0.5 * (left + right)
             part = rotor.segments[int(np.searchsorted(joints, middle))]
             assert isinstance(part, Segment)
-            thick = [root for low, high, root in self.bodies(shaft) if low < middle < high]
-            found.append((at, part, max([part.outer_diameter, *thick]), float(right - left)))
+            thick = [diameters for low, high, *diameters in self.bodies(shaft) if low < middle < high]
+            bending, torsion = (max([part.outer_diameter, *(one[n] for one in thick)]) for n in (0, 1))
+            found.append((at, part, (bending, torsion), float(right - left)))
         return found
 
     def section(self, shaft: str, at: float) -> FloatArray:

@@ -378,7 +378,7 @@ def test_the_common_face_carries_wherever_it_lies() -> None:
     Its shaft is thicker than its body, so that the place of the body does not matter.
     """
     machine = spur(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
-    thick = replace(machine.shafts[1], rotor=Rotor("out", [Segment(0.16, 0.12, 0.0, STEEL)]))
+    thick = replace(machine.shafts[1], rotor=Rotor("out", [Segment(0.16, 0.14, 0.0, STEEL)]))
     wide = replace(machine.gears[1], gear=replace(machine.gears[1].gear, face_width=45e-3))
     centred, moved = (
         replace(

@@ -128,6 +128,16 @@ class Browser:
             assert time.monotonic() < end, f"never true: {expression}"
             time.sleep(0.05)
 
+    def wait_for_event(self, method: str) -> None:
+        """Wait until the page tells of an event, without asking it anything meanwhile."""
+        if any(event.get("method") == method for event in self.events):
+            return
+        for answer in self._answers(TIMEOUT):
+            self.events.append(answer)
+            if answer.get("method") == method:
+                return
+        raise AssertionError(f"{method}: not in {TIMEOUT:g} s")
+
     def resize(self, width: int, height: int = 900, *, dark: bool = False, media: str = "") -> None:
         """Set the size of the page and its colours."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)

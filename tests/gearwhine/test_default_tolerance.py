@@ -17,7 +17,7 @@ def solved(tolerance: str) -> SolvedTransient:
 
 def test_levels_do_not_depend_on_it() -> None:
     """Peaks within 40 dB of the highest agree with a march of seven times the steps to half of the last digit told."""
-    default, fine = solved(""), solved("1e-5")
+    default, fine = solved(""), solved("5e-6")
     assert default.result.steps * 7 < fine.result.steps
     for name, spectrum in fine.force_spectra.items():
         trusted = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= fine.trusted_limit)

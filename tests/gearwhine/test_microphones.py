@@ -7,7 +7,7 @@ from sounding_gearbox import quick_run
 
 from coupling import CoupledMachine
 from coupling.signals.transfer_paths import housing_paths
-from gearwhine.solve.microphones import FADE, fading_weights, microphone_histories
+from gearwhine.solve.sound.microphones import FADE, fading_weights, microphone_histories
 from housing.acoustics.modal_radiation import ModalRadiation
 
 FloatArray = npt.NDArray[np.float64]

@@ -11,9 +11,9 @@ from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sound
 import gearwhine as gw
 from coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.case import CaseError, swept_keys
-from gearwhine.solve.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
-from gearwhine.solve.sound import microphones_of, solve_sound
+from gearwhine.solve.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
+from gearwhine.solve.sound.solution import microphones_of, solve_sound
 from gearwhine.sweep.sound import add_sound
 from housing.pictures.drawn_shapes import drawn_housing
 

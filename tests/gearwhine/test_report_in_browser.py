@@ -279,6 +279,83 @@ def test_shapes_move_pause_and_are_chosen(browser: Browser, pages: dict[str, Pat
     assert browser.requests() == []
 
 
+# A page that draws all the time has no idle time, hence the limit.
+SETTLED = """
+new Promise((done) => requestIdleCallback(() => requestIdleCallback(done, { timeout: 500 }), { timeout: 500 }))
+"""
+RUNNING = "[typeof window.Plotly !== 'undefined', customElements.get('model-viewer') !== undefined]"
+UNPACKED = """
+(() => { const counts = { count: 0 }, real = window.DecompressionStream;
+  window.DecompressionStream = function (kind) { counts.count += 1; return new real(kind); };
+  window.unpacked = counts; })()
+"""
+
+
+def test_a_library_runs_when_something_needs_it_and_not_before(browser: Browser, pages: dict[str, Path]) -> None:
+    """What opens with the page is its own script alone, which is small; the rest is packed and inert."""
+    browser.resize(1280, 500)
+    browser.open(pages["interactive"])
+    scripts = browser.value("[...document.scripts].map((one) => [one.type, one.textContent.length])")
+    assert sum(length for kind, length in scripts if kind == "") < 20_000
+    assert sorted({kind for kind, _ in scripts}) == ["", "application/gzip"]
+    assert sum(kind == "application/gzip" for kind, _ in scripts) == 2 + 2 + 2  # libraries, models and drawings
+    for place in ("model-viewer", ".plot"):
+        top = browser.value(f"document.querySelector('{place}').getBoundingClientRect().top")
+        assert top > 500 + 300, f"{place} is in sight from the start"
+    browser.value(SETTLED)
+    assert browser.value(RUNNING) == [False, False]
+    browser.value("document.querySelector('.plot').scrollIntoView()")
+    browser.wait_for("document.querySelector('.plot .scatterlayer path')")
+    assert browser.value(RUNNING)[0]
+    browser.open(pages["interactive"])
+    browser.value("document.querySelector('figure[data-picture=mode-02-1007Hz] .move').click()")
+    browser.wait_for("document.querySelector('model-viewer').loaded")
+    assert browser.value(RUNNING)[1]
+    assert browser.problems() == []
+    assert browser.requests() == []
+
+
+def test_each_shape_is_unpacked_once_and_only_when_it_is_shown(browser: Browser, pages: dict[str, Path]) -> None:
+    browser.resize(400, 500)
+    script = browser.call("Page.addScriptToEvaluateOnNewDocument", source=UNPACKED)["identifier"]
+    try:
+        browser.open(pages["interactive"])
+        browser.wait_for("window.unpacked.count === 3")  # for paper: the library of curves and two drawings
+        chosen = "document.querySelectorAll('[data-shape]')"
+        for number, count in ((0, 5), (1, 6), (0, 6)):  # the viewer and a model, another model, and nothing more
+            browser.value(f"{chosen}[{number}].click(); document.querySelector('model-viewer').scrollIntoView()")
+            browser.wait_for(
+                f"document.querySelector('model-viewer').loaded && {chosen}[{number}].ariaPressed === 'true'"
+            )
+            browser.value(SETTLED)
+            assert browser.value("window.unpacked.count") == count
+    finally:
+        browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+    assert browser.problems() == []
+
+
+def test_paper_shows_all_curves_and_no_empty_frame(browser: Browser, pages: dict[str, Path]) -> None:
+    browser.resize(1280, 500)
+    script = browser.call("Page.addScriptToEvaluateOnNewDocument", source=UNPACKED)["identifier"]
+    try:
+        browser.open(pages["interactive"])
+        browser.wait_for("window.unpacked.count === 3")
+        browser.value(SETTLED)
+    finally:
+        browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+    drawn = "document.querySelectorAll('.live.drawn .plot .main-svg').length > 0"
+    frames = "[...document.querySelectorAll('.live')].map((one) => getComputedStyle(one).display)"
+    assert not browser.value(drawn)
+    browser.resize(1280, 500, media="print")
+    assert browser.value(frames) == ["none", "none"]
+    browser.printed()
+    assert browser.value(drawn)
+    assert browser.value(frames) == ["block", "block"]
+    assert browser.value("document.querySelectorAll('.plot .scatterlayer path').length") > 0
+    browser.resize(1280)
+    assert browser.problems() == []
+
+
 def test_curves_are_drawn_and_zoom(browser: Browser, pages: dict[str, Path]) -> None:
     browser.resize(1280, 900)
     browser.open(pages["interactive"])
@@ -286,6 +363,15 @@ def test_curves_are_drawn_and_zoom(browser: Browser, pages: dict[str, Path]) -> 
     browser.value("document.querySelector('.plot').scrollIntoView({block: 'start'})")
     browser.wait_for("document.querySelector('.plot .scatterlayer path')")
     browser.wait_for("document.querySelectorAll('.plot .heatmaplayer image').length === 1")
+    # The name of the axis has its unit on one line, and stands clear of the numbers.
+    title = browser.value("document.querySelector('.plot').layout.yaxis.title.text")
+    assert title == "peak amplitude of acceleration<br>[m/s²]"
+    right, left = browser.value(
+        "(() => { const plot = document.querySelector('.plot'), box = (one) => one.getBoundingClientRect();"
+        " const numbers = [...plot.querySelectorAll('.ytick text')].map((one) => box(one).left);"
+        " return [box(plot.querySelector('.ytitle')).right, Math.min(...numbers)]; })()"
+    )
+    assert right <= left + 1.0
     # No button sends the data away.
     titles = browser.value("[...document.querySelectorAll('.modebar-btn')].map((one) => one.dataset.title)")
     assert "Zoom" in titles

@@ -14,9 +14,9 @@ from gearwhine.cli.command_line import run_command
 from gearwhine.output.export import write_sounds
 from gearwhine.output.files import staging
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.kept_radiation import kept_radiation
-from gearwhine.solve.microphones import microphone_histories
-from gearwhine.solve.sound import build_radiation
+from gearwhine.solve.sound.kept_radiation import kept_radiation
+from gearwhine.solve.sound.microphones import microphone_histories
+from gearwhine.solve.sound.solution import build_radiation
 from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
@@ -197,7 +197,7 @@ def test_refuses_what_is_not_there(study, changes, message):
 
 def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monkeypatch, tmp_path):
     """Lines of a point by the table and by solutions agree; the file of modes holds the table for the next sweep."""
-    monkeypatch.setattr("gearwhine.solve.kept_radiation.POINTS", 17)
+    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 17)
     microphone = {"name": "ear", "position": ["0.5 m", "1 m", "0.1 m"]}
     low = COARSE | {"acoustics.mesh_size": "34 mm", "acoustics.highest_frequency": "2.5 kHz"}
     study = gw.load("small-gearbox", low | {"acoustics.microphone": [microphone]})
@@ -233,16 +233,16 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
     with staging(tmp_path / "out") as place:
         write_mode_cache(place, kept)
     again = solve_housing(study.case, folder=tmp_path / "out")
-    monkeypatch.setattr("gearwhine.solve.kept_radiation.ModalRadiation.solve", None)  # needs no solution
+    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.ModalRadiation.solve", None)  # needs no solution
     assert heard(5, again)[0] == interpolated
     deaf = gw.load("small-gearbox", low).case
     monkeypatch.undo()
-    monkeypatch.setattr("gearwhine.solve.kept_radiation.POINTS", 5)
+    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 5)
     without, same = kept_radiation(deaf, again, build_radiation(deaf, again), np.zeros((0, 3)), (900.0, 2400.0))
     assert len(without.delays) == 0
     read, _ = kept_radiation(deaf, same, None, np.zeros((0, 3)), (900.0, 2400.0))
     assert len(read.delays) == 0  # no microphones of the table before
-    monkeypatch.setattr("gearwhine.solve.kept_radiation.ModalRadiation.solve", None)
+    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.ModalRadiation.solve", None)
     louder = gw.load("small-gearbox", low | {"acoustics.mesh_size": "33 mm"}).case
     with pytest.raises(TypeError):
         kept_radiation(louder, again, build_radiation(louder, again), np.zeros((0, 3)), (20.0, 3000.0))

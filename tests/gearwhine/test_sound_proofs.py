@@ -10,9 +10,9 @@ from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing
 
 import gearwhine as gw
 from gearwhine.case import swept_keys
-from gearwhine.solve.motion_lines import MotionLines
-from gearwhine.solve.sound import build_radiation, solve_sound
-from gearwhine.solve.sound_proofs import interior_pressure, power_balance_db
+from gearwhine.solve.sound.motion_lines import MotionLines
+from gearwhine.solve.sound.proofs import interior_pressure, power_balance_db
+from gearwhine.solve.sound.solution import build_radiation, solve_sound
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing import HousingError
@@ -89,7 +89,7 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
         line_names=("10× input", "1× pinion -> wheel"),
         line_kinds=("other", "mesh"),
     )
-    swept: Any = [SimpleNamespace(outcome=outcome, point=SimpleNamespace(case=case))]
+    swept: Any = [SimpleNamespace(outcome=outcome, point=SimpleNamespace(case=case, texts=("10 N*m",)))]
     keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
     told, housing = add_sound(case, keys, swept, sounding_housing())
     assert told == []
@@ -107,3 +107,37 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(radiation, "POWERS_AGREE", 1e-9)
     with pytest.raises(HousingError, match="through the surface"):
         add_sound(case, keys, swept, sounding_housing())
+
+
+def test_a_point_whose_powers_disagree_is_left_without_sound(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = sounding_gearbox(TOP).case
+    size = build_radiation(case, sounding_housing()).modal[0].shape[1]
+    outcomes = []
+    for frequency, mode in ((900.0, 4), (2400.0, 7)):
+        rates = np.zeros((1, size, 2))
+        rates[0, mode, 0] = 1e-3
+        outcomes.append(
+            PointResult(
+                {},
+                np.zeros(0),
+                line_frequencies=np.array([frequency]),
+                line_rates=rates,
+                line_names=("1× pinion -> wheel",),
+                line_kinds=("mesh",),
+            )
+        )
+    swept: Any = [
+        SimpleNamespace(outcome=one, point=SimpleNamespace(case=case, texts=(text,)))
+        for one, text in zip(outcomes, ("10 N*m", "20 N*m"), strict=True)
+    ]
+    keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
+    add_sound(case, keys, swept, sounding_housing())
+    sounds = [one.document.pop("sound") for one in outcomes]
+    apart = [abs(10.0 ** (0.1 * sound["power_balance_db"]) - 1.0) for sound in sounds]
+    worse = int(np.argmax(apart))
+    monkeypatch.setattr(radiation, "POWERS_AGREE", 0.5 * sum(apart))
+    (told,), _ = add_sound(case, keys, swept, sounding_housing())
+    assert told["message"].startswith(f"the sound at operation.torque={10 * (1 + worse)} N*m is left out: ")
+    assert "through the surface" in told["message"]
+    assert "sound" not in outcomes[worse].document
+    assert outcomes[1 - worse].document["sound"] == sounds[1 - worse]

@@ -16,11 +16,12 @@ from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
-from gearwhine.solve import housing_modes, sound
-from gearwhine.solve.harmonic_sound import HarmonicSound
+from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
 from gearwhine.solve.load_sensitivity import case_changes, housing_fields
+from gearwhine.solve.sound import solution
+from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 from housing.acoustics.radiation import HousingRadiation
 from housing.acoustics.sound_levels import a_weighting
 from meshes import Mesh
@@ -55,7 +56,7 @@ def solve(case: Case, mesh: Mesh, base: HousingRadiation | None = None) -> Solve
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
         if base is not None:
-            patch.setattr(sound, "build_radiation", lambda *_: on_same_facets(base, mesh))
+            patch.setattr(solution, "build_radiation", lambda *_: on_same_facets(base, mesh))
         housing = solve_housing(case)
         machine = describe_machine(case, full_housing_component(case, housing))
         point = machine.operating_point()

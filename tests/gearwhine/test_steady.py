@@ -2,6 +2,8 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import xarray as xr
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case, mesh_frequencies
 from gearwhine.cli import run_command
+from gearwhine.figures.machine.steady_state import draw_response_curve
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import build_machine
 from gearwhine.results.steady_state import curve_sentences
@@ -74,6 +77,49 @@ def test_a_branch_shows_parting_teeth_only_where_drive_flanks_part() -> None:
     study = gw.load("spur-pair", [*FEW, BALANCED, "sweep.speed=['5000 rpm', '5200 rpm']"])
     figure = study.steady(curve=True, points=3).plot("steady-curve")
     assert [axes.get_ylabel() for axes in figure.axes] == ["largest mesh force [N]", "compression, a.c. rms [µm]"]
+
+
+def test_names_stand_once_and_marks_whole_on_a_branch_of_two_pairs() -> None:
+    speeds = np.linspace(100.0, 200.0, 5)
+    both = np.column_stack([np.linspace(1.0, 2.0, 5), np.linspace(2.0, 3.0, 5)])
+    loss = 0.1 * np.column_stack([np.arange(5.0), np.zeros(5)])
+    curve: Any = SimpleNamespace(
+        rms_compression=1e-6 * both,
+        peak_force=1e3 * both,
+        contact_loss=loss,
+        speeds=speeds,
+        stable=np.ones(5, dtype=bool),
+        ending="end",
+        bifurcations=[SimpleNamespace(kind="fold", index=2)],
+    )
+    solved: Any = SimpleNamespace(
+        machine=SimpleNamespace(
+            system=SimpleNamespace(contacts=[SimpleNamespace(name="a -> b"), SimpleNamespace(name="b -> c")]),
+            loaded_contacts=[0, 1],
+        ),
+        branch_rms={"top": np.arange(5.0), "end": np.arange(5.0)},
+        motions=[SimpleNamespace(speed=150.0)],
+    )
+    figure = draw_response_curve("Branch", solved, curve)
+    assert figure.texts[1].get_text() == "955 to 1910 rpm; dash-dotted: speed of operation"
+    solved.motions[0].speed = 250.0
+    assert draw_response_curve("Branch", solved, curve).texts[1].get_text() == "955 to 1910 rpm"
+    named = {axes.get_ylabel(): axes.get_legend() for axes in figure.axes}
+    texts = {name: [text.get_text() for text in one.get_texts()] for name, one in named.items() if one is not None}
+    assert texts == {"compression, a.c. rms [µm]": ["a → b", "b → c"], "acceleration, rms [m/s²]": ["top", "end"]}
+    # The second pair never parts: its fold lies on the axis, and is not cut there.
+    (apart,) = [axes for axes in figure.axes if axes.get_ylabel() == "teeth apart [%]"]
+    marks = [line for line in apart.lines if line.get_marker() == "o"]
+    assert [line.get_ydata() for line in marks] == [pytest.approx([20.0]), pytest.approx([0.0])]
+    assert not any(line.get_clip_on() for line in marks)
+
+
+def test_a_period_of_many_teeth_is_drawn_in_part() -> None:
+    """With unbalance the motion repeats after a turn, which is 28 mesh periods: too many to be told apart."""
+    study = gw.load("spur-pair", FEW)
+    (left, _) = study.steady().plot("steady-motion").axes
+    assert left.get_title(loc="left").endswith(": 6 mesh periods")
+    assert left.get_xlim() == pytest.approx((0.0, 6e3 * 60.0 / 5500.0 / 28))
 
 
 def test_a_branch_that_is_left_is_told_on_screen() -> None:

@@ -279,7 +279,7 @@ def test_a_cone_stretches_twists_and_bends_as_its_compliance_integrates() -> Non
 
 def test_a_stiffened_interval_is_the_shaft_written_out_by_hand() -> None:
     stations, discs = [0.05, 0.3, 0.5, 0.7], [Disc(0.41, 2.0)]
-    intervals = [(0.3, 0.45, 0.045), (0.35, 0.5, 0.042), (0.6, 0.65, 0.02)]
+    intervals = [(0.3, 0.45, 0.045, 0.045), (0.35, 0.5, 0.042, 0.042), (0.6, 0.65, 0.02, 0.02)]
     shaft = static_shaft(Rotor("shaft", STEPS, discs), stations, stiffened=intervals)
 
     def piece(part: Segment, length: float, outer: float) -> Segment:
@@ -296,11 +296,25 @@ def test_a_stiffened_interval_is_the_shaft_written_out_by_hand() -> None:
     np.testing.assert_allclose(shaft.motions(moved, z, GRAVITY), expected.motions(moved, z, GRAVITY), atol=1e-15)
 
 
+def test_a_stiffened_interval_twists_with_a_diameter_of_its_own() -> None:
+    """Torsion is that of one thickness, all other motions are those of the other."""
+    stations, rotor = [0.05, 0.3, 0.5, 0.7], Rotor("shaft", STEPS, [Disc(0.41, 2.0)])
+    both = static_shaft(rotor, stations, stiffened=[(0.3, 0.5, 0.045, 0.041)])
+    bent, twisted = (static_shaft(rotor, stations, stiffened=[(0.3, 0.5, outer, outer)]) for outer in (0.045, 0.041))
+    torsion = np.arange(24) % 6 == 5
+    for among, expected in ((torsion, twisted), (~torsion, bent)):
+        own, wanted = both.stiffness[np.ix_(among, among)], expected.stiffness[np.ix_(among, among)]
+        np.testing.assert_allclose(own, wanted, rtol=1e-11, atol=1e-11 * np.abs(wanted).max())
+    assert not both.stiffness[np.ix_(torsion, ~torsion)].any()
+    assert np.abs(bent.stiffness - twisted.stiffness)[np.ix_(torsion, torsion)].max() > 1.0
+    assert_alike(both.weight(GRAVITY), bent.weight(GRAVITY), 1e-12)
+
+
 def test_a_cone_is_stiffened_up_to_the_given_diameter_and_keeps_its_mass() -> None:
     # From 30 to 60 mm: it is 40 mm thick at a third, 45 mm at the half.
     rotor, L = Rotor("shaft", [JAW, CONE]), CONE.length
     ends = [JAW.length, JAW.length + L]
-    shaft = static_shaft(rotor, ends, stiffened=[(0.02, 0.2, 0.040), (JAW.length + L / 6, 0.2, 0.045)])
+    shaft = static_shaft(rotor, ends, stiffened=[(0.02, 0.2, 0.04, 0.04), (JAW.length + L / 6, 0.2, 0.045, 0.045)])
     bores = [CONE.section(fraction).inner_diameter for fraction in (0.0, 1 / 6, 1 / 2)]
     by_hand = [
         JAW,
@@ -428,12 +442,14 @@ def central_sag_of_a_tie(rotor: Rotor) -> float:
         ([], [], "no stations"),
         ([0.1, 0.8], [], r"station position is 0\.8; expected a place on the shaft"),
         ([math.nan], [], "station position is nan"),
-        ([0.1], [(0.3, 0.9, 0.05)], r"stiffened interval position is 0\.9"),
-        ([0.1], [(0.3, 0.2, 0.05)], "left end before its right end"),
-        ([0.1], [(0.2, 0.3, -0.05)], "stiffened outer diameter is -0.05; expected a positive number"),
+        ([0.1], [(0.3, 0.9, 0.05, 0.05)], r"stiffened interval position is 0\.9"),
+        ([0.1], [(0.3, 0.2, 0.05, 0.05)], "left end before its right end"),
+        ([0.1], [(0.2, 0.3, -0.05, 0.05)], "stiffened outer diameter is -0.05; expected a positive number"),
     ],
 )
-def test_bad_input_is_refused(stations: list[float], stiffened: list[tuple[float, float, float]], message: str) -> None:
+def test_bad_input_is_refused(
+    stations: list[float], stiffened: list[tuple[float, float, float, float]], message: str
+) -> None:
     with pytest.raises(RotorError, match=message):
         static_shaft(Rotor("shaft", STEPS), stations, stiffened=stiffened)
 

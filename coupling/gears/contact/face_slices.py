@@ -32,7 +32,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -152,6 +152,19 @@ class FaceSlices:
         """Half the span of a slice along the path of contact [base pitches]; 0 for a spur gear."""
         span = float(np.ptp(self.shift))
         return 0.5 * span / (self.z.size - 1) if span > _NO_SPAN else 0.0
+
+    def halved(self) -> FaceSlices:
+        """Return the same face in twice as many slices, the gap straight from middle to middle of today's.
+
+        Slices of helical teeth come into touch one by one, a ripple on force and deflection of as many waves per base
+        pitch as slices. Its amplitude goes down with the square of their width.
+        """
+        fine = self.z.size * 2
+        z = self.face_width * ((np.arange(fine) + 0.5) / fine - 0.5)
+        below = np.clip(np.searchsorted(self.z, z) - 1, 0, self.z.size - 2)
+        part = (z - self.z[below]) / self.width
+        shift, gap = (one[below] + part * (one[below + 1] - one[below]) for one in (self.shift, self.gap))
+        return replace(self, z=z, width=0.5 * self.width, shift=shift, gap=gap)
 
 
 @dataclass(frozen=True, eq=False)

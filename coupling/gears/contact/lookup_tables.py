@@ -255,6 +255,7 @@ def law_table(
     damping: float,
     damping_depth: float,
     shared_compliance: float = 0.0,
+    deflection: PiecewiseCubic | None = None,
 ) -> FloatArray:
     """Row of numbers of a contact law.
 
@@ -268,16 +269,21 @@ def law_table(
         [N s/m], [m]
     shared_compliance : float
         [m/N]
+    deflection : PiecewiseCubic, optional
+        Deflection that adds to the gaps of all pairs, by the phase from 0 to 1 [m].
     """
+    others = [] if deflection is None else [deflection.knots]
     if isinstance(curves, FaceForceTable):
         gaps = [PiecewiseCubic(curves.knots, touch) for touch in curves.first_touch]
-        knots = _period_knots([curves.knots])
+        knots = _period_knots([curves.knots, *others])
         second, cells = _cell_places(curves, knots), curves.cells
     else:
         gaps, stiffnesses = [variant.deviation for variant in curves], [variant.stiffness for variant in curves]
-        knots = _period_knots([curve.knots for curve in (*gaps, *stiffnesses)])
+        knots = _period_knots([*(curve.knots for curve in (*gaps, *stiffnesses)), *others])
         second, cells = np.array([_by_pair(curve, knots, 0.0) for curve in stiffnesses]), np.zeros((0, 0, 0, CELL))
     first = np.array([_by_pair(gap, knots, np.inf) for gap in gaps])
+    if deflection is not None:
+        first += deflection.between(knots[:-1], knots[1:])[:, None]
     pairs = np.concatenate([first, second], axis=-1)
     parts = _PARTS_PER_INTERVAL * (knots.size - 1)
     begins = np.minimum(np.searchsorted(knots, np.arange(parts) / parts + _HAIR, side="right") - 1, knots.size - 2)

@@ -127,7 +127,7 @@ def _reverses_by_slices(contact: ToothContact) -> bool:
 
 def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
     """Tabulate the three friction integrals over a line of contact, in the layout of a contact law."""
-    faces = contact.faces
+    faces = contact.table_faces
     assert faces is not None
 
     def share(which: int) -> Weight:
@@ -138,4 +138,4 @@ def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:
     weights = (np.ones_like, share(0), share(1))
     table = face_force_table(faces, contact.variant_curves, contact.module, weights, breaks=(friction.pitch_point,))
     entering = contact.entering * [1.0, len(weights)]
-    return law_table(table, entering, 0.0, 0.0, contact.shared_compliance)
+    return law_table(table, entering, 0.0, 0.0, contact.shared_compliance, contact.body_tilt)

@@ -274,6 +274,7 @@ def load_gear_pair(
     mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.unloaded_mean_mesh_stiffness
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
+    contact = contact.under_load(math.copysign(force, torque))
     hunting = hunting_period_mesh(contact, force) if contact.hunting_period > 1 else None
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
     return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)

@@ -399,7 +399,8 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
             before = [MICRO * pair.misalignment_by_cause[one] for one in CAUSES[:number]]
             start = sum(one for one in before if (one > 0.0) == (part > 0.0))
             axes.barh(-row, part, left=start, height=0.5, color=color, lw=0.0, zorder=3, label=f"_{cause}")
-        handles.append(Patch(color=color, label=cause))
+        if any(pair.misalignment_by_cause[cause] for pair in pairs):  # rigid seats give none
+            handles.append(Patch(color=color, label=cause))
     for row, pair in enumerate(pairs):
         whole = MICRO * pair.misalignment
         axes.plot([whole, whole], [-row - 0.34, -row + 0.34], color=INK, lw=1.8, zorder=5, label="_sum")

@@ -41,7 +41,7 @@ from gearwhine.figures.style import (
 from housing.acoustics.sound_levels import a_weighting, pressure_level
 
 if TYPE_CHECKING:
-    from gearwhine.solve.sound import SolvedSound, SoundLine
+    from gearwhine.solve.sound.solution import SolvedSound, SoundLine
     from housing.acoustics.boundary_elements import SoundField
 
 FloatArray = npt.NDArray[np.float64]

@@ -40,7 +40,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN = 46.0, 6.0  # of the panels of a branch, and between them [mm]
 _ROW, _ROW_GAP, _FIRST = 42.0, 18.0, 5.0  # rows of a motion, the room between them and above the first [mm]
-_MOST_TEETH, _FEW_TEETH = 40, 6  # mesh periods that are drawn at most, and where there are more
+_MOST_TEETH, _FEW_TEETH = 24, 6  # mesh periods that are drawn at most, and where there are more
 _COLUMNS = 2  # of the names of excitations
 _UNSTABLE = (0, (3, 2))
 _MARKS = {  # marker, colour of its edge, and within: folds, where a machine jumps, stand out
@@ -78,22 +78,27 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
     if solved.branch_rms:
         quantities.append(("acceleration, rms [m/s²]", solved.branch_rms))
     speeds = RPM * np.abs(curve.speeds)
-    told += [f"{speeds.min():.0f} to {speeds.max():.0f} rpm", "dash-dotted: speed of operation"]
+    operation = RPM * abs(solved.motions[0].speed)
+    told.append(f"{speeds.min():.0f} to {speeds.max():.0f} rpm")
+    if speeds.min() <= operation <= speeds.max():
+        told.append("dash-dotted: speed of operation")
     if curve.ending != "end":
         told.append(f"left at {speeds[-1]:.4g} rpm")
     foot = FOOT + legend_height(1)
     figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + foot, title, "; ".join(told))
+    # Panels with the same names have them once, in the uppermost.
+    legends = {tuple(lines): what for what, lines in reversed(quantities) if len(lines) > 1}
     for number, (what, lines) in enumerate(reversed(quantities)):
         axes = panel(figure, foot + number * (_HEIGHT + _BETWEEN), _HEIGHT)
         _draw_branch(axes, speeds, lines, curve)
-        axes.axvline(RPM * abs(solved.motions[0].speed), color=INK, lw=0.8, ls="-.", zorder=1)
+        axes.axvline(operation, color=INK, lw=0.8, ls="-.", zorder=1)
         axes.set(xlim=(speeds.min(), speeds.max()), ylabel=what)
         axes.set_ylim(bottom=0.0)
         if number:
             axes.tick_params(labelbottom=False)
         else:
             axes.set_xlabel("speed of the first driver [rpm]")
-        if len(lines) > 1:
+        if legends.get(tuple(lines)) == what:
             axes.legend(loc="best", fontsize=NOTE, frameon=False)
     met = {event.kind for event in curve.bifurcations}
     lines_of = [Line2D([], [], color=INK, lw=1.2, label="stable")]
@@ -129,6 +134,7 @@ def _draw_branch(axes: Axes, speeds: FloatArray, lines: dict[str, FloatArray], c
                 mew=0.8,
                 ls="",
                 zorder=4,
+                clip_on=False,  # whole on the axis, too: teeth that never part are at zero
             )
 
 
@@ -156,7 +162,7 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
                 color = BLUE if motion.response.stable else GREY
                 left.plot(MILLI * motion.histories.times, motion.histories.mesh_force[name], color=color, lw=0.9)
             end, what = float(solved.motions[0].histories.times[-1]), "one period"
-            # Hundreds of teeth in a row are an area.
+            # Many teeth in a row are an area: each wants some eight widths of its line.
             if end * meshes[number] > _MOST_TEETH:
                 end, what = _FEW_TEETH / meshes[number], f"{_FEW_TEETH} mesh periods"
             left.set(xlabel="time [ms]", xlim=(0.0, MILLI * end))

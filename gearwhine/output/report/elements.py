@@ -10,10 +10,10 @@ from html import escape
 from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, arrowed, is_number
 
+NO_BREAK = "\N{NO-BREAK SPACE}"
 _LONGEST = 60  # of an identifier [characters]
 _MARKS = {True: ("passed", "✓"), False: ("failed", "✗"), None: ("warned", "!")}  # of findings
 _WRAPPED = 20  # characters of a cell from which on its column may wrap
-_NO_BREAK = "\N{NO-BREAK SPACE}"
 _UNIT = re.compile(r" (?=[→%])|(?<=\d) (?=(?:Hz|kHz|rpm|mm|µm|N|kg)\b)")
 _NUMBERED = re.compile(r"(?<=[^\W\d_]) (?=\d+\b(?![.,]\d))")  # before the number of a wheel, mode or bearing
 
@@ -25,8 +25,8 @@ def worded(text: str) -> str:
 
 def in_cell(text: str) -> str:
     """Return the text of a cell as HTML: no line ends within a name such as ``wheel 1``, before an arrow or a unit."""
-    kept = _UNIT.sub(_NO_BREAK, arrowed(text))
-    return escape(_NUMBERED.sub(_NO_BREAK, kept))
+    kept = _UNIT.sub(NO_BREAK, arrowed(text))
+    return escape(_NUMBERED.sub(NO_BREAK, kept))
 
 
 class Places:

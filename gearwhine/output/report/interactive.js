@@ -2,6 +2,41 @@
 (() => {
   const dark = matchMedia("(prefers-color-scheme: dark)");
 
+  // ---- libraries, models and data are packed blocks; each is unpacked once, when it is needed.
+  const contents = new Map();
+  function unpacked(block) {
+    if (!contents.has(block)) {
+      const text = block.textContent;
+      const bytes = Uint8Array.fromBase64
+        ? Uint8Array.fromBase64(text) : Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+      contents.set(block, new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).blob());
+    }
+    return contents.get(block);
+  }
+  const read = new Map(); // texts of blocks that are unpacked
+  async function textOf(block) {
+    const blob = await unpacked(block);
+    if (!read.has(block)) read.set(block, await blob.text());
+    return read.get(block);
+  }
+
+  // A library runs when the first thing that needs it is shown. The policy knows its digest.
+  const libraries = {};
+  for (const block of document.querySelectorAll("script.library")) libraries[block.dataset.name] = block;
+  const running = new Set();
+  function run(name) {
+    if (running.has(name)) return;
+    running.add(name);
+    const script = document.createElement("script");
+    script.textContent = read.get(libraries[name]);
+    document.head.append(script);
+  }
+  // A page that draws all the time has no idle time at all: the wait ends.
+  const wait = 500; // ms
+  const idle = () => new Promise((done) => {
+    if (window.requestIdleCallback) requestIdleCallback(done, { timeout: wait }); else setTimeout(done, wait);
+  });
+
   // ---- tables: a click on a heading sorts, and once more turns the order round; a button copies.
   const number = (text) => {
     const found = /^[+-]?(\d+\.?\d*(e[+-]?\d+)?)/i.exec(text.trim().replace("−", "-"));
@@ -70,25 +105,28 @@
     const pause = document.querySelector(".viewer .pause");
     const addresses = new Map();
 
-    async function unpacked(place) {
+    async function address(place) {
       if (!addresses.has(place)) {
-        const bytes = Uint8Array.from(atob(models[place].textContent), (letter) => letter.charCodeAt(0));
-        const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-        const blob = new Blob([await new Response(stream).arrayBuffer()], { type: "model/gltf-binary" });
-        addresses.set(place, URL.createObjectURL(blob));
+        const model = new Blob([await unpacked(models[place])], { type: "model/gltf-binary" });
+        addresses.set(place, URL.createObjectURL(model));
       }
       return addresses.get(place);
     }
 
+    let chosen = -1; // the last choice counts, whichever model is unpacked first
     async function choose(place) {
-      viewer.src = await unpacked(place);
+      chosen = place;
       told.textContent = `${models[place].dataset.title}\n${models[place].dataset.note}`.trim();
       for (const choice of choices) choice.setAttribute("aria-pressed", String(+choice.dataset.shape === place));
       pause.textContent = "Pause";
+      const [source] = await Promise.all([address(place), textOf(libraries["model-viewer"])]);
+      run("model-viewer");
+      if (chosen === place) viewer.src = source;
     }
 
     viewer.addEventListener("load", () => viewer.play());
     pause.addEventListener("click", () => {
+      if (!viewer.loaded) return;
       if (viewer.paused) viewer.play(); else viewer.pause();
       pause.textContent = viewer.paused ? "Play" : "Pause";
     });
@@ -122,30 +160,33 @@
     };
     addEventListener("hashchange", follow);
     // The first shape is unpacked when the viewer comes into sight.
-    const seen = new IntersectionObserver((entries) => {
+    const seen = new IntersectionObserver(async (entries) => {
       if (!entries.some((entry) => entry.isIntersecting)) return;
       seen.disconnect();
-      if (!viewer.src) choose(0);
+      await idle();
+      if (chosen < 0) choose(0);
     });
     if (!follow()) seen.observe(viewer);
   }
 
   // ---- curves: drawn when they come into sight, and again in the other colours.
-  const drawings = JSON.parse(document.getElementById("drawings").textContent);
+  const drawings = [...document.querySelectorAll("script.drawing")];
   const frames = [...document.querySelectorAll(".plot")];
+  const data = (frame) => drawings[+frame.dataset.plot];
 
   function draw(frame) {
-    const { x, y, z, curves, value, axes, logarithmic } = drawings[+frame.dataset.plot];
+    run("plotly");
+    const { x, y, z, curves, value, axes, logarithmic } = JSON.parse(read.get(data(frame)));
     const ink = dark.matches ? "#e3e7ea" : "#1d2125";
     const rule = dark.matches ? "#343b42" : "#e4e7ea";
-    const axis = { gridcolor: rule, zerolinecolor: rule, linecolor: ink, exponentformat: "power" };
+    const axis = { gridcolor: rule, zerolinecolor: rule, linecolor: ink, exponentformat: "power", automargin: true };
     const layout = {
       font: { family: "system-ui, sans-serif", size: 13, color: ink },
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      margin: { l: 84, r: 16, t: 36, b: 52 }, hovermode: "closest",
+      margin: { l: 48, r: 16, t: 36, b: 52 }, hovermode: "closest",
       modebar: { bgcolor: "rgba(0,0,0,0)", color: "#8a9097", activecolor: ink },
       xaxis: { ...axis, title: { text: axes[0] } },
-      yaxis: { ...axis, title: { text: lines(curves ? value : axes[1]) }, type: curves && logarithmic ? "log" : "linear" },
+      yaxis: { ...axis, title: { text: lines(curves ? value : axes[1]), standoff: 6 }, type: curves && logarithmic ? "log" : "linear" },
       legend: { orientation: "h", y: 1.14, x: 0 },
     };
     let traces;
@@ -174,16 +215,32 @@
 
   if (frames.length) {
     const drawn = new Set();
+    const unpack = (frame) => Promise.all([textOf(libraries.plotly), textOf(data(frame))]);
+    const show = (frame) => {
+      draw(frame);
+      drawn.add(frame);
+      frame.parentElement.classList.add("drawn");
+    };
     const near = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         if (!entry.isIntersecting) continue;
         near.unobserve(entry.target);
-        drawn.add(entry.target);
-        draw(entry.target);
+        unpack(entry.target).then(() => show(entry.target));
       }
     }, { rootMargin: "300px" });
     frames.forEach((frame) => near.observe(frame));
     dark.addEventListener("change", () => drawn.forEach(draw));
-    addEventListener("beforeprint", () => frames.forEach((frame) => { drawn.add(frame); draw(frame); }));
+
+    // Paper shows all curves. A page that is printed waits for nothing, so they are unpacked beforehand; none is
+    // drawn, and no library runs, before it is printed.
+    addEventListener("load", async () => {
+      for (const frame of frames) {
+        await idle();
+        await unpack(frame);
+      }
+    });
+    addEventListener("beforeprint", () => {
+      for (const frame of frames) if (read.has(libraries.plotly) && read.has(data(frame))) show(frame);
+    });
   }
 })();

@@ -2,12 +2,16 @@
 
 All that runs is part of the page: the libraries of :mod:`gearwhine.output.viewers` and ``interactive.js``. The page's
 policy allows these scripts alone, by their digests, and no connection to anywhere.
+
+Only ``interactive.js`` runs while the page opens. Libraries, models and the data of curves are packed blocks, which a
+browser does not run: it parses and evaluates a library for half a second, so that waits until something needs it.
 """
 
 import base64
 import gzip
 import hashlib
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -18,12 +22,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.output.report.elements import NO_BREAK, in_cell
 from gearwhine.output.sections import Curves, Section, arrowed
 
 _RESULTS = "results.nc"
 _POINTS = 4000  # of a curve; of more, the largest of each stretch is shown
 _CELLS = 240, 600  # of colours over two axes
 _DIGITS = 4
+_LIBRARIES = {"model-viewer": "model-viewer.min.js", "plotly": "plotly-cartesian.min.js"}
+_EXPONENT, _RAISED = re.compile(r"(?<=[A-Za-z])-?\d"), str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LIMIT = "trusted_below_hz"  # attribute: values along the abscissa end there
 
 
@@ -86,7 +93,7 @@ class Scripts:
             return ""
         entries = "".join(
             f'<li id="{identifier}"><button type="button" data-shape="{number}" '
-            f'data-picture="{escape(shape.name)}">{escape(arrowed(" ".join(shape.title.split())))}</button></li>\n'
+            f'data-picture="{escape(shape.name)}">{in_cell(" ".join(shape.title.split()))}</button></li>\n'
             for number, (identifier, shape) in enumerate(zip(identifiers, self.shapes, strict=True))
         )
         return (
@@ -102,7 +109,7 @@ class Scripts:
         """Return the content security policy of a page with these scripts."""
         digests = " ".join(
             f"'sha256-{base64.b64encode(hashlib.sha256(text.encode('utf-8')).digest()).decode('ascii')}'"
-            for text in self._texts()
+            for text in (*self._libraries().values(), _own_script())
         )
         return (
             # The viewer of shapes has a decoder in WebAssembly.
@@ -113,26 +120,37 @@ class Scripts:
     def written(self) -> str:
         """Return the scripts and their data as HTML, for the end of the page."""
         parts = [
-            f'<script type="application/octet-stream" class="model" data-title="{escape(arrowed(shape.title))}" '
-            f'data-note="{escape(arrowed(shape.note))}">{_packed(shape.model)}</script>\n'
+            _block("library", text.encode("utf-8"), f' data-name="{name}"') for name, text in self._libraries().items()
+        ]
+        parts += [
+            _block(
+                "model",
+                shape.model,
+                f' data-title="{escape(arrowed(shape.title))}" data-note="{escape(arrowed(shape.note))}"',
+            )
             for shape in self.shapes
         ]
-        # A slash that ends an element would end the data, too.
-        data = json.dumps(self._drawings, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-        parts.append(f'<script type="application/json" id="drawings">{data}</script>\n')
-        parts += [f"<script>{text}</script>\n" for text in self._texts()]
-        return "".join(parts)
+        parts += [
+            _block("drawing", json.dumps(drawing, separators=(",", ":"), allow_nan=False).encode("utf-8"))
+            for drawing in self._drawings
+        ]
+        return "".join(parts) + f"<script>{_own_script()}</script>\n"
 
-    def _texts(self) -> list[str]:
+    def _libraries(self) -> dict[str, str]:
+        """Return the libraries that this page needs, by name."""
+        needed = {"model-viewer": bool(self.shapes), "plotly": bool(self._drawings)}
         viewers = files("gearwhine.output.viewers")
-        names = ["model-viewer.min.js"] if self.shapes else []
-        names += ["plotly-cartesian.min.js"] if self._drawings else []
-        own = (files(__package__) / "interactive.js").read_text(encoding="utf-8")
-        return [*((viewers / name).read_text(encoding="utf-8") for name in names), own]
+        return {name: (viewers / _LIBRARIES[name]).read_text(encoding="utf-8") for name in needed if needed[name]}
 
 
-def _packed(model: bytes) -> str:
-    return base64.b64encode(gzip.compress(model, 9, mtime=0)).decode("ascii")
+def _own_script() -> str:
+    return (files(__package__) / "interactive.js").read_text(encoding="utf-8")
+
+
+def _block(kind: str, content: bytes, attributes: str = "") -> str:
+    """Return content as a block that no browser runs, packed; its letters cannot end the block."""
+    packed = base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
+    return f'<script type="application/gzip" class="{kind}"{attributes}>{packed}</script>\n'
 
 
 def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
@@ -174,7 +192,13 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
 def _named(array: Any, otherwise: str) -> str:
     unit = array.attrs.get("units", "")
     name = str(array.attrs.get("long_name", otherwise)).rstrip(".")
-    return f"{name} [{unit}]" if unit and unit != "1" else name
+    return f"{name} [{_read(unit)}]" if unit and unit != "1" else name
+
+
+def _read(unit: str) -> str:
+    """Return a unit as it is read, on one line: ``m s-2`` has a raised exponent."""
+    raised = _EXPONENT.sub(lambda found: found[0].translate(_RAISED), unit)
+    return raised.replace(" ", NO_BREAK)
 
 
 def _listed(values: npt.NDArray[np.float64]) -> list[float | None]:

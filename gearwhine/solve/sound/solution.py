@@ -1,6 +1,6 @@
 """Sound of a case: radiation efficiency of the housing's modes, and the sound of the lines of a motion.
 
-The bearings' forces move the housing at each line (:mod:`gearwhine.solve.motion_lines`);
+The bearings' forces move the housing at each line (:mod:`gearwhine.solve.sound.motion_lines`);
 :func:`coupling.signals.transfer_paths.housing_paths` gives the motion by each bearing, exactly, and
 :class:`housing.acoustics.radiation.HousingRadiation` its sound.
 """
@@ -19,9 +19,9 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.kept_radiation import kept_radiation
-from gearwhine.solve.microphones import MicrophoneHistories, microphone_histories
-from gearwhine.solve.motion_lines import (
+from gearwhine.solve.sound.kept_radiation import kept_radiation
+from gearwhine.solve.sound.microphones import MicrophoneHistories, microphone_histories
+from gearwhine.solve.sound.motion_lines import (
     AUDIBLE,
     LeftOut,
     MotionLines,
@@ -29,7 +29,7 @@ from gearwhine.solve.motion_lines import (
     loud_lines,
     pulsating_efficiency,
 )
-from gearwhine.solve.sound_proofs import interior_pressure, power_balance_db, require_proofs
+from gearwhine.solve.sound.proofs import interior_pressure, power_balance_db, require_proofs
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
 from housing.acoustics.medium import HardPlane, Medium
@@ -94,12 +94,12 @@ class SoundLine:
 
     @property
     def power_balance_db(self) -> float | None:
-        """Proof, see :func:`gearwhine.solve.sound_proofs.power_balance_db`."""
+        """Proof, see :func:`gearwhine.solve.sound.proofs.power_balance_db`."""
         return power_balance_db(self.sound)
 
     @property
     def interior_pressure(self) -> float | None:
-        """Proof, see :func:`gearwhine.solve.sound_proofs.interior_pressure`."""
+        """Proof, see :func:`gearwhine.solve.sound.proofs.interior_pressure`."""
         return interior_pressure(self.sound)
 
 

@@ -19,7 +19,12 @@ from housing.storage.netcdf import content_key
 FloatArray = npt.NDArray[np.float64]
 
 _NOTE = "radiation"
-_CODE = ("housing.acoustics", "housing.storage", "gearwhine.solve.sound", "gearwhine.solve.kept_radiation")
+_CODE = (
+    "housing.acoustics",
+    "housing.storage",
+    "gearwhine.solve.sound.solution",
+    "gearwhine.solve.sound.kept_radiation",
+)
 _WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}  # the places of microphones count as they are
 
 

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from coupling.linear.line_outputs import SoundPower
 from coupling.linear.mesh_harmonics import Line, LineModel, Response
-from gearwhine.solve.motion_lines import AUDIBLE, pulsating_efficiency
+from gearwhine.solve.sound.motion_lines import AUDIBLE, pulsating_efficiency
 from housing.acoustics.power_gradient import PowerGradient
-from housing.acoustics.radiation import HousingRadiation
+from housing.acoustics.radiation import HousingRadiation, RadiatedSound
 from housing.acoustics.sound_levels import a_weighting
 
 FloatArray = npt.NDArray[np.float64]
@@ -54,6 +54,11 @@ class HarmonicSound:
         output = self.line.output
         assert isinstance(output, SoundPower)
         return np.asarray(1j * self.line.frequency * self.line.motion[output.housing])
+
+    @property
+    def sound(self) -> RadiatedSound:
+        """What it radiates, superposed of the modes."""
+        return self.power.sound(self.rates)
 
     def nodal_load(self) -> ComplexArray:
         """Adjoint load of the power on the housing's nodes, shape (3 n_nodes,)."""
@@ -97,7 +102,7 @@ def loudest_lines(
             found.append(HarmonicSound(model.line(output, one), power))
     found.sort(key=lambda one: -one.weighting * one.line.value)
     for loud in found[:LINES]:
-        loud.power.sound(loud.rates).require_balance()
+        loud.sound.require_balance()
     return tuple(found[:LINES])
 
 
