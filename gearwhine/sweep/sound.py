@@ -7,13 +7,14 @@ that its radiating surface is made once. Where there are many lines their powers
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.case.speeds_and_torques import mesh_frequencies
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.sound.proofs import doubts, interior_pressure, power_balance_db
@@ -137,7 +138,26 @@ def add_sound(
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
-    return told, housing
+    return [*told, *_beyond_warnings(keys, swept, highest_frequency(case, housing))], housing
+
+
+def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limit: float) -> Iterator[dict[str, Any]]:
+    """Warn where a mesh frequency is above the highest frequency of the sound [Hz]: its lines are left out there."""
+    beyond = [
+        (max(above), one.point)
+        for one in swept
+        if isinstance(one.outcome, PointResult)
+        and (above := [hertz for hertz in mesh_frequencies(one.point.case) if hertz > limit])
+    ]
+    if beyond:
+        highest, point = max(beyond, key=lambda found: found[0])
+        where = ", ".join(f"{key.key}={text}" for key, text in zip(keys, point.texts, strict=True))
+        yield warning(
+            "sound_left_out",
+            f"at {len(beyond)} of {len(swept)} points, such as {where}, a mesh frequency of up to {highest:.0f} Hz is "
+            f"above {limit:.0f} Hz, where the sound ends: its lines are left out, so that these points cannot be "
+            "compared with the others; raise housing.frequency_limit and acoustics.highest_frequency",
+        )
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from sounding_box import COARSE
 from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing
 
 import gearwhine as gw
-from gearwhine.case import swept_keys
+from gearwhine.case import Case, swept_keys
 from gearwhine.solve.sound.motion_lines import MotionLines
 from gearwhine.solve.sound.proofs import interior_pressure, power_balance_db
 from gearwhine.solve.sound.solution import build_radiation, solve_sound
@@ -141,3 +141,23 @@ def test_a_point_whose_powers_disagree_is_left_without_sound(monkeypatch: pytest
     assert "through the surface" in told["message"]
     assert "sound" not in outcomes[worse].document
     assert outcomes[1 - worse].document["sound"] == sounds[1 - worse]
+
+
+def test_points_whose_mesh_frequency_is_above_the_sound_are_told() -> None:
+    sounding = sounding_gearbox(TOP | {"acoustics.highest_frequency": "2.3 kHz"}).case
+    cases = [with_speed(sounding, speed) for speed in (4000.0, 5500.0, 6000.0)]
+    swept: Any = [
+        SimpleNamespace(outcome=PointResult({}, np.zeros(0)), point=SimpleNamespace(case=one, texts=(text,)))
+        for one, text in zip(cases, ("4000 rpm", "5500 rpm", "6000 rpm"), strict=True)
+    ]
+    keys = swept_keys(sounding, ["operation.speed=4000 rpm,5500 rpm,6000 rpm"])
+    (told,), _ = add_sound(sounding, keys, swept, sounding_housing())
+    assert "at 2 of 3 points, such as operation.speed=6000 rpm, a mesh frequency of up to 2800 Hz" in told["message"]
+    assert add_sound(sounding, keys, swept[:1], sounding_housing())[0] == []
+
+
+def with_speed(case: Case, speed: float) -> Case:
+    """The case at another speed of operation [rpm]."""
+    assert case.operation is not None
+    operation = case.operation.model_copy(update={"speed": speed * np.pi / 30.0})
+    return case.model_copy(update={"operation": operation})
