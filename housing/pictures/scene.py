@@ -117,7 +117,8 @@ class Scene:
         self._housing = housing
         faces = np.hstack([np.full((len(housing.triangles), 1), 3), housing.triangles])
         rest = pyvista.PolyData(housing.rest, faces)
-        outline = rest.extract_feature_edges(feature_angle=_SHARP, boundary_edges=False, manifold_edges=False)
+        # A flat face has its rim.
+        outline = rest.extract_feature_edges(feature_angle=_SHARP, boundary_edges=True, manifold_edges=False)
         # Points on sharp edges stand once for each side, so that shading is smooth on faces and not across edges.
         rest["origin"] = np.arange(len(housing.rest))
         self._solid = rest.compute_normals(
@@ -190,7 +191,8 @@ class Scene:
         )
         # The far side of a closed skin is never seen, and costs a third of the drawing.
         self._actor.prop.culling = "back"
-        plotter.add_mesh(outline, color="#707070", line_width=self._finer)
+        if outline.n_points:  # a smooth body has none
+            plotter.add_mesh(outline, color="#707070", line_width=self._finer)
         grown = self._finer * (self._size[0] / _FULL) ** _GROWTH
         letters = 13.5 * grown, 9.0 * grown
         self._title, self._note = (

@@ -13,7 +13,7 @@ from PIL import Image
 from housing import HousingError, ModeSet, solve_modes
 from housing.errors import RendererUnavailableError
 from housing.fem.matrices import Matrices
-from housing.pictures.drawn_shapes import DrawnShape, drawn_housing
+from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
 from housing.pictures.images import render_gallery, render_modes, render_shapes
 from housing.pictures.scene import STRIP, VIEWS, find_renderer
 from meshes import Mesh
@@ -81,6 +81,20 @@ def test_values_of_either_sign_have_their_own_colours(box: Mesh, modes: ModeSet,
     assert np.count_nonzero(red[:, right]) > 500
     assert np.count_nonzero(blue[:, ~right]) > 500
     assert not red[60:180, :100].any()  # above the axes
+
+
+@pytest.mark.usefixtures("renderer")
+def test_a_flat_face_alone_is_drawn_with_its_rim(tmp_path: Path) -> None:
+    """It has no edge between faces; its rim is grey in front of its red."""
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
+    face = DrawnHousing(corners, np.array([[0, 1, 2], [0, 2, 3]]), np.arange(4))
+    shape = DrawnShape("flat", "", "", 0.0 * corners, "I", 1.0, np.ones(4))
+    image = _pixels(render_shapes(face, [shape], tmp_path, view="front", size=(320, 240))[0]).astype(int)[40:, :280]
+    red = image[..., 0] - image[..., 2] > 60
+    assert np.count_nonzero(red) > 500
+    rows, columns = np.nonzero(red)
+    rim = image[rows.min() - 2 : rows.min() + 1, columns.min() : columns.max()].min(axis=0)
+    assert np.median(rim.max(axis=1)) < 200
 
 
 @pytest.mark.usefixtures("renderer")
