@@ -117,31 +117,35 @@ def bending_compliance(gear: Gear, stub: float) -> float:
     return 8.0 * float(right @ motion[:, 0])
 
 
-@pytest.mark.parametrize("width", [10.0, 20.0])
-def test_a_solid_pinion_bends_as_the_round_one(width: float) -> None:
-    """With teeth that carry nothing at the ends of the face."""
-    gear = replace(PINION, face_width=width * MODULE)
+@pytest.mark.parametrize(("teeth", "width"), [(20, 10.0), (20, 20.0), (40, 10.0)])
+def test_a_solid_pinion_bends_as_the_round_one(teeth: int, width: float) -> None:
+    """With teeth that carry nothing at the ends of the face, by 20 of them; 40 were not looked at for that."""
+    gear = replace(PINION, teeth=teeth, face_width=width * MODULE)
     stub = gear.root_circle_radius
     section = toothed_section(gear)
-    found = bending_compliance(gear, stub) - 2.0 * stub / (math.pi / 4.0 * ROOT**4)
-    teeth = gear.face_width - 2.0 * section.end_length
-    round_one = teeth / (math.pi / 64.0 * section.bending_diameter**4)
-    round_one += 2.0 * section.end_length / (math.pi / 4.0 * ROOT**4)
+    of_root = math.pi / 4.0 * gear.root_circle_radius**4
+    found = bending_compliance(gear, stub) - 2.0 * stub / of_root
+    within = gear.face_width - 2.0 * section.end_length
+    round_one = within / (math.pi / 64.0 * section.bending_diameter**4) + 2.0 * section.end_length / of_root
     assert round_one == pytest.approx(found, rel=0.03)
     # The root circle alone is too soft, the section all over the face too stiff.
-    assert gear.face_width / (math.pi / 4.0 * ROOT**4) > 1.3 * found
+    assert gear.face_width / of_root > (1.3 if teeth == 20 else 1.1) * found
     assert gear.face_width / (math.pi / 64.0 * section.bending_diameter**4) < 0.92 * found
 
 
-def test_helical_teeth_lie_across_the_axis() -> None:
-    """Straight teeth in the transverse section carry all; at 30° their part is halved."""
-    straight, helical = (toothed_section(replace(PINION, helix_angle=math.radians(one))) for one in (0.0, 30.0))
-    parts = []
-    for section, helix in ((straight, 0.0), (helical, 30.0)):
-        gear = replace(PINION, helix_angle=math.radians(helix))
-        bare = toothed_section(replace(gear, poisson_ratio=0.0))
-        root = (2.0 * gear.root_circle_radius) ** 4
-        parts.append((section.bending_diameter**4 - root) / (bare.bending_diameter**4 - root))
-    assert parts[0] == pytest.approx(1.0)
-    assert parts[1] == pytest.approx((0.75 - 0.25 * NU) / 0.75)
-    assert helical.end_length == straight.end_length
+@pytest.mark.parametrize(("degrees", "elements"), [(15.0, 1.039), (30.0, 1.136)])
+def test_helical_teeth_carry_less(degrees: float, elements: float) -> None:
+    """Compliance over that of straight teeth, each by its root circle, as `benchmarks/helical_pinion.py` finds it.
+
+    Of whole pinions of 20 teeth, face of 10 modules. Teeth that carried as much as straight ones would give 1.01 and
+    1.05.
+    """
+    found = []
+    for helix in (0.0, degrees):
+        gear = replace(PINION, helix_angle=math.radians(helix), face_width=10.0 * MODULE)
+        section = toothed_section(gear)
+        teeth = gear.face_width - 2.0 * section.end_length
+        part = (2.0 * gear.root_circle_radius / section.bending_diameter) ** 4
+        found.append((teeth * part + 2.0 * section.end_length) / gear.face_width)
+    assert found[1] / found[0] == pytest.approx(elements, rel=0.02)
+    assert found[1] / found[0] > 1.0 + 0.8 * (elements - 1.0)
