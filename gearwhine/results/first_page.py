@@ -45,7 +45,7 @@ _CHAPTERS = {
     "Motion": ("bearing load", "run signature"),
     "Steady state": ("superposition",),
     "Sound": ("interior_pressure", "microphone_interpolation", "sound_left_out"),
-    "Sweep": ("sound_of_sweep", "sound_left_out"),
+    "Sweep": ("sound_of_sweep", "sound_left_out", "sweep_resolution"),
     "Updated numbers": ("shapes",),
     "Operating point": (
         "sensitivity",

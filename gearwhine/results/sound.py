@@ -1,9 +1,10 @@
 """Sound: quantities of the housing's radiation and of the sound of a motion's lines, and how they are shown."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import (
@@ -33,6 +34,8 @@ _SHOWN = 12  # lines on the terminal
 _BRIEF = 5  # of them beside another analysis
 _LITTLE = 1e-3  # part of the power that may be left out without a word
 _ON_BOX = 9  # microphones of the box, the last ones
+_MODE_NAME = "housing mode "
+_LOCAL = "local compliance"
 _FAINT = 0.02  # part of a power that is worth its place
 
 SURFACE = (
@@ -82,23 +85,35 @@ MODE_COLUMNS = (
 def _contributions(row: Any) -> dict[str, list[dict[str, Any]]]:
     solved, line = row
     power = line.sound.power
-    modes = line.sound.by_mode
-    named = [(f"housing mode {number}", float(part)) for number, part in enumerate(modes, start=1)]
-    count = len(solved.mode_frequencies)
-    named = [*named[:count], ("local compliance", float(modes[count:].sum()))]
-    groups = {
-        "housing_modes": named,
-        "bearings": list(zip(solved.bearings, line.sound.by_motion.tolist(), strict=True)),
-        "faces": list(line.sound.by_face.items()),
-    }
     return {
-        group: [
-            {"name": name, "share": part / power}
-            for name, part in sorted(parts, key=lambda one: -abs(one[1]))
-            if abs(part) > _FAINT * power
-        ]
-        for group, parts in groups.items()
+        "housing_modes": parts_of_modes(line.sound.by_mode, len(solved.mode_frequencies), power),
+        "bearings": _worth_telling(zip(solved.bearings, line.sound.by_motion.tolist(), strict=True), power),
+        "faces": _worth_telling(line.sound.by_face.items(), power),
     }
+
+
+def parts_of_modes(by_mode: npt.NDArray[np.float64], natural: int, power: float) -> list[dict[str, Any]]:
+    """Return the parts of the housing's modes in the power of a line that are worth their place, the largest first.
+
+    Parameters
+    ----------
+    by_mode : ndarray, shape (n_modes,)
+        Power of each mode and residual mode [W].
+    natural : int
+        Number of the modes, before the residual modes: these are the local compliance together.
+    power : float
+        Of the line [W].
+    """
+    modes = [(f"{_MODE_NAME}{number}", float(part)) for number, part in enumerate(by_mode[:natural], start=1)]
+    return _worth_telling([*modes, (_LOCAL, float(by_mode[natural:].sum()))], power)
+
+
+def _worth_telling(parts: Iterable[tuple[str, float]], power: float) -> list[dict[str, Any]]:
+    return [
+        {"name": name, "share": part / power}
+        for name, part in sorted(parts, key=lambda one: -abs(one[1]))
+        if abs(part) > _FAINT * power
+    ]
 
 
 def _lines(name: str, of: Any, unit: str, what: str) -> Quantity:
@@ -140,7 +155,7 @@ def _largest(heading: str, group: str, *, share: bool = True) -> Column:
         parts = row["contributions"][group]
         if not parts:
             return ""
-        name = str(parts[0]["name"]).removeprefix("housing mode ").replace("local compliance", "local")
+        name = str(parts[0]["name"]).removeprefix(_MODE_NAME).replace(_LOCAL, "local")
         return f"{name}, {100.0 * parts[0]['share']:.0f} %" if share else name
 
     return Column(heading, text)
@@ -167,6 +182,86 @@ LINE_COLUMNS = (
     _FACE,
 )
 """Of a line, in the report."""
+
+
+def _first_mode(line: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return the mode with the largest part of a line's power."""
+    parts = line["contributions"]["housing_modes"]
+    return parts[0] if parts else None
+
+
+def _mode_number(line: Mapping[str, Any]) -> int | None:
+    mode = _first_mode(line)
+    return None if mode is None or mode["name"] == _LOCAL else int(mode["name"].removeprefix(_MODE_NAME))
+
+
+def _mode_text(row: Mapping[str, Any]) -> str:
+    """Return the mode that carries a line with its natural frequency and its part in words."""
+    if row["mode_share"] is None:
+        return ""
+    name = "local" if row["mode"] is None else f"{row['mode']} at {row['mode_frequency_hz']:.0f} Hz"
+    return f"{name}, {100.0 * row['mode_share']:.0f} %"
+
+
+SWEPT_LINE = (
+    Quantity(
+        "name",
+        lambda row: row[0]["name"],
+        "sound_line_name",
+        long_name="name of the loudest lines",
+        heading="loudest line",
+        shown=lambda row: arrowed(str(row["name"])),
+    ),
+    Quantity(
+        "frequency_hz",
+        lambda row: row[0]["frequency_hz"],
+        "sound_line_frequency",
+        unit="Hz",
+        long_name="frequency of the loudest lines",
+        heading="at [Hz]",
+        shown=".1f",
+    ),
+    Quantity(
+        "order",
+        lambda row: row[0]["order"],
+        "sound_line_order",
+        unit="1",
+        long_name="order of the loudest lines over the speed of the first driver",
+    ),
+    Quantity(
+        "sound_power_db",
+        lambda row: row[0]["sound_power_db"],
+        "sound_line_level",
+        unit="dB",
+        long_name="sound power level of the loudest lines re 1 pW",
+        heading="its L_W\n[dB]",
+        shown=".1f",
+    ),
+    Quantity(
+        "mode",
+        lambda row: _mode_number(row[0]),
+        "sound_line_mode",
+        unit="1",
+        long_name="number of the housing mode with the largest part of the line's power",
+        heading="by mode",
+        shown=_mode_text,
+    ),
+    Quantity(
+        "mode_frequency_hz",
+        lambda row: None if (number := _mode_number(row[0])) is None else row[1][number - 1],
+        "sound_line_mode_frequency",
+        unit="Hz",
+        long_name="natural frequency of that mode",
+    ),
+    Quantity(
+        "mode_share",
+        lambda row: None if (mode := _first_mode(row[0])) is None else mode["share"],
+        "sound_line_mode_share",
+        unit="1",
+        long_name="part of that mode in the line's power",
+    ),
+)
+"""Of a line of a sweep's point, its entry in the document, and the natural frequencies of the housing [Hz]."""
 
 LEFT_OUT = (
     Quantity("name", lambda one: one.name),

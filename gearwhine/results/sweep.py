@@ -1,11 +1,63 @@
-"""Sweep: the points of its grid as a table."""
+"""Sweep: the points of its grid as a table, and the peaks that it passes by."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
+from typing import Any
 
-from gearwhine.output.sections import Column, Document, Picture, Section, Table, counted, percent, table_of
+from gearwhine.output.quantity import Quantity
+from gearwhine.output.sections import (
+    Column,
+    Document,
+    Picture,
+    Section,
+    Table,
+    arrowed,
+    columns_of,
+    counted,
+    percent,
+    table_of,
+)
+from gearwhine.results.sound import SWEPT_LINE
+
+_SOUND = "sound"  # output of a peak of the sound power
 
 _MOST_SENSORS, _MOST_MESHES = 5, 2  # with a column each
+_MOST_PEAKS = 8  # on the terminal
+
+
+def _peak_between(row: Mapping[str, Any]) -> str:
+    """Return the points on either side of a peak."""
+    others = (f"{key}={text}" for key, text in row["settings"].items())
+    return ", ".join([f"{row['below_rpm']:g} and {row['above_rpm']:g}", *others])
+
+
+def _peak_level(row: Mapping[str, Any]) -> str:
+    """Return the level of a peak: that of the sound power, or the amplitude of a sensor."""
+    if row["output"] == _SOUND:
+        return f"L_W {row['level_db']:.1f} dB"
+    return f"{row['output']} {10.0 ** (row['level_db'] / 20.0):.3g} m/s²"
+
+
+PEAK = (
+    Quantity("settings", lambda one: one.settings),
+    Quantity("below_rpm", lambda one: one.below_rpm),
+    Quantity(
+        "above_rpm",
+        lambda one: one.above_rpm,
+        heading="between [rpm]",
+        shown=_peak_between,
+    ),
+    Quantity("line", lambda one: one.line, heading="line", shown=lambda row: arrowed(str(row["line"]))),
+    Quantity("mode", lambda one: one.mode, heading="meets the mode"),
+    Quantity("frequency_hz", lambda one: one.frequency_hz, heading="at [Hz]", shown=".1f"),
+    Quantity("damping_ratio", lambda one: one.damping_ratio),
+    Quantity("speed_rpm", lambda one: one.speed_rpm, heading="speed [rpm]", shown=".1f"),
+    Quantity("half_width_rpm", lambda one: one.half_width_rpm, heading="half-power\nwidth ± [rpm]", shown=".2g"),
+    Quantity("output", lambda one: one.output),
+    Quantity("level_db", lambda one: one.level_db, heading="estimate", shown=_peak_level),
+    Quantity("rise_db", lambda one: one.rise_db, heading="above the louder\npoint [dB]", shown=".1f"),
+)
+"""Of a peak between two points of a sweep over speed, see :class:`gearwhine.sweep.resolution.MissedPeak`."""
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -42,7 +94,22 @@ def _content(document: Document) -> Iterator[str | Table]:
             yield f"Failed at {where}: {point['failure']}"
     resumed = f", {document['resumed']} of them by an earlier run" if document["resumed"] else ""
     failed = f"; {document['failed']} failed" if document["failed"] else ""
+    yield from _missed(document)
     yield f"{document['done']} of {counted(len(document['points']), 'point')} done{resumed}{failed}"
+
+
+def _missed(document: Document) -> Iterator[str | Table]:
+    """Yield the peaks between the points, and the speeds that resolve them."""
+    peaks = document.get("missed_peaks", ())  # not in summaries of earlier versions
+    if not peaks:
+        return
+    yield from table_of(columns_of(PEAK), peaks[:_MOST_PEAKS], "Peaks between the points, by the linear response")
+    speeds = ", ".join(f"{speed:g} rpm" for speed in document["speeds_to_add_rpm"])
+    more = f", of which the table has {_MOST_PEAKS}" if len(peaks) > _MOST_PEAKS else ""
+    yield (
+        f"The points pass by {counted(len(peaks), 'peak')} narrower than their spacing{more}. Add {speeds}; in the "
+        f"same folder, what is done stays: gearwhine sweep CASE {document['over_with_peaks']}"
+    )
 
 
 def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
@@ -68,7 +135,11 @@ def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
             Column("apart", partial(_apart, place)),
         ]
     if any("sound" in point for point in done):
-        columns.append(Column("sound power\n[dB(A)]", partial(_sound, "total_db_a")))
+        columns += [
+            Column("sound L_W\n[dB]", partial(_sound, "total_db")),
+            Column("A-weighted\n[dB]", partial(_sound, "total_db_a")),
+            *(Column(one.heading, partial(_loudest, one)) for one in columns_of(SWEPT_LINE)),
+        ]
     return (*columns, Column("energy\nerror", lambda point: f"{point['energy_error']:.0e}"))
 
 
@@ -87,6 +158,11 @@ def _apart(place: int, point: Document) -> str:
 
 def _sound(key: str, point: Document) -> str:
     return f"{point['sound'][key]:.1f}" if "sound" in point else ""
+
+
+def _loudest(column: Column, point: Document) -> str:
+    """Return a cell of the loudest line of a point."""
+    return column.text(point["sound"]["loudest"]) if "sound" in point else ""
 
 
 def _level(name: str, point: Document) -> str:

@@ -10,7 +10,11 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
+from gearwhine.output.quantity import document_of
+from gearwhine.results.sound import SWEPT_LINE
+from gearwhine.results.sweep import PEAK
 from gearwhine.sweep.points import axis_name
+from gearwhine.sweep.resolution import missed_peaks, over_with, peak_warnings, speeds_to_add
 from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import POINTS, PointFailure, PointResult
 
@@ -90,6 +94,11 @@ def sweep_document(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> dic
         else:
             row |= {"status": "done"} | {key: value for key, value in one.outcome.document.items() if key != "warnings"}
         rows.append(row)
+    peaks = missed_peaks(keys, swept)
+    found: dict[str, Any] = {"missed_peaks": [document_of(PEAK, one) for one in peaks]}
+    if peaks:
+        speeds = speeds_to_add(peaks)
+        found |= {"speeds_to_add_rpm": speeds, "over_with_peaks": over_with(keys, swept, speeds)}
     return {
         "axes": [
             {"key": key.key, "name": axis_name(key.key), "unit": key.unit, "values": list(key.values)} for key in keys
@@ -98,7 +107,8 @@ def sweep_document(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> dic
         "failed": sum(row["status"] == "failed" for row in rows),
         "resumed": sum(row["resumed"] for row in rows),
         "points": rows,
-        "warnings": _warnings(swept),
+        **found,
+        "warnings": [*_warnings(swept), *peak_warnings(peaks)],
     }
 
 
@@ -124,6 +134,21 @@ class _Grid:
             if isinstance(one.outcome, PointResult):
                 values[one.point.place] = of(one.outcome)
         return ((*self.names, *dimensions), values, attributes)
+
+    def words(
+        self,
+        dimensions: tuple[str, ...],
+        shape: tuple[int, ...],
+        of: Callable[[PointResult], Sequence[str]],
+        attributes: dict[str, str],
+    ) -> Any:
+        """Return a variable of texts with a further dimension, empty where there are fewer or is no result."""
+        values = np.full((*self.shape, *shape), "", dtype=object)
+        for one in self.swept:
+            if isinstance(one.outcome, PointResult):
+                found = of(one.outcome)
+                values[one.point.place][: len(found)] = found
+        return ((*self.names, *dimensions), values.astype(str), attributes)
 
     def filled(self, start: Any, of: Callable[[PointResult | PointFailure], Any]) -> Any:
         values = np.full(self.shape, start, dtype=object if isinstance(start, str) else None)
@@ -258,22 +283,28 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
     def total(key: str) -> Callable[[PointResult], float]:
         return lambda result: result.document.get("sound", {}).get(key, np.nan)
 
-    def lines(key: str) -> Callable[[PointResult], FloatArray]:
-        return lambda result: _padded(
-            np.array([line[key] for line in result.document.get("sound", {}).get("lines", ())]), count
-        )
+    def rows(result: PointResult) -> list[dict[str, Any]]:
+        lines = result.document.get("sound", {}).get("lines", ())[:count]
+        return [document_of(SWEPT_LINE, (line, result.housing_frequencies_hz)) for line in lines]
 
     for name, key, unit, what in (
         ("sound_power_level", "total_db", "dB", "sound power level of all lines re 1 pW"),
         ("sound_power_level_a", "total_db_a", "dB", "A-weighted sound power level of all lines re 1 pW"),
     ):
         variables[name] = grid.rows((), (), total(key), _unit(unit, what))
-    for name, key, unit, what in (
-        ("sound_line_frequency", "frequency_hz", "Hz", "frequency of the loudest lines"),
-        ("sound_line_order", "order", "1", "order of the loudest lines over the speed of the first driver"),
-        ("sound_line_level", "sound_power_db", "dB", "sound power level of the loudest lines re 1 pW"),
-    ):
-        variables[name] = grid.rows(("sound_line",), (count,), lines(key), _unit(unit, what))
+
+    def numbers(key: str) -> Callable[[PointResult], FloatArray]:
+        return lambda result: _padded(np.array([one[key] for one in rows(result)], dtype=np.float64), count)
+
+    def words(key: str) -> Callable[[PointResult], list[str]]:
+        return lambda result: [str(one[key]) for one in rows(result)]
+
+    along, size = ("sound_line",), (count,)
+    for one in SWEPT_LINE:
+        if one.unit:
+            variables[one.name] = grid.rows(along, size, numbers(one.key), _unit(one.unit, one.long_name))
+        else:
+            variables[one.name] = grid.words(along, size, words(one.key), {"long_name": one.long_name})
     harmonics = _union([line["name"] for line in sound["lines"] if line["kind"] == "mesh"] for sound in sounds)
     if not harmonics:
         return

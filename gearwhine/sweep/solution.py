@@ -30,6 +30,7 @@ from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, machine_warnings
 from gearwhine.solve.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.sweep.points import Point, code_digest
+from gearwhine.sweep.resonances import Resonances, find_resonances
 from housing.storage.atomic_file import checksum_holds, write_checksum
 from housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 
@@ -65,6 +66,8 @@ class PointResult:
         Rates of the housing's coordinates there, real and imaginary part.
     line_names, line_kinds : tuple of str
         Their names and causes, see :class:`coupling.signals.excitation.LineName`.
+    resonances : Resonances or None
+        Of the machine, linear about its mean contact; None where no mesh drives a sensor or a sound.
     """
 
     document: dict[str, Any]
@@ -79,6 +82,7 @@ class PointResult:
     line_rates: FloatArray = field(default_factory=lambda: np.empty((0, 0, 2)))
     line_names: tuple[str, ...] = ()
     line_kinds: tuple[str, ...] = ()
+    resonances: Resonances | None = None
 
 
 @dataclass(frozen=True)
@@ -195,6 +199,7 @@ def _reduced(
         line_rates=rates,
         line_names=tuple(one.name for one in names),
         line_kinds=tuple(one.kind for one in names),
+        resonances=find_resonances(case, solved.machine, solved.trusted_limit),
     )
 
 
@@ -290,9 +295,44 @@ def _arrays(result: PointResult) -> Variables:
         arrays["line_rates"] = (("sound_line", "coordinate", "part"), result.line_rates, told)
         arrays["line_names"] = ("sound_line", list(result.line_names), {"long_name": "name of the line"})
         arrays["line_kinds"] = ("sound_line", list(result.line_kinds), {"long_name": "cause of the line"})
+    if result.resonances is not None:
+        arrays |= _resonance_arrays(result.resonances)
     attributes = {"units": "Hz", "long_name": "housing natural frequency"}
     arrays["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
     return arrays
+
+
+def _resonance_arrays(found: Resonances) -> Variables:
+    mode, mesh, grid, output = ("coupled_mode",), ("mesh",), ("response_frequency",), ("output",)
+    return {
+        "coupled_frequency": (mode, found.frequencies, {"units": "Hz", "long_name": "damped natural frequency"}),
+        "coupled_half_width": (mode, found.half_widths, {"units": "Hz", "long_name": "half the half-power bandwidth"}),
+        "coupled_name": (mode, list(found.names), {"long_name": "kind and place of the coupled mode"}),
+        "mesh": (mesh, list(found.meshes), {}),
+        "mesh_order": (mesh, found.mesh_orders, {"units": "1", "long_name": "mesh order over the first driver"}),
+        "response_frequency": (grid, found.grid, {"units": "Hz", "long_name": "frequency of the response"}),
+        "output": (output, list(found.outputs), {}),
+        "response": (
+            (*output, *mesh, *grid),
+            found.response,
+            {"units": "dB", "long_name": "level of the output by a unit transmission error of the mesh"},
+        ),
+    }
+
+
+def _resonances(arrays: dict[str, npt.NDArray[Any]]) -> Resonances | None:
+    if "response" not in arrays:
+        return None
+    return Resonances(
+        frequencies=arrays["coupled_frequency"],
+        half_widths=arrays["coupled_half_width"],
+        names=tuple(map(str, arrays["coupled_name"])),
+        meshes=tuple(map(str, arrays["mesh"])),
+        mesh_orders=arrays["mesh_order"],
+        grid=arrays["response_frequency"],
+        outputs=tuple(map(str, arrays["output"])),
+        response=arrays["response"],
+    )
 
 
 def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> PointResult:
@@ -313,5 +353,6 @@ def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> 
         line_rates=arrays.get("line_rates", np.empty((0, 0, 2))),
         line_names=tuple(map(str, arrays.get("line_names", ()))),
         line_kinds=tuple(map(str, arrays.get("line_kinds", ()))),
+        resonances=_resonances(arrays),
         **named,
     )

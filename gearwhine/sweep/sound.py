@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case.speeds_and_torques import mesh_frequencies
-from gearwhine.output.quantity import warning
+from gearwhine.output.quantity import document_of, warning
 from gearwhine.progress import Progress, in_order, silent
+from gearwhine.results.sound import SWEPT_LINE, parts_of_modes
 from gearwhine.solve.sound.proofs import doubts, interior_pressure, power_balance_db
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
@@ -83,6 +84,7 @@ def add_sound(
     radiation = build_radiation(case, housing, progress)
     positions, _ = microphones_of(case, housing)
     places = np.array(list(positions.values())).reshape(-1, 3)
+    natural = len(housing.modes.frequencies_hz)
     jobs: list[tuple[int, int, float, Any]] = []  # number of the point and of its line, frequency, rates
     for number, one in enumerate(swept):
         if not isinstance(one.outcome, PointResult) or not len(one.outcome.line_frequencies):
@@ -102,8 +104,8 @@ def add_sound(
 
     def solve(job: tuple[int, int, float, Any]) -> _Line:
         *_, hertz, rates = job
-        line = None if table is None else _interpolated(table, radiation, hertz, rates[:, 0], positions)
-        return line or _line(radiation.solve(hertz, rates), positions, places)
+        line = None if table is None else _interpolated(table, radiation, hertz, rates[:, 0], positions, natural)
+        return line or _line(radiation.solve(hertz, rates), positions, places, natural)
 
     lines: dict[int, list[_Line]] = {}
     for (number, place, *_), line in zip(jobs, in_order(solve, jobs, "sound of the sweep", progress), strict=True):
@@ -125,7 +127,7 @@ def add_sound(
         told += [entry for line in counted for entry in line.told]
         balances = [line.entry["power_balance_db"] for line in counted]
         leaks = [line.entry["interior_pressure"] for line in counted]
-        entries = [line.entry for line in found]
+        entries = sorted((line.entry for line in found), key=lambda entry: -float(entry["sound_power_db"]))
         outcome = swept[number].outcome
         assert isinstance(outcome, PointResult)
         outcome.document["sound"] = {
@@ -134,7 +136,8 @@ def add_sound(
             "total_db_a": sum_of_levels(entry["sound_power_db_a"] for entry in entries),
             "power_balance_db": max((one for one in balances if one is not None), key=abs, default=None),
             "interior_pressure": max((one for one in leaks if one is not None), default=None),
-            "lines": sorted(entries, key=lambda entry: -float(entry["sound_power_db"])),
+            "loudest": document_of(SWEPT_LINE, (entries[0], housing.modes.frequencies_hz)),
+            "lines": entries,
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
@@ -171,7 +174,7 @@ class _Line:
     refused: HousingError | None
 
 
-def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: FloatArray) -> _Line:
+def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: FloatArray, natural: int) -> _Line:
     """Return the figures of a sound, which is not held: a sweep has thousands."""
     refused = None
     try:
@@ -183,6 +186,7 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
         sound.frequency_hz, sound.power, sound.radiation_efficiency, dict(zip(positions, heard, strict=True))
     )
     entry |= {"power_balance_db": power_balance_db(sound), "interior_pressure": interior_pressure(sound)}
+    entry["contributions"] = {"housing_modes": parts_of_modes(sound.by_mode, natural, sound.power)}
     return _Line(entry, sound.power, sound.surface_power, doubts(sound, "a line"), refused)
 
 
@@ -192,6 +196,7 @@ def _interpolated(
     hertz: float,
     rates: ComplexArray,
     positions: Mapping[str, FloatArray],
+    natural: int,
 ) -> _Line | None:
     """Return the figures of a line by interpolation; None where that is doubtful, or a proof is."""
     if not table.holds(hertz):
@@ -208,6 +213,7 @@ def _interpolated(
         "power_balance_db": float(power_level(surface_power) - power_level(power)),
         "interior_pressure": leak if radiation.method == "boundary-elements" else None,
     }
+    entry["contributions"] = {"housing_modes": parts_of_modes(table.by_mode(hertz, rates), natural, power)}
     return _Line(entry, power, surface_power, [], None)
 
 

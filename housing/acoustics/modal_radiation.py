@@ -18,14 +18,16 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from housing.acoustics.boundary_elements import surface_product
 from housing.acoustics.radiation import EquivalentField, HousingRadiation
 from housing.errors import HousingError
 from housing.storage.netcdf import LabelledArray
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-Solve = Callable[[float], tuple[FloatArray, FloatArray, ComplexArray, float]]
-Each = Callable[[Solve, Sequence[float]], Iterable[tuple[FloatArray, FloatArray, ComplexArray, float]]]
+Solution = tuple[FloatArray, ComplexArray, ComplexArray, float]
+Solve = Callable[[float], Solution]
+Each = Callable[[Solve, Sequence[float]], Iterable[Solution]]
 
 _TWO_PI = 2.0 * np.pi
 POINTS = 41
@@ -34,6 +36,7 @@ ARRAYS = (
     "radiation_frequency",
     "radiation_resistance",
     "surface_resistance",
+    "surface_reactance",
     "radiation_interior_residual",
     "point_pressure",
     "point_delay",
@@ -56,6 +59,8 @@ class ModalRadiation:
         Radiation resistance R from the far field, symmetric: rates q̇ have the power ½ q̇ᴴ R q̇ [W s² per unit rate²].
     surface_resistance : ndarray, shape (f, n, n)
         The same from the surface.
+    surface_reactance : ndarray, shape (f, n, n)
+        Imaginary part of ∫ vᵢ pⱼ dS, symmetric: power that the modes exchange, and that none of them radiates.
     pressure : ndarray of complex, shape (f, m, n)
         At m points, times exp(+i ω delay) [Pa per unit rate].
     delays : ndarray, shape (m,)
@@ -67,6 +72,7 @@ class ModalRadiation:
     frequencies: FloatArray
     resistance: FloatArray
     surface_resistance: FloatArray
+    surface_reactance: FloatArray
     pressure: ComplexArray
     delays: FloatArray
     interior_residual: FloatArray
@@ -105,7 +111,7 @@ class ModalRadiation:
         middle = radiation.elements[0].surface.points.mean(axis=0)
         delays = np.linalg.norm(places - middle, axis=1) / radiation.medium.speed_of_sound
 
-        def at(hertz: float) -> tuple[FloatArray, FloatArray, ComplexArray, float]:
+        def at(hertz: float) -> Solution:
             sound = radiation.solve(hertz, unit)
             pressure = np.zeros((0, len(unit)), dtype=np.complex128)
             if len(places):
@@ -113,12 +119,24 @@ class ModalRadiation:
                 assert not isinstance(field, EquivalentField)
                 delayed = field.pressure_at(places)  # type: ignore[attr-defined]
                 pressure = np.asarray(delayed * np.exp(1j * _TWO_PI * hertz * delays)[:, None])
-            surface = np.asarray(sum(field.surface_resistance for field in sound.fields))
-            return sound.resistance, surface, pressure, sound.interior_residual
+            product = np.asarray(
+                sum(surface_product(one.surface, one.velocity, one.pressure_at_corners) for one in sound.fields)
+            )
+            # Both are symmetric by reciprocity, but for the discretisation.
+            return sound.resistance, 0.5 * (product + product.T), pressure, sound.interior_residual
 
         frequencies = np.linspace(lowest, highest, points)
         resistance, surface, pressure, leak = zip(*each(at, frequencies.tolist()), strict=True)
-        return cls(frequencies, np.array(resistance), np.array(surface), np.array(pressure), delays, np.array(leak))
+        impedance = np.array(surface)
+        return cls(
+            frequencies,
+            np.array(resistance),
+            impedance.real.copy(),
+            impedance.imag.copy(),
+            np.array(pressure),
+            delays,
+            np.array(leak),
+        )
 
     @cached_property
     def _powers(self) -> tuple[CubicSpline, CubicSpline, CubicSpline]:
@@ -127,6 +145,10 @@ class ModalRadiation:
             CubicSpline(self.frequencies[::2], self.resistance[::2], axis=0),
             CubicSpline(self.frequencies, self.surface_resistance, axis=0),
         )
+
+    @cached_property
+    def _reactance(self) -> CubicSpline:
+        return CubicSpline(self.frequencies, self.surface_reactance, axis=0)
 
     @cached_property
     def _pressures(self) -> "tuple[CubicSpline[np.complex128], CubicSpline[np.complex128]]":
@@ -148,15 +170,30 @@ class ModalRadiation:
         HousingError
             Where the table does not reach the frequency.
         """
+        self._require_held(frequency_hz)
+        fine, coarse, surface = (
+            float(0.5 * (rates.conj() @ spline(frequency_hz) @ rates).real) for spline in self._powers
+        )
+        return fine, surface, abs(coarse - fine) / fine if fine > 0.0 else np.inf
+
+    def by_mode(self, frequency_hz: float, rates: ComplexArray) -> FloatArray:
+        """Part of each mode in the power of rates q̇ on the surface [W], shape (n,): ½ Re q̇̄ᵢ Σⱼ (R + iX)ᵢⱼ q̇ⱼ.
+
+        Raises
+        ------
+        HousingError
+            Where the table does not reach the frequency.
+        """
+        self._require_held(frequency_hz)
+        impedance = self._powers[2](frequency_hz) + 1j * self._reactance(frequency_hz)
+        return np.asarray(0.5 * (rates.conj() * (impedance @ rates)).real)
+
+    def _require_held(self, frequency_hz: float) -> None:
         if not self.holds(frequency_hz):
             raise HousingError(
                 f"radiation at {frequency_hz:.6g} Hz; expected a frequency from {self.frequencies[0]:.6g} to "
                 f"{self.frequencies[-1]:.6g} Hz"
             )
-        fine, coarse, surface = (
-            float(0.5 * (rates.conj() @ spline(frequency_hz) @ rates).real) for spline in self._powers
-        )
-        return fine, surface, abs(coarse - fine) / fine if fine > 0.0 else np.inf
 
     def pressure_at(self, frequencies: FloatArray) -> ComplexArray:
         """Sound pressure at the points for unit rates [Pa], shape (l, m, n)."""
@@ -187,6 +224,9 @@ class ModalRadiation:
             ),
             "surface_resistance": LabelledArray(
                 _MATRIX, self.surface_resistance, "W s2 kg-1 m-2", "radiation resistance of the modes, on the surface"
+            ),
+            "surface_reactance": LabelledArray(
+                _MATRIX, self.surface_reactance, "W s2 kg-1 m-2", "radiation reactance of the modes, on the surface"
             ),
             "radiation_interior_residual": LabelledArray(
                 (_AXIS,), self.interior_residual, "1", "pressure inside relative to that on the surface"
@@ -223,6 +263,7 @@ class ModalRadiation:
             arrays["radiation_frequency"].values,
             resistance,
             arrays["surface_resistance"].values,
+            arrays["surface_reactance"].values,
             pressure,
             delays,
             arrays["radiation_interior_residual"].values,

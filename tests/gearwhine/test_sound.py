@@ -232,6 +232,10 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
         assert one["power_balance_db"] == pytest.approx(other["power_balance_db"], abs=0.1)
         assert one["microphones_db"]["ear"] == pytest.approx(other["microphones_db"]["ear"], abs=0.05)
         assert one["radiation_efficiency"] == pytest.approx(other["radiation_efficiency"], rel=0.01)
+        shares = [
+            {part["name"]: part["share"] for part in line["contributions"]["housing_modes"]} for line in (one, other)
+        ]
+        assert max(abs(shares[0].get(name, 0.0) - shares[1][name]) for name in shares[1]) < 0.03
     with staging(tmp_path / "out") as place:
         write_mode_cache(place, kept)
     again = solve_housing(study.case, folder=tmp_path / "out")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +87,10 @@ def test_a_point_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> N
         for name, values in getattr(result, group).items():
             np.testing.assert_array_equal(getattr(back, group)[name], values)
     np.testing.assert_array_equal(back.orders, result.orders)
+    assert result.resonances is not None
+    assert back.resonances is not None
+    for field in fields(result.resonances):
+        np.testing.assert_array_equal(getattr(back.resonances, field.name), getattr(result.resonances, field.name))
     # Another content under the same name is not this point, nor is half a file.
     assert read_point(tmp_path, replace(point, key="another")) is None
     file = tmp_path / "points" / point.file

@@ -54,6 +54,20 @@ def test_power_and_pressure_between_the_frequencies_are_those_of_a_solution(radi
     assert table.pressure_error < 1e-3
 
 
+def test_parts_of_modes_have_the_power_that_they_exchange(radiation, table):
+    """Sums of harmonics, whose fields act on each other."""
+    mix = np.array([[1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.5, 0.0, 1.0]])
+    matrices = ("resistance", "surface_resistance", "surface_reactance")
+    mixed = replace(table, **{name: mix.T @ getattr(table, name) @ mix for name in matrices})
+    hertz, rates = 0.2, np.array([1.0 + 0.5j, -2.0j, 0.7])
+    solved = replace(radiation, modal=(radiation.modal[0] @ mix,)).solve(hertz, rates)
+    parts = mixed.by_mode(hertz, rates)
+    assert parts.sum() == pytest.approx(mixed.power(hertz, rates)[1], rel=1e-9)
+    assert parts == pytest.approx(solved.by_mode, abs=2e-3 * solved.surface_power)
+    alone = replace(mixed, surface_reactance=np.zeros_like(mixed.surface_reactance)).by_mode(hertz, rates)
+    assert np.abs(parts - alone).max() > 0.1 * solved.surface_power
+
+
 def test_breathing_sphere(table):
     """Pressure of a pulsating sphere, p = ρ c v (a / r) i k a / (1 + i k a) exp(−i k (r − a))."""
     hertz = 0.2
@@ -80,8 +94,16 @@ def test_a_weak_radiator_has_a_large_estimate(table):
 def test_arrays_hold_the_table_bit_for_bit(table):
     for given in (table, replace(table, pressure=table.pressure[:, :0], delays=table.delays[:0])):
         again = ModalRadiation.of_arrays(given.arrays())
-        assert tuple(given.arrays()) == ARRAYS[: 6 if len(given.delays) else 4]
-        for name in ("frequencies", "resistance", "surface_resistance", "pressure", "delays", "interior_residual"):
+        assert tuple(given.arrays()) == ARRAYS[: 7 if len(given.delays) else 5]
+        for name in (
+            "frequencies",
+            "resistance",
+            "surface_resistance",
+            "surface_reactance",
+            "pressure",
+            "delays",
+            "interior_residual",
+        ):
             np.testing.assert_array_equal(getattr(again, name), getattr(given, name))
 
 

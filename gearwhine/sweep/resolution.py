@@ -1,0 +1,254 @@
+"""Resonances that a sweep over speed passes by between two of its points, and the speeds at which their peaks lie.
+
+A line of order o has the frequency o n at the speed n, and meets a mode of the damped frequency f at n = f / o. Where
+neither of two neighbouring speeds lies within the mode's half-power bandwidth 2 ζ f about it, the points do not resolve
+the peak. Its level is that of the line at the points times the ratio of the linear response to the mesh's transmission
+error, between the points in proportion to their distance; the transmission error is taken as that of the points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import SPEED_KEY, SweptKey
+from gearwhine.output.quantity import warning
+from gearwhine.sweep.resonances import SOUND, Resonances
+from gearwhine.sweep.run import SweptPoint
+from gearwhine.sweep.solution import PointResult
+
+FloatArray = npt.NDArray[np.float64]
+
+_SAME = 1e-6  # relative difference of two orders that are one
+_NEAR = 0.5  # of the spacing of a record's lines: distance of a line from its order
+_ONE = 0.5  # of the half-power half-width: distance of two speeds to be added that are one
+_TINY = 1e-300
+_STEPS = 21  # within a mode's half-power bandwidth
+_OUTSIDE = 2.0  # half-power half-widths beside a peak where the curve is lower
+
+
+@dataclass(frozen=True)
+class MissedPeak:
+    """A peak between two neighbouring points of a sweep over speed.
+
+    Attributes
+    ----------
+    settings : dict of str to str
+        The other swept keys.
+    below_rpm, above_rpm : float
+        Speeds of the points on either side, of the first driver.
+    speed_rpm : float
+        Speed of the peak.
+    half_width_rpm : float
+        Half of the half-power bandwidth over the speed.
+    line : str
+        Name of the mesh harmonic.
+    frequency_hz : float
+        Of the mode, where the line meets it.
+    damping_ratio : float
+    mode : str
+        Kind and place of the coupled mode.
+    output : str
+        ``sound``, or the sensor at which the peak stands out most.
+    level_db : float
+        Estimated level of the line at the peak: sound power level re 1 pW, or of the amplitude re 1 m/s².
+    rise_db : float
+        The same over the level of all lines at the louder of the two points.
+    """
+
+    settings: dict[str, str]
+    below_rpm: float
+    above_rpm: float
+    speed_rpm: float
+    half_width_rpm: float
+    line: str
+    frequency_hz: float
+    damping_ratio: float
+    mode: str
+    output: str
+    level_db: float
+    rise_db: float
+
+
+def missed_peaks(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> list[MissedPeak]:
+    """Return the peaks between the points of a sweep over speed that are louder than all at both points.
+
+    The one that rises most first. Of a sweep with sound they are those of the sound power, else of the sensors.
+
+    Parameters
+    ----------
+    keys : sequence of SweptKey
+    swept : sequence of SweptPoint
+        Done, with the sound in their documents.
+    """
+    along = next((number for number, key in enumerate(keys) if SPEED_KEY in key.keys), None)
+    if along is None or not keys[along].is_numeric:
+        return []
+    rows: dict[tuple[int, ...], list[SweptPoint]] = {}
+    for one in swept:
+        if isinstance(one.outcome, PointResult) and one.outcome.resonances is not None:
+            rows.setdefault(one.point.place[:along] + one.point.place[along + 1 :], []).append(one)
+    found: list[MissedPeak] = []
+    for points in rows.values():
+        points.sort(key=_speed)
+        settings = {
+            key.key: text
+            for number, (key, text) in enumerate(zip(keys, points[0].point.texts, strict=True))
+            if number != along
+        }
+        for below, above in pairwise(points):
+            # Speeds of two senses have a standstill between them.
+            if _speed(below) * _speed(above) > 0.0:
+                found += _between(settings, below, above)
+    return sorted(found, key=lambda peak: -peak.rise_db)
+
+
+def speeds_to_add(peaks: Sequence[MissedPeak]) -> list[float]:
+    """Return the speeds of peaks [rpm], ascending, those within half a half-width of a higher peak's left out."""
+    chosen: list[float] = []
+    for peak in peaks:
+        if all(abs(speed - peak.speed_rpm) > _ONE * peak.half_width_rpm for speed in chosen):
+            # To a tenth of the half-width, which changes the level by 0.04 dB.
+            places = int(np.ceil(-np.log10(0.1 * peak.half_width_rpm)))
+            chosen.append(round(peak.speed_rpm, places))
+    return sorted(chosen)
+
+
+def over_with(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], speeds: Sequence[float]) -> str:
+    """Return the option of the command that goes through the speeds of a sweep and further ones [rpm]."""
+    along, key = next((number, key) for number, key in enumerate(keys) if SPEED_KEY in key.keys)
+    texts = {one.point.texts[along]: _speed(one) for one in swept}
+    sign = -1.0 if max(texts.values()) < 0.0 else 1.0
+    texts |= {f"{sign * speed:g} rpm": sign * speed for speed in speeds}
+    return f"--over {key.key}='{','.join(sorted(texts, key=lambda text: texts[text]))}'"
+
+
+def peak_warnings(peaks: Sequence[MissedPeak]) -> list[dict[str, Any]]:
+    """Return the warning that a sweep passes by peaks, with the highest of them; none where it does not."""
+    if not peaks:
+        return []
+    first = peaks[0]
+    where = "".join(f", {key}={text}" for key, text in first.settings.items())
+    what = "the sound power" if first.output == SOUND else first.output
+    speeds = speeds_to_add(peaks)
+    message = (
+        f"between {first.below_rpm:g} and {first.above_rpm:g} rpm{where} {first.line} meets the mode at "
+        f"{first.frequency_hz:.1f} Hz ({first.mode}), whose half-power bandwidth of "
+        f"{2.0 * first.half_width_rpm:.2g} rpm is narrower than the spacing of the points: by the linear response "
+        f"{what} peaks at {first.speed_rpm:.1f} rpm, {first.rise_db:.1f} dB above the louder point"
+    )
+    more = f"; {len(peaks) - 1} more in the table" if len(peaks) > 1 else ""
+    added = ", ".join(f"{speed:g} rpm" for speed in speeds)
+    return [warning("sweep_resolution", f"{message}{more}; add {added}", speeds_rpm=speeds)]
+
+
+def _speed(one: SweptPoint) -> float:
+    """Return the speed of a point in rpm, signed."""
+    assert one.point.case.operation is not None
+    return one.point.case.operation.speed * 30.0 / np.pi
+
+
+@dataclass(frozen=True)
+class _End:
+    """One of two neighbouring points."""
+
+    speed_hz: float
+    resonances: Resonances
+    result: PointResult
+
+    def level(self, output: str, order: float) -> float | None:
+        """Level of a line at an output; None where it is not known."""
+        if output == SOUND:
+            lines = self.result.document["sound"]["lines"]
+            known = (line["sound_power_db"] for line in lines if abs(line["order"] - order) <= _SAME * order)
+            return next(known, None)
+        orders = self.result.orders
+        place = int(np.argmin(np.abs(orders - order)))
+        if len(orders) < 2 or abs(orders[place] - order) > _NEAR * (orders[1] - orders[0]):
+            return None
+        return float(20.0 * np.log10(max(self.result.sensor_spectra[output][place], _TINY)))
+
+    def total(self, output: str) -> float:
+        """Level of all lines."""
+        if output == SOUND:
+            return float(self.result.document["sound"]["total_db"])
+        squares = 0.5 * self.result.sensor_spectra[output][1:] ** 2
+        return float(10.0 * np.log10(max(2.0 * squares.sum(), _TINY)))
+
+    def response(self, output: str, mesh: int, frequencies: FloatArray) -> FloatArray:
+        """Level of the response of an output to a mesh's error at some frequencies [Hz]."""
+        found = self.resonances
+        curve = found.response[found.outputs.index(output), mesh]
+        return np.asarray(np.interp(frequencies, found.grid, curve))
+
+
+def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> Iterator[MissedPeak]:
+    ends = []
+    for one in sorted((below, above), key=lambda point: abs(_speed(point))):
+        assert isinstance(one.outcome, PointResult)
+        assert one.outcome.resonances is not None
+        ends.append(_End(abs(_speed(one)) / 60.0, one.outcome.resonances, one.outcome))
+    low, high = ends
+    if (low.resonances.meshes, low.resonances.outputs) != (high.resonances.meshes, high.resonances.outputs):
+        return
+    outputs = [name for name in low.resonances.outputs if name != SOUND]
+    if all("sound" in end.result.document for end in ends):
+        outputs = [SOUND]
+    totals = {name: max(end.total(name) for end in ends) for name in outputs}
+    found = low.resonances
+    for mesh, (name, order) in enumerate(zip(found.meshes, found.mesh_orders.tolist(), strict=True)):
+        for harmonic in range(1, 1 + int(found.grid[-1] / (order * low.speed_hz))):
+            peaks: dict[int, MissedPeak] = {}
+            for output in outputs:
+                for number, hertz, level in _peaks(low, high, output, mesh, harmonic * order):
+                    rise = level - totals[output]
+                    if rise > 0.0 and (number not in peaks or rise > peaks[number].rise_db):
+                        rpm = 60.0 / (harmonic * order)
+                        peaks[number] = MissedPeak(
+                            settings=settings,
+                            below_rpm=60.0 * low.speed_hz,
+                            above_rpm=60.0 * high.speed_hz,
+                            speed_rpm=rpm * hertz,
+                            half_width_rpm=rpm * float(found.half_widths[number]),
+                            line=f"{harmonic}× {name}",
+                            frequency_hz=hertz,
+                            damping_ratio=float(found.half_widths[number] / found.frequencies[number]),
+                            mode=found.names[number],
+                            output=output,
+                            level_db=level,
+                            rise_db=rise,
+                        )
+            yield from peaks.values()
+
+
+def _peaks(low: _End, high: _End, output: str, mesh: int, order: float) -> Iterator[tuple[int, float, float]]:
+    """Yield the peaks of a line between two points that neither resolves: number of the mode, frequency, and level."""
+    first, last = order * low.speed_hz, order * high.speed_hz
+    levels = [(end, at, end.level(output, order)) for end, at in ((low, first), (high, last))]
+    known = [(end, at, level) for end, at, level in levels if level is not None]
+    found = low.resonances
+    if not known:
+        return
+
+    def curve(frequencies: FloatArray) -> FloatArray:
+        each = [
+            level + end.response(output, mesh, frequencies) - end.response(output, mesh, np.array([at]))
+            for end, at, level in known
+        ]
+        part = (frequencies - first) / (last - first)
+        return np.asarray(each[0] if len(each) == 1 else (1.0 - part) * each[0] + part * each[1])
+
+    inside = (found.frequencies - found.half_widths > first) & (found.frequencies + found.half_widths < last)
+    for number in np.flatnonzero(inside).tolist():
+        middle, half = float(found.frequencies[number]), float(found.half_widths[number])
+        near = middle + half * np.linspace(-1.0, 1.0, _STEPS)
+        level = curve(near)
+        top = int(np.argmax(level))
+        # On the flank of a higher peak a mode is not what the points miss.
+        if level[top] > curve(middle + half * np.array([-_OUTSIDE, _OUTSIDE])).max():
+            yield number, float(near[top]), float(level[top])
