@@ -6,6 +6,7 @@ underside of its base in y; feet reach below.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
@@ -29,6 +30,11 @@ BoxLength = Annotated[float, Quantity(units.LENGTH, at_least=1e-3, at_most=20.0)
 
 def _scalar_or_table(value: Any) -> str:
     return "~table" if isinstance(value, (dict, Table)) else "~scalar"
+
+
+def wall_by_face(wall: Any) -> dict[str, Any]:
+    """Return a wall thickness, as written, face by face; one number stands for all."""
+    return dict(wall) if isinstance(wall, Mapping) else dict.fromkeys(FACES, wall)
 
 
 class Walls(Table):

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
+from gearwhine.case.box import wall_by_face
 from gearwhine.case.errors import NOTHING, CaseError, Location, Problem, did_you_mean, key_of, look_up
 
 _STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))""")
@@ -47,9 +48,9 @@ def apply_overrides(
     """Apply ``key.path=value`` texts to a copy of a document, in order.
 
     A value is written as in TOML; what is not TOML (``10 mm``, ``lumped``) stands for itself as text. An empty
-    value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say. A
-    step ``*`` stands for every entry of a list or a table, and leaves out those that have not the key, as written or by
-    default.
+    value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say. One
+    thickness of all walls of a box is written out for each of them where a path leads to one of them. A step ``*``
+    stands for every entry of a list or a table, and leaves out those that have not the key, as written or by default.
 
     Parameters
     ----------
@@ -80,6 +81,7 @@ def apply_overrides(
         try:
             value = _read_value(value_text.strip())
             # What is by default alone cannot be taken away.
+            document = _written_out(document, steps)
             whole = resolved(document) if "*" in steps and value is not NOTHING else document
             places = [place for path in _expanded(document, steps, whole) for place in _set(document, path, value)]
         except _LeadsNowhereError as stop:
@@ -89,6 +91,18 @@ def apply_overrides(
     if problems:
         raise CaseError(problems)
     return document, sources
+
+
+_WALL = ("housing", "box", "wall")
+
+
+def _written_out(document: dict[str, Any], steps: tuple[str, ...]) -> dict[str, Any]:
+    """Return a document in which a path to one wall of a box finds it where one number stands for all walls."""
+    box = look_up(document, _WALL[:-1])
+    leads = len(steps) == len(_WALL) + 1 and all(step in (own, "*") for step, own in zip(steps, _WALL, strict=False))
+    if leads and isinstance(box, dict) and isinstance(box.get("wall"), (int, float, str)):
+        box["wall"] = wall_by_face(box["wall"])
+    return document
 
 
 class _LeadsNowhereError(Exception):

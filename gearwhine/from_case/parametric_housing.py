@@ -3,7 +3,7 @@
 The parameters of a case's `[update]` are numbers of the case; each sets one or more places in it.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter, case_document, parse_case
-from gearwhine.case.box import FACES
+from gearwhine.case.box import wall_by_face
 from gearwhine.case.check_housing import box_geometry
 from gearwhine.case.errors import Location, key_of, look_up
 from gearwhine.case.overrides import matching_places, parse_key_path
@@ -132,8 +132,8 @@ def fitted_case(
         parameters = case.update.parameter
     document = case_document(case)
     box = document.get("housing", {}).get("box")
-    if box is not None and not isinstance(box["wall"], Mapping):
-        box["wall"] = dict.fromkeys(FACES, box["wall"])
+    if box is not None:
+        box["wall"] = wall_by_face(box["wall"])
     if box is not None and mesh_size is not None:
         box["mesh_size"] = mesh_size
     problems: list[Problem] = []

@@ -467,15 +467,19 @@ SOUND_LINE = (
 )
 """Of one of the loudest lines, the mesh harmonics that drive it, and whether parameters are ranked by it."""
 
-_POWER_LEVELS = (
+_LEVELS = (
     Quantity("level_db", lambda one: one.level),
     Quantity("first_order_db", lambda one: one.first_order_level),
+    Quantity("reverse_level_db", lambda one: one.reverse_level),
+    Quantity("first_order_is_off", lambda one: one.first_order_is_off),
 )
 
 INFLUENCE = (
     Quantity("parameter", lambda row: row[0].parameter),
     Quantity("kind", lambda row: row[0].kind),
     Quantity("step", lambda row: row[0].step_text),
+    Quantity("step_words", lambda row: row[0].words[0]),
+    Quantity("reverse_words", lambda row: row[0].words[1]),
     Rows(
         "lines",
         lambda row: row[2].sensor_changes(row[0]) if row[2].sensor_lines else ABSENT,
@@ -483,9 +487,9 @@ INFLUENCE = (
             Quantity("sensor", lambda one: one.line.output.sensor),
             Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
             Quantity("amplitude_m_per_s2", lambda one: one.change),
-            Quantity("level_db", lambda one: one.level),
             Quantity("first_order_m_per_s2", lambda one: one.first_order),
-            Quantity("first_order_db", lambda one: one.first_order_level),
+            Quantity("reverse_amplitude_m_per_s2", lambda one: _unless_none(one.reverse)),
+            *_LEVELS,
         ),
     ),
     Rows(
@@ -495,13 +499,14 @@ INFLUENCE = (
             Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
             Quantity("power_w", lambda one: one.change),
             Quantity("first_order_w", lambda one: one.first_order),
-            *_POWER_LEVELS,
+            Quantity("reverse_power_w", lambda one: _unless_none(one.reverse)),
+            *_LEVELS,
         ),
     ),
     Part(
         "sound_a",
         lambda row: row[2].total_sound_change(row[0]) if row[2].loudest_lines else ABSENT,
-        _POWER_LEVELS,
+        _LEVELS,
     ),
     Rows(
         "gear_pairs",
@@ -515,7 +520,14 @@ INFLUENCE = (
         ),
     ),
 )
-"""Of a parameter's influence, the gear pairs and the sensitivity: their changes by a step of it, to first order."""
+"""Of a parameter's influence, the gear pairs and the sensitivity: their changes by a step of it.
+
+Those of gear pairs are to first order, so that the reverse step has the opposite ones.
+"""
+
+
+def _unless_none(value: float) -> float | None:
+    return None if math.isnan(value) else value
 
 
 def _unless_idle(value: float) -> Any:
@@ -544,7 +556,8 @@ def _line_changes(name: str, of: str, what: str, unit: str, changes: str, dimens
         return np.array([[getattr(line, of) for line in getattr(found, changes)(one)] for one in found.influences])
 
     how = "to first order" if of == "first_order" else "the response solved anew"
-    what = f"change of the line's {what} by a step of the parameter, {how}"
+    step = "reverse step" if of == "reverse" else "step"
+    what = f"change of the line's {what} by a {step} of the parameter, {how}"
     return Quantity("", taken, name, ("influence", dimension), unit, what)
 
 
@@ -635,8 +648,10 @@ LOAD = (
     _influence("transmission_error_peak_to_peak", "m", "peak-to-peak static transmission error", 2),
     _line_changes("line_amplitude_change", "change", *_OF_SENSORS),
     _line_changes("line_amplitude_first_order_change", "first_order", *_OF_SENSORS),
+    _line_changes("line_amplitude_reverse_change", "reverse", *_OF_SENSORS),
     _line_changes("loudest_line_power_change", "change", *_OF_SOUND),
     _line_changes("loudest_line_power_first_order_change", "first_order", *_OF_SOUND),
+    _line_changes("loudest_line_power_reverse_change", "reverse", *_OF_SOUND),
     Quantity(
         "",
         lambda solved: np.array(list(solved.over_torque)) if solved.over_torque else None,
@@ -763,10 +778,17 @@ _TORQUE_COLUMNS = (
 
 _MOST_INFLUENCES = 10  # parameters of a table
 _MOST_BEARINGS = 8  # of a sentence
+
+
+def _step(row: Document) -> str:
+    return str(row.get("step_words", row["step"]))  # not in summaries of earlier versions
+
+
+_STEP_KEYS = ("parameter", "kind", "step", "step_words", "reverse_words")
 _INFLUENCE_COLUMNS = (
     Column("parameter", "parameter"),
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
-    Column("step", "step"),
+    Column("step", _step),
     Column("pair", "pair"),
     Column("misaligned\n[µrad]", "misalignment_rad", "+.3f", _MICRO),
     Column("K_Hβ", "k_h_beta", "+.4f"),
@@ -779,23 +801,34 @@ def _influences(document: Document) -> Iterator[str | Table]:
     for of_bearings, what in ((False, "the housing"), (True, "a bearing")):
         found = [one for one in document.get("sensitivity", ()) if one["kind"].startswith("bearing") is of_bearings]
         rows = [
-            {key: one[key] for key in ("parameter", "kind", "step")}
+            {key: one[key] for key in _STEP_KEYS if key in one}
             | {"pair": f"{pair['driver']} → {pair['driven']}"}
             | pair
             for one in found[:_MOST_INFLUENCES]
             for pair in one["gear_pairs"]
         ]
-        yield from table_of(_INFLUENCE_COLUMNS, rows, f"Change by a step of one parameter of {what}, to first order")
+        yield from table_of(
+            _INFLUENCE_COLUMNS,
+            rows,
+            f"Change by a step of one parameter of {what}, to first order; the opposite by the reverse step",
+        )
         if rows and len(found) > _MOST_INFLUENCES:
             yield f"{len(found) - _MOST_INFLUENCES} weaker parameters of {what} are in the files only"
 
 
 _LINE_COLUMNS = (
     Column("parameter", "parameter"),
-    Column("of", "kind"),
-    Column("step", "step"),
-    Column("level [dB]", "level_db", "+.2f"),
-    Column("first order [dB]", "first_order_db", "+.2f"),
+    Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
+    Column("step", _step),
+    Column("level\n[dB]", "level_db", "+.2f"),
+    Column("first order\n[dB]", "first_order_db", "+.2f"),
+    Column("reverse", "reverse_words"),
+    Column("level\n[dB]", "reverse_level_db", "+.2f"),
+    Column("remark", lambda row: "first order is off" if row.get("first_order_is_off") else ""),
+)
+_OFF_NOTE = (
+    "First order is off: the level at a step differs from it by more than 1 dB, or by more than 0.3 dB and in sign, "
+    "since a resonance moves within the step. Take the levels, and solve the changed case before relying on them"
 )
 
 
@@ -819,21 +852,31 @@ def _lines(document: Document) -> Iterator[str | Table]:
             chosen = f"the sound power at {loudest[ranked[0]]['frequency_hz']:.0f} Hz"
             yield from _ranked(document, chosen, lambda one: one["sound"][ranked[0]])
     if lines or loudest:
+        if any(_is_off(one) for one in document["sensitivity"]):
+            yield _OFF_NOTE
         held = document["lines_without"]
         fixed = "" if held is None else f"; the case fixes {held}, which do not follow the walls"
         surface = ", and the radiating surface is held" if loudest else ""
         yield f"In these changes damping ratios, friction of the teeth and mean mesh forces are kept{surface}{fixed}"
 
 
+def _is_off(row: Document) -> bool:
+    """Whether any of the lines at a step of a parameter is far from the first order."""
+    return any(
+        one.get("first_order_is_off")
+        for one in (*row.get("lines", ()), *row.get("sound", ()), row.get("sound_a") or {})
+    )
+
+
 def _ranked(document: Document, what: str, change: Callable[[Document], dict[str, Any]]) -> Iterator[str | Table]:
     """Yield the strongest parameters of the housing and of the bearings by what they change in a level."""
     for of_bearings, of in ((False, "the housing"), (True, "a bearing")):
         rows = [
-            {key: one[key] for key in ("parameter", "kind", "step")} | change(one)
+            {key: one[key] for key in _STEP_KEYS if key in one} | change(one)
             for one in document["sensitivity"]
             if one["kind"].startswith("bearing") is of_bearings
         ]
-        rows.sort(key=lambda row: -abs(row["level_db"]))
+        rows.sort(key=lambda row: -max(abs(row["level_db"]), abs(row.get("reverse_level_db") or 0.0)))
         caption = f"Change of {what} by a step of one parameter of {of}"
         yield from table_of(_LINE_COLUMNS, rows[:_MOST_INFLUENCES], caption)
 

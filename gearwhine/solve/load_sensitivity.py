@@ -6,7 +6,7 @@ surface.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter
 from gearwhine.case.box import FACES
+from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
 from gearwhine.from_case.mesh import materials_of
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
@@ -44,6 +45,7 @@ Ports = dict[str, sparse.csr_array]
 
 _LENGTH, _PART = 1e-3, 0.1  # steps of the table: of lengths [m], and relative ones
 _OUT = 1e-3  # part of a line below which it is not told
+_OFF, _SIGN = 1.0, 0.3  # differences of a level from the first order that are large, and where the signs differ [dB]
 _SOUND = "sound"  # of --line, beside the sensors
 _TWO_PI = 2.0 * np.pi
 _LEAST_FACE = 0.01  # part of the whole surface from which a flat face is told
@@ -65,8 +67,11 @@ class Influence:
         Of the `OUTCOMES` by the step; NaN for the last two of an idle pair.
     lines : ndarray, shape (n_lines,)
         Of the lines by the step to first order: amplitudes of sensors [m/s²], then powers of the sound [W].
-    stepped : ndarray, shape (n_lines,)
-        The same with the response at the step solved anew.
+    stepped, reversed : ndarray, shape (n_lines,)
+        The same with the response at the step solved anew, and at the reverse step; NaN where there is nothing left to
+        take away.
+    is_thickness : bool
+        Whether the parameter adds and takes away material along the normal of a wall or a face.
     """
 
     parameter: str
@@ -76,11 +81,28 @@ class Influence:
     changes: FloatArray
     lines: FloatArray
     stepped: FloatArray
+    reversed: FloatArray
+    is_thickness: bool = False
 
     @property
     def step_text(self) -> str:
-        """The step in words."""
-        return f"+{1e3 * self.step:.3g} mm" if self.is_length else f"+{100.0 * self.step:.3g} %"
+        """The step with its unit."""
+        return f"+{self._size}"
+
+    @property
+    def words(self) -> tuple[str, str]:
+        """The step and its reverse in words, such as ``1 mm thicker`` and ``1 mm thinner``."""
+        if self.is_thickness:
+            return f"{self._size} thicker", f"{self._size} thinner"
+        if self.kind == "bearing stiffness":
+            return f"{self._size} stiffer", f"{self._size} softer"
+        if self.kind == "bearing position":
+            return f"{self._size} towards +z", f"{self._size} towards -z"
+        return f"{self._size} more", f"{self._size} less"
+
+    @property
+    def _size(self) -> str:
+        return f"{1e3 * self.step:.3g} mm" if self.is_length else f"{100.0 * self.step:.3g} %"
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +117,8 @@ class LineChange:
         Change of its level for a factor of ten [dB].
     first_order : float
         Of the value to first order.
-    change : float
-        Of the value, the response solved anew.
+    change, reverse : float
+        Of the value by the step and by the reverse step, the response solved anew; NaN where there is none.
     line : Line or None
         None of a sum.
     """
@@ -105,6 +127,7 @@ class LineChange:
     decibels: float
     first_order: float
     change: float
+    reverse: float
     line: Line | None = None
 
     @property
@@ -115,8 +138,26 @@ class LineChange:
     @property
     def level(self) -> float:
         """Change of its level, the response solved anew [dB]."""
+        return self._level(self.change)
+
+    @property
+    def reverse_level(self) -> float | None:
+        """The same by the reverse step; None where there is nothing left to take away [dB]."""
+        return None if math.isnan(self.reverse) else self._level(self.reverse)
+
+    @property
+    def first_order_is_off(self) -> bool:
+        """Whether the level at either step is far from the first order: a resonance moves within it."""
+        reverse = self.reverse_level
+        pairs = [(self.level, self.first_order_level)]
+        pairs += [] if reverse is None else [(reverse, -self.first_order_level)]
+        return any(
+            abs(level - first) > _OFF or (level * first < 0.0 and abs(level - first) > _SIGN) for level, first in pairs
+        )
+
+    def _level(self, change: float) -> float:
         # The part by the equilibrium is linear: a line that it would put out is as good as out.
-        return self.decibels * math.log10(max(1.0 + self.change / self.value, _OUT))
+        return self.decibels * math.log10(max(1.0 + change / self.value, _OUT))
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,15 +224,18 @@ class LoadSensitivity:
     def total_sound_change(self, influence: Influence) -> LineChange:
         """Change of the A-weighted power of the sound's lines together by the step of a parameter."""
         weights, own = _sound_weights(self.loudest_lines, None), self.sound_changes(influence)
-        value, first, change = (
-            float(weights @ [getattr(one, of) for one in own]) for of in ("value", "first_order", "change")
+        value, first, change, reverse = (
+            float(weights @ [getattr(one, of) for one in own]) for of in ("value", "first_order", "change", "reverse")
         )
-        return LineChange(value, own[0].decibels, first, change)
+        return LineChange(value, own[0].decibels, first, change, reverse)
 
     def _changes(self, influence: Influence) -> list[LineChange]:
         lines = () if self.lines is None else self.lines.lines
-        changes = zip(lines, influence.lines.tolist(), influence.stepped.tolist(), strict=True)
-        return [LineChange(line.value, line.output.decibels, first, anew, line) for line, first, anew in changes]
+        each = (influence.lines.tolist(), influence.stepped.tolist(), influence.reversed.tolist())
+        changes = zip(lines, *each, strict=True)
+        return [
+            LineChange(line.value, line.output.decibels, first, anew, back, line) for line, first, anew, back in changes
+        ]
 
 
 def solve_load_sensitivity(
@@ -241,25 +285,32 @@ def solve_load_sensitivity(
         step: tuple[float, bool],
         derivatives: FloatArray,
         direct: FloatArray,
-        anew: FloatArray,
+        anew: tuple[FloatArray, FloatArray],
     ) -> Influence:
-        """Gather derivatives by the equilibrium, those of lines at the same equilibrium, and lines at the step."""
+        """Gather derivatives by the equilibrium, those of lines at the same equilibrium, and lines at either step."""
         changes = np.full((len(pairs), len(OUTCOMES)), np.nan)
         size = step[0]
         for place, derivative in zip(places, derivatives, strict=False):
             changes[place] = size * derivative
         static = size * derivatives[len(places) :]
-        return Influence(name, kind, *step, changes, static + size * direct, static + anew)
+        there, back = anew
+        return Influence(parameter, kind, *step, changes, static + size * direct, static + there, back - static)
 
+    def either(stepped: Callable[..., float], *what: object, size: float) -> tuple[FloatArray, FloatArray]:
+        """Return the changes of the lines by a step and by its reverse, the response solved anew."""
+        there, back = (np.array([stepped(one, *what, step) for one in lines]) for step in (size, -size))
+        return there, back
+
+    none = np.zeros(0), np.zeros(0)
     found = []
     for name in (bearing.name for bearing in point.bearings):
         derivatives = np.array([one.by_bearing_stiffness(name) for one in adjoints])
         direct = np.array([model.by_bearing_stiffness(one, name) for one in lines if model is not None])
-        anew = np.array([model.stepped_bearing_stiffness(one, name, _PART) for one in lines if model is not None])
+        anew = none if model is None else either(model.stepped_bearing_stiffness, name, size=_PART)
         found.append(influence(name, "bearing stiffness", (_PART, False), derivatives, direct, anew))
         derivatives = np.array([one.by_bearing_position(name) for one in adjoints])
         direct = np.array([model.by_bearing_position(one, name) for one in lines if model is not None])
-        anew = np.array([model.stepped_bearing_position(one, name, _LENGTH) for one in lines if model is not None])
+        anew = none if model is None else either(model.stepped_bearing_position, name, size=_LENGTH)
         found.append(influence(name, "bearing position", (_LENGTH, True), derivatives, direct, anew))
     density, note, line_density, sound_density = None, None, None, None
     if adjoints and housing is not None and point.housing is not None:
@@ -286,20 +337,24 @@ def solve_load_sensitivity(
         derivatives = fields.by_parameters(changes.rates, changes.bearings) / changes.slopes
         steps = np.array([_LENGTH if size is None else _PART * size for size in changes.sizes])
         own = np.zeros((len(lines), len(steps)))
-        anew = np.zeros_like(own)
+        each = [none] * len(steps)
         if solved is not None:
             rates = solved.rates(
                 fields.constants, changes.rates, changes.bearings, changes.sensors, fields.displacement
             )
             own = np.array([solved.model.by_housing(one, rates) for one in lines]) / changes.slopes
-            inner = steps / changes.slopes
-            anew = np.array(
-                [[solved.model.stepped_housing(one, rates, n, step) for n, step in enumerate(inner)] for one in lines]
-            )
+            each = [
+                either(solved.model.stepped_housing, rates, n, size=inner)
+                for n, inner in enumerate((steps / changes.slopes).tolist())
+            ]
         for n, (name, size) in enumerate(zip(changes.names, changes.sizes, strict=True)):
             step = (float(steps[n]), size is None)
-            one = influence(name, kind, step, derivatives[:, n], own[:, n], anew[:, n])
-            found.append(one if size is None else replace(one, step=_PART))
+            one = influence(name, kind, step, derivatives[:, n], own[:, n], each[n])
+            thickness = changes.thicknesses[n]
+            one = replace(one, is_thickness=thickness is not None, step=step[0] if size is None else _PART)
+            if thickness is not None and thickness <= steps[n]:
+                one = replace(one, reversed=np.full(len(lines), np.nan))
+            found.append(one)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     found.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
     return LoadSensitivity(tuple(found), density, note, solved, chosen, line_density, chosen_sound, sound_density)
@@ -389,6 +444,8 @@ class HousingChanges:
         Change of each parameter by a unit of its coordinate.
     sizes : tuple of float or None
         Value of each parameter; None of a length.
+    thicknesses : tuple of float or None
+        Thickness of each wall [m], infinite of a face, whose wall is not known; None of other parameters.
     """
 
     names: tuple[str, ...]
@@ -397,6 +454,7 @@ class HousingChanges:
     sensors: tuple[PortRates, ...]
     slopes: FloatArray
     sizes: tuple[float | None, ...]
+    thicknesses: tuple[float | None, ...]
 
 
 def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequence[UpdateParameter]) -> FloatArray:
@@ -435,11 +493,18 @@ def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) 
         tuple(sensors for _, sensors in ports),
         np.array(slopes),
         tuple(None if _is_length(number.given) else number.start for number in fitted.numbers),
+        tuple(number.start if _is_thickness(number.given) else None for number in fitted.numbers),
     )
 
 
 def _is_length(given: UpdateParameter) -> bool:
     return not given.factor and kind_of(given.range[0]) == kind_of("1 m")
+
+
+def _is_thickness(given: UpdateParameter) -> bool:
+    """Whether a parameter is the thickness of a wall, or of several, and no factor on them."""
+    steps = [parse_key_path(key) or () for key in given.keys]
+    return _is_length(given) and all({"wall", "thickness"} & set(path[-2:]) for path in steps)
 
 
 def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> tuple[PortRates, PortRates]:
@@ -496,4 +561,5 @@ def face_changes(case: Case, mesh: Mesh) -> HousingChanges:
         x, y, z = (1e3 * face.center).round().astype(int).tolist()
         names.append(f"{way} at {x}, {y}, {z} mm")
     still: tuple[PortRates, ...] = ({},) * len(rates)
-    return HousingChanges(tuple(names), tuple(rates), still, still, np.ones(len(rates)), (None,) * len(rates))
+    endless = (math.inf,) * len(rates)
+    return HousingChanges(tuple(names), tuple(rates), still, still, np.ones(len(rates)), (None,) * len(rates), endless)

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import SPEED_KEY, SweptKey
+from gearwhine.case.units import to_rpm
 from gearwhine.output.quantity import warning
 from gearwhine.sweep.resonances import SOUND, Resonances
 from gearwhine.sweep.run import SweptPoint
@@ -150,14 +151,14 @@ def peak_warnings(peaks: Sequence[MissedPeak]) -> list[dict[str, Any]]:
 def _speed(one: SweptPoint) -> float:
     """Return the speed of a point in rpm, signed."""
     assert one.point.case.operation is not None
-    return one.point.case.operation.speed * 30.0 / np.pi
+    return float(f"{to_rpm(one.point.case.operation.speed):.12g}")
 
 
 @dataclass(frozen=True)
 class _End:
     """One of two neighbouring points."""
 
-    speed_hz: float
+    speed_rpm: float
     resonances: Resonances
     result: PointResult
 
@@ -192,7 +193,7 @@ def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> 
     for one in sorted((below, above), key=lambda point: abs(_speed(point))):
         assert isinstance(one.outcome, PointResult)
         assert one.outcome.resonances is not None
-        ends.append(_End(abs(_speed(one)) / 60.0, one.outcome.resonances, one.outcome))
+        ends.append(_End(abs(_speed(one)), one.outcome.resonances, one.outcome))
     low, high = ends
     if (low.resonances.meshes, low.resonances.outputs) != (high.resonances.meshes, high.resonances.outputs):
         return
@@ -202,7 +203,7 @@ def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> 
     totals = {name: max(end.total(name) for end in ends) for name in outputs}
     found = low.resonances
     for mesh, (name, order) in enumerate(zip(found.meshes, found.mesh_orders.tolist(), strict=True)):
-        for harmonic in range(1, 1 + int(found.grid[-1] / (order * low.speed_hz))):
+        for harmonic in range(1, 1 + int(60.0 * found.grid[-1] / (order * low.speed_rpm))):
             peaks: dict[int, MissedPeak] = {}
             for output in outputs:
                 for number, hertz, level in _peaks(low, high, output, mesh, harmonic * order):
@@ -211,8 +212,8 @@ def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> 
                         rpm = 60.0 / (harmonic * order)
                         peaks[number] = MissedPeak(
                             settings=settings,
-                            below_rpm=60.0 * low.speed_hz,
-                            above_rpm=60.0 * high.speed_hz,
+                            below_rpm=low.speed_rpm,
+                            above_rpm=high.speed_rpm,
                             speed_rpm=rpm * hertz,
                             half_width_rpm=rpm * float(found.half_widths[number]),
                             line=f"{harmonic}× {name}",
@@ -228,7 +229,7 @@ def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> 
 
 def _peaks(low: _End, high: _End, output: str, mesh: int, order: float) -> Iterator[tuple[int, float, float]]:
     """Yield the peaks of a line between two points that neither resolves: number of the mode, frequency, and level."""
-    first, last = order * low.speed_hz, order * high.speed_hz
+    first, last = order * low.speed_rpm / 60.0, order * high.speed_rpm / 60.0
     levels = [(end, at, end.level(output, order)) for end, at in ((low, first), (high, last))]
     known = [(end, at, level) for end, at, level in levels if level is not None]
     found = low.resonances

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from gearwhine.case import Case, CaseError, dump_case, load_case
+from gearwhine.case import Case, CaseError, dump_case, load_case, swept_keys
+from gearwhine.sweep import sweep_points
 
 
 def changed(*overrides: str) -> Case:
@@ -55,6 +56,38 @@ def test_later_overrides_go_before_earlier_ones() -> None:
     assert (
         changed("gear_pair.0.damping_ratio=0.07", "gear_pair.0.damping_ratio=0.08").gear_pair[0].damping_ratio == 0.08
     )
+
+
+def test_one_thickness_of_all_walls_is_written_out_where_one_wall_is_set() -> None:
+    before = changed("housing.box.wall=12 mm").housing
+    assert before is not None
+    assert before.box is not None
+    assert before.box.wall == 0.012
+    box = changed("housing.box.wall=12 mm", "housing.box.wall.back=9 mm", "housing.box.wall.top=15 mm").housing.box  # type: ignore[union-attr]
+    assert box is not None
+    assert box.wall.model_dump() == {  # type: ignore[union-attr]
+        "left": 0.012,
+        "right": 0.012,
+        "bottom": 0.012,
+        "top": 0.015,
+        "back": 0.009,
+        "front": 0.012,
+    }
+    every = changed("housing.box.wall.*=7 mm").housing.box  # type: ignore[union-attr]
+    assert every is not None
+    assert set(every.wall.model_dump().values()) == {0.007}  # type: ignore[union-attr]
+    with pytest.raises(CaseError, match=r"housing\.box\.wall\.bakc: expected no such key; did you mean 'back'"):
+        changed("housing.box.wall.bakc=3 mm")
+    with pytest.raises(CaseError, match=r"housing\.box\.wall\.back: "):
+        changed("housing.box.wall.back=")
+
+
+def test_a_sweep_goes_through_one_wall_of_all() -> None:
+    source = load_case("small-gearbox").case
+    keys = swept_keys(source, ["housing.box.wall.back=8 mm:12 mm:3"])
+    thick = [point.case.housing.box.walls for point in sweep_points("small-gearbox", (), keys)]  # type: ignore[union-attr]
+    assert [walls.back for walls in thick] == [0.008, 0.01, 0.012]
+    assert {walls.front for walls in thick} == {0.01}
 
 
 LEADS_NOWHERE = {

@@ -373,7 +373,9 @@ def test_the_document_ranks_by_a_line() -> None:
     levels = {}
     for row in result.document["sensitivity"]:
         change = row["lines"][number]
-        levels[row["parameter"], row["kind"]] = abs(change["level_db"])
+        levels[row["parameter"], row["kind"]] = max(abs(change["level_db"]), abs(change["reverse_level_db"]))
+        relative = change["reverse_amplitude_m_per_s2"] / lines[number]["amplitude_m_per_s2"]
+        assert change["reverse_level_db"] == pytest.approx(20.0 * np.log10(1.0 + relative))
         relative = change["amplitude_m_per_s2"] / lines[number]["amplitude_m_per_s2"]
         assert change["level_db"] == pytest.approx(20.0 * np.log10(1.0 + relative))
         first = change["first_order_m_per_s2"] / lines[number]["amplitude_m_per_s2"]

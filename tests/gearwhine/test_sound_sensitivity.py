@@ -14,12 +14,13 @@ from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load
 from gearwhine.from_case.machine import describe_machine, full_housing_component
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.output.sections import Table
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
-from gearwhine.solve.load_sensitivity import case_changes, housing_fields
+from gearwhine.solve.load_sensitivity import LineChange, case_changes, housing_fields
 from gearwhine.solve.sound import solution
 from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 from housing.acoustics.radiation import HousingRadiation
@@ -179,19 +180,68 @@ def test_the_document_ranks_by_the_sound() -> None:
         first = np.array([one["first_order_w"] for one in row["sound"]])
         own = [one["level_db"] for one in row["sound"]]
         assert own == pytest.approx(list(10.0 * np.log10(1.0 + change / powers)))
+        back = np.array([one["reverse_power_w"] for one in row["sound"]])
+        own = [one["reverse_level_db"] for one in row["sound"]]
+        assert own == pytest.approx(list(10.0 * np.log10(1.0 + back / powers)))
+        # Half the difference of both steps has no even part: for a short step it is the slope.
+        if row["kind"] == "bearing position":
+            assert 0.5 * (change - back) == pytest.approx(first, rel=0.02, abs=1e-3 * total)
+        assert row["sound_a"]["reverse_level_db"] == pytest.approx(10.0 * np.log10(1.0 + weighted @ back / total))
+        for one in (*row["sound"], row["sound_a"]):
+            apart = [one["level_db"] - one["first_order_db"], one["reverse_level_db"] + one["first_order_db"]]
+            turned = [one["level_db"] * one["first_order_db"], -one["reverse_level_db"] * one["first_order_db"]]
+            off = [abs(a) > 1.0 or (b < 0.0 and abs(a) > 0.3) for a, b in zip(apart, turned, strict=True)]
+            assert one["first_order_is_off"] is any(off)
         assert row["sound_a"]["level_db"] == pytest.approx(10.0 * np.log10(1.0 + weighted @ change / total))
         expected = 10.0 / np.log(10.0) * (weighted @ first) / total
         assert row["sound_a"]["first_order_db"] == pytest.approx(expected)
-        levels[row["parameter"], row["kind"]] = abs(row["sound_a"]["level_db"])
+        both = row["sound_a"]["level_db"], row["sound_a"]["reverse_level_db"]
+        levels[row["parameter"], row["kind"]] = max(map(abs, both))
     (section,) = sections(result.document)
     tables = [one for one in section.tables if "A-weighted sound power of 2 lines together" in one.caption]
     assert len(tables) == 2
     for table in tables:
         shown = [levels[row["parameter"], row["kind"]] for row in table.rows]
         assert shown == sorted(shown, reverse=True)
+    words = {row["kind"]: (row["step_words"], row["reverse_words"]) for row in result.document["sensitivity"]}
+    assert words == {
+        "housing": ("1 mm thicker", "1 mm thinner"),
+        "bearing stiffness": ("10 % stiffer", "10 % softer"),
+        "bearing position": ("1 mm towards +z", "1 mm towards -z"),
+    }
+    marked = [row["remark"] != "" for table in tables for row in shown_rows(table)]
+    assert marked == [row["first_order_is_off"] for table in tables for row in table.rows]
+    assert any("First order is off" in sentence for sentence in section.sentences) is any(marked)
     data = result.dataset["loudest_line_power_change"]
     assert (data.dims, data.attrs["units"]) == (("influence", "loudest_line"), "W")
     assert data.values[-1] == pytest.approx([one["power_w"] for one in result.document["sensitivity"][-1]["sound"]])
+
+
+def test_a_wall_thinner_than_the_step_has_no_reverse() -> None:
+    change = LineChange(2.0, 10.0, 0.1, 0.2, np.nan)
+    assert change.reverse_level is None
+    assert not change.first_order_is_off
+    assert LineChange(2.0, 10.0, 0.1, 0.2, -0.2).reverse_level == pytest.approx(10.0 * np.log10(0.9))
+
+
+def shown_rows(table: Table) -> list[dict[str, str]]:
+    """Rows of a table by the headings of its columns."""
+    columns = {column.heading: column for column in table.columns}
+    return [{heading: column.text(row) for heading, column in columns.items()} for row in table.rows]
+
+
+def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
+    """The back wall by 1 mm: mesh, modes, equilibrium, lines and sound of the changed case."""
+    changes = {"acoustics.method": "erp", "acoustics.mesh_size": "26 mm"}
+    result = gw.load("small-gearbox", changes).operating_point(sensitivity=True).document
+    (before,) = result["loudest_lines"]
+    (row,) = [row for row in result["sensitivity"] if row["parameter"] == "back wall"]
+    for key, thickness in (("level_db", "11 mm"), ("reverse_level_db", "9 mm")):
+        other = gw.load("small-gearbox", changes | {"housing.box.wall.back": thickness})
+        (after,) = other.operating_point(sensitivity=True).document["loudest_lines"]
+        found = after["sound_power_db"] - before["sound_power_db"]
+        assert row["sound"][0][key] == pytest.approx(found, abs=0.8)
+        assert abs(found) > 3.0
 
 
 def test_a_line_of_the_sound_is_chosen() -> None:
