@@ -130,10 +130,16 @@ class Study:
     @property
     def housing(self) -> SolvedHousing | None:
         """The solved housing, which the first call meshes and solves; None in a case without one."""
+        return self._solved_housing(heard=False)
+
+    def _solved_housing(self, *, heard: bool) -> SolvedHousing | None:
+        """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
         if self._housing is None and self.case.housing is not None:
             from gearwhine.solve.housing_modes import solve_housing
+            from gearwhine.solve.sound import check_before_modes
 
-            self._housing = solve_housing(self.case, self.progress)
+            before = check_before_modes(self.case) if heard else None
+            self._housing = solve_housing(self.case, self.progress, before=before)
         return self._housing
 
     @property
@@ -245,7 +251,7 @@ class Study:
             sensitivity=sensitivity,
             line=line,
             rigid_seats=rigid_seats,
-            housing=None if rigid_seats else self.housing,
+            housing=None if rigid_seats else self._solved_housing(heard=sensitivity or line is not None),
             progress=self.progress,
         )
 
@@ -284,7 +290,7 @@ class Study:
         """Find the sound that the housing radiates; see :func:`gearwhine.analyses.machine.sound`."""
         from gearwhine.analyses import machine
 
-        return machine.sound(self.case, housing=self.housing, progress=self.progress)
+        return machine.sound(self.case, housing=self._solved_housing(heard=True), progress=self.progress)
 
     def simulate(self) -> Result[RunSolution]:
         """Integrate the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
@@ -296,7 +302,7 @@ class Study:
         """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""
         from gearwhine.analyses import run
 
-        return run.run(self.case, housing=self.housing, pictures=False, progress=self.progress)
+        return run.run(self.case, housing=self._solved_housing(heard=True), pictures=False, progress=self.progress)
 
     def sweep(
         self,

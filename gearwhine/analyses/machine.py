@@ -31,6 +31,7 @@ from gearwhine.solve.plausibility import (
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
+from gearwhine.solve.sound import check_before_modes
 from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 
 if TYPE_CHECKING:
@@ -164,11 +165,12 @@ def operating_point(
         Where no equilibrium is found.
     """
     require_load(case)
+    ranked = sensitivity or line is not None
     if rigid_seats:
         housing = None
     elif housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    ranked = sensitivity or line is not None
+        refuse = check_before_modes(case) if ranked else None
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
     solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=ranked, line=line)
     document = load_document(case.title, solved)
     add_warnings(document, load_warnings(case, solved))
@@ -382,7 +384,9 @@ def sound(
     if case.acoustics is None:
         case = case.model_copy(update={"acoustics": Acoustics()})
     if housing is None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=check_before_modes(case))
+    elif (refuse := check_before_modes(case)) is not None:
+        refuse(case, housing.mesh)
     machine, motion = None, None
     told: list[dict[str, Any]] = []
     steady = case.model_copy(update={"transient": None})

@@ -36,6 +36,7 @@ from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings,
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.signature import solve_signature
+from gearwhine.solve.sound import check_before_modes
 from gearwhine.solve.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.solve.transient_record import stored_record
 
@@ -108,7 +109,7 @@ def run(
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
     if housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=check_before_modes(case))
     timed("housing", begin)
     begin = time.perf_counter()
     part = None if housing is None or not (case.rotor and case.operation) else reduce_housing(case, housing, progress)

@@ -5,10 +5,9 @@ Attributes are named as the keys of the case file and are in SI; frequencies are
 
 from __future__ import annotations
 
-import re
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from gearwhine.case import units
 from gearwhine.case.fields import (
@@ -22,13 +21,9 @@ from gearwhine.case.fields import (
     Quantity,
     Table,
     Whole,
-    wrong,
 )
 
 SpeedOfSound = Annotated[float, Quantity(units.VELOCITY, above=0.0)]
-
-
-_OF_THE_BOX = re.compile("box [1-9]")  # names of microphones
 
 
 class Microphone(Table):
@@ -72,26 +67,3 @@ class Acoustics(Table):
     """Distance of nine microphones on a box around the housing, which stands on the `floor` (ISO 3744)."""
     lines: Annotated[int, Whole(1, 400)] = 40
     """Number of spectral lines that are solved at most: those with most power by an estimate."""
-
-    @model_validator(mode="after")
-    def _complete(self) -> Acoustics:
-        if self.method == "rayleigh" and not self.faces:
-            raise wrong("flat faces that radiate, such as faces = ['top'], for the method 'rayleigh'", "faces")
-        if self.method != "rayleigh" and self.faces:
-            raise wrong(f"no 'faces': the method {self.method!r} takes the whole surface", "faces")
-        listens = bool(self.microphone) or self.microphone_box is not None
-        place = "microphone" if self.microphone else "microphone_box"
-        for number, one in enumerate(self.microphone):
-            if _OF_THE_BOX.fullmatch(one.name):
-                expected = "another name: 'box 1' to 'box 9' are the microphones of 'microphone_box'"
-                raise wrong(expected, "microphone", number, "name")
-        if listens and (self.method == "erp" or len(self.faces) > 1):
-            raise wrong("no microphones: they need boundary elements, or 'rayleigh' with one face", place)
-        if self.microphone_box is not None and (self.floor is None or self.method != "boundary-elements"):
-            expected = "boundary elements and a 'floor' for the box of microphones: ISO 3744 measures over a hard plane"
-            raise wrong(expected, "microphone_box")
-        if self.method != "boundary-elements" and self.floor is not None:
-            raise wrong(f"no floor: the method {self.method!r} does not know one", "floor")
-        if self.mesh_size is not None and self.method == "rayleigh":
-            raise wrong("no mesh size: 'rayleigh' takes the elements of the housing", "mesh_size")
-        return self

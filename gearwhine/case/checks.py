@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.case.bearings import Bearing, MatrixStiffness, RollingStiffness
+from gearwhine.case.check_acoustics import check_acoustics
 from gearwhine.case.check_housing import check_box, check_housing_form
 from gearwhine.case.check_machine import check_bearings, check_gears, check_running, check_shafts
 from gearwhine.case.errors import NOTHING, Finding, Location, did_you_mean, key_of, look_up, show_value
@@ -182,6 +183,7 @@ def check(draft: Draft) -> Iterator[Finding]:
     yield from check_bearings(draft)
     yield from check_gears(draft)
     yield from check_running(draft)
+    yield from check_acoustics(draft)
     yield from check_provenance(draft)
 
 

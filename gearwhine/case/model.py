@@ -163,7 +163,7 @@ class Draft:
         The nested tables and lists of the case file.
     broken
         Top-level tables in which something could not be read; what they lack proves nothing.
-    box, operation, transient, sweep, analysis
+    box, operation, transient, sweep, analysis, acoustics
         None where there is none or it could not be read.
     """
 
@@ -184,6 +184,7 @@ class Draft:
     transient: Transient | None
     sweep: Sweep | None
     analysis: RotorAnalysis | None
+    acoustics: Acoustics | None
 
     @cached_property
     def readable_pairs(self) -> list[tuple[int, Gear, Gear]]:
@@ -221,6 +222,7 @@ _DRAFT_TABLES: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "transient": (Transient, ("transient",)),
     "sweep": (Sweep, ("sweep",)),
     "analysis": (RotorAnalysis, ("rotor_analysis",)),
+    "acoustics": (Acoustics, ("acoustics",)),
 }
 _DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "seats": (Seat, ("housing", "seat")),

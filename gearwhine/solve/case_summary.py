@@ -17,7 +17,7 @@ from gearwhine.from_case.gear_pairs import (
     taken_misalignments,
 )
 from gearwhine.from_case.machine import require_machine
-from gearwhine.from_case.mesh import material_of
+from gearwhine.from_case.mesh import build_mesh, material_of
 from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
@@ -25,6 +25,7 @@ from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.part_fits import fit_warnings
 from gearwhine.solve.plausibility import centrifugal_warnings
+from gearwhine.solve.sound import check_before_modes
 from rotors import Rotor as BuiltRotor
 
 
@@ -118,6 +119,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
             material_of(case, name)
         mesh, warnings = mesh_health.preview_mesh(case, progress)
+        warnings += _checked_acoustics(case, mesh)
     rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
@@ -133,6 +135,24 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
     return CheckedCase(case, mesh, rotors, pairs, locations, warnings)
+
+
+def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]:
+    """Return warnings about the acoustics of a case.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong with its radiating surface and microphones.
+    """
+    if (refuse := check_before_modes(case)) is None:
+        return []
+    from gearwhine.solve.sound.radiating_surface import acoustics_warnings
+
+    assert case.housing is not None
+    mesh = preview.mesh or build_mesh(case, order=1)
+    refuse(case, mesh)
+    return acoustics_warnings(case, mesh.bounds, case.housing.frequency_limit)
 
 
 def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:

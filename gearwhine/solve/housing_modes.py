@@ -8,7 +8,7 @@ A new key of the housing therefore counts until it is listed as one that changes
 """
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -230,6 +230,7 @@ def solve_housing(
     command: str = "modes",
     folder: Path | None = None,
     fresh: bool = False,
+    before: Callable[[Case, Mesh], None] | None = None,
 ) -> SolvedHousing:
     """Mesh the housing and solve its certified modes, or read them from the mode cache.
 
@@ -244,6 +245,8 @@ def solve_housing(
         A results folder; modes of the same housing cached there are read in place of solving.
     fresh : bool
         Solve also where they are.
+    before : callable, optional
+        Refuses what is wrong with the rest of a case on the mesh, before the modes are solved.
 
     Raises
     ------
@@ -272,6 +275,8 @@ def solve_housing(
     with noted_on_failure(warnings):
         # Places and ports before modes: what is wrong with them is found out before the long work.
         check_places(case, mesh)
+        if before is not None:
+            before(case, mesh)
         described = describe_housing(case, mesh)
         seat_ports = described.seat_ports()
         loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}

@@ -14,6 +14,7 @@ from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.output import staging
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing, write_mode_cache
+from gearwhine.solve.sound import check_before_modes
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.solution import (
     PointFailure,
@@ -120,7 +121,14 @@ def _shared_housings(
             continue
         # The next one reads the modes that this one keeps.
         _cache(solved, folder)
-        solved = solve_housing(point.case, progress, command="sweep", folder=folder, fresh=fresh and not found)
+        solved = solve_housing(
+            point.case,
+            progress,
+            command="sweep",
+            folder=folder,
+            fresh=fresh and not found,
+            before=check_before_modes(point.case),
+        )
         found[point.housing_key] = reduce_housing(point.case, solved)
     return found, solved
 

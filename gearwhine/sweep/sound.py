@@ -74,15 +74,17 @@ def add_sound(
     """
     from gearwhine.solve.sound.kept_radiation import kept_radiation
     from gearwhine.solve.sound.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
-    from gearwhine.solve.sound.solution import build_radiation, highest_frequency, microphones_of
+    from gearwhine.solve.sound.radiating_surface import acoustics_warnings, microphones_of
+    from gearwhine.solve.sound.solution import build_radiation, highest_frequency
 
     if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):
         message = "the sound of a sweep is left out: its housing, materials or acoustics change from point to point"
         return [warning("sound_of_sweep", message)], housing
     if told := left_out_warnings(case):
         return told, housing
+    told = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
     radiation = build_radiation(case, housing, progress)
-    positions, _ = microphones_of(case, housing)
+    positions, _ = microphones_of(case, housing.mesh)
     places = np.array(list(positions.values())).reshape(-1, 3)
     natural = len(housing.modes.frequencies_hz)
     jobs: list[tuple[int, int, float, Any]] = []  # number of the point and of its line, frequency, rates

@@ -290,6 +290,27 @@ def _set_down(surface: RadiatingSurface, floor: HardPlane, reach: float) -> Radi
     return RadiatingSurface(surface.points - np.outer(moved, floor.normal), surface.triangles)
 
 
+def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None = None) -> RadiatingSurface:
+    """Wrap a housing in triangles, and set it down on a floor where its vertices are within 2 % of an edge of it.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    edge : float
+        Of the triangles [m].
+    close_holes : float
+        Diameter of the largest hole that is capped [m].
+    floor : HardPlane, optional
+
+    Raises
+    ------
+    TriangleSizeError, HousingError
+        As :func:`housing.acoustics.wrapping.wrap`.
+    """
+    surface = wrap(mesh, edge, close_holes)
+    return surface if floor is None else _set_down(surface, floor, _STANDS * edge)
+
+
 @dataclass(frozen=True)
 class HousingRadiation:
     """A housing's radiating surfaces and the normal velocities of its modes on them.
@@ -364,9 +385,7 @@ class HousingRadiation:
         HousingError
             Where the housing cannot be wrapped, or does not stand on or above the floor.
         """
-        surface = wrap(mesh, edge, close_holes)
-        if floor is not None:
-            surface = _set_down(surface, floor, _STANDS * edge)
+        surface = wrapped(mesh, edge, close_holes, floor)
         elements = BoundaryElements(surface, medium, floor)
         if method == "boundary-elements":
             elements.require_few()

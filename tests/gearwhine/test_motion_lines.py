@@ -13,7 +13,8 @@ from coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.case import CaseError, swept_keys
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
 from gearwhine.solve.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
-from gearwhine.solve.sound.solution import microphones_of, solve_sound
+from gearwhine.solve.sound.radiating_surface import microphones_of
+from gearwhine.solve.sound.solution import solve_sound
 from gearwhine.sweep.sound import add_sound
 from housing.pictures.drawn_shapes import drawn_housing
 
@@ -209,7 +210,7 @@ def test_the_box_of_microphones_stands_on_the_floor() -> None:
     """Nine places 1 m from the reference box, which reaches down to the floor (ISO 3744:2010, 7.2.4)."""
     case = gw.load("small-gearbox", {"acoustics.floor": "-200 mm", "acoustics.microphone_box": "1 m"}).case
     housing = sounding_housing()
-    places, area = microphones_of(case, housing)
+    places, area = microphones_of(case, housing.mesh)
     low, high = housing.mesh.bounds
     sides, height = high - low + 2.0, high[1] + 1.0 + 0.2
     assert area == pytest.approx(sides[0] * sides[2] + 2.0 * height * (sides[0] + sides[2]))
@@ -220,10 +221,10 @@ def test_the_box_of_microphones_stands_on_the_floor() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"acoustics.microphone_box": "1 m"}, "acoustics.microphone_box: expected boundary elements and a 'floor'"),
+        ({"acoustics.microphone_box": "1 m"}, "acoustics.floor: expected a 'floor' such as"),
         (
             TOP | {"acoustics.microphone_box": "1 m"},
-            "acoustics.microphone_box: expected boundary elements and a 'floor'",
+            "acoustics.microphone_box: expected no box of microphones with the method 'rayleigh'",
         ),
         ({"acoustics.microphone": [EAR, EAR | {"name": "box 3"}]}, r"microphone\[1\].name .*: expected another name"),
     ],

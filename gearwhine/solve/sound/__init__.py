@@ -1,1 +1,16 @@
 """Sound of a case: its lines and modes, at microphones, of mesh harmonics, and the proofs of all."""
+
+from collections.abc import Callable
+
+from gearwhine.case import Case
+from meshes import Mesh
+
+
+def check_before_modes(case: Case) -> Callable[[Case, Mesh], None] | None:
+    """Return what refuses a case's `[acoustics]` on its mesh; None where it has none."""
+    if case.acoustics is None:
+        return None
+    # The acoustics' kernels are for these cases alone.
+    from gearwhine.solve.sound.radiating_surface import require_acoustics
+
+    return require_acoustics

@@ -5,7 +5,6 @@ The bearings' forces move the housing at each line (:mod:`gearwhine.solve.sound.
 :class:`housing.acoustics.radiation.HousingRadiation` its sound.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -30,27 +29,31 @@ from gearwhine.solve.sound.motion_lines import (
     pulsating_efficiency,
 )
 from gearwhine.solve.sound.proofs import interior_pressure, power_balance_db, require_proofs
+from gearwhine.solve.sound.radiating_surface import (
+    acoustics_warnings,
+    flat_face,
+    microphone_problems,
+    microphones_of,
+    surface_names,
+    wrap_settings,
+)
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
-from housing.acoustics.medium import HardPlane, Medium
+from housing.acoustics.medium import Medium
 from housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
 from housing.acoustics.sound_levels import (
     a_weighting,
-    measurement_box,
     power_level,
     pressure_level,
     sum_of_levels,
     third_octave_bands,
 )
 from housing.errors import TriangleSizeError
-from housing.fem.surface import flat_faces
-from meshes.elements import pick_facets
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_HOLES = 1.1  # of the widest seat, that are closed by default
 _ROUGH = 0.06  # relative error of an interpolation, half a decibel
 
 
@@ -265,23 +268,15 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
     if housing.modes.residual_modes is not None:
         shapes = np.concatenate([shapes, housing.modes.residual_modes.shapes])
     medium = Medium(given.density, given.speed_of_sound)
-    for key in ("still", "faces"):
-        for place, name in enumerate(getattr(given, key)):
-            if name not in housing.mesh.surfaces:
-                known = ", ".join(housing.mesh.surfaces)
-                raise CaseError([Problem(f"acoustics.{key}[{place}]", name, f"a surface of the housing ({known})")])
+    if problems := surface_names(case, housing.mesh):
+        raise CaseError(problems)
     if given.method == "rayleigh":
         progress("the flat faces that radiate")
-        faces = {}
-        for place, name in enumerate(given.faces):
-            faces[name] = _flat_face(housing, name, place)
+        faces = {name: flat_face(housing.mesh, name, place) for place, name in enumerate(given.faces)}
         return HousingRadiation.of_faces(housing.mesh, shapes, faces, medium=medium)
     limit = highest_frequency(case, housing)
-    edge = given.mesh_size or given.speed_of_sound / (6.0 * limit)
+    edge, holes, floor = wrap_settings(case, limit)
     progress(f"wrapping the housing in triangles of {1e3 * edge:.3g} mm")
-    seats = [seat.diameter for seat in case.housing.seat if seat.diameter] if case.housing is not None else []
-    holes = given.close_holes or _HOLES * max(seats, default=edge)
-    floor = None if given.floor is None else HardPlane(np.array([0.0, given.floor, 0.0]), np.array([0.0, 1.0, 0.0]))
     try:
         return HousingRadiation.of_surface(
             housing.mesh,
@@ -301,36 +296,10 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
         raise CaseError([Problem("acoustics", given.method, f"a housing that can be wrapped; {error}")]) from error
 
 
-def _flat_face(housing: SolvedHousing, name: str, place: int) -> Any:
-    surface = housing.mesh.surfaces[name]
-    wanted = {tuple(sorted(nodes)) for block in surface for nodes in block.nodes.tolist()}
-    for face in flat_faces(housing.mesh):
-        own = [tuple(sorted(nodes)) for block in face.facets for nodes in block.nodes.tolist()]
-        if wanted & set(own):
-            chosen = np.array([nodes in wanted for nodes in own])
-            if len(wanted) > chosen.sum():
-                break
-            return type(face)(pick_facets(face.facets, chosen), face.area, face.center, face.normal)
-    raise CaseError([Problem(f"acoustics.faces[{place}]", name, "a flat surface, for Rayleigh's integral")])
-
-
 def highest_frequency(case: Case, housing: SolvedHousing) -> float:
     """Return the highest frequency of a case's sound [Hz]: as given, else where the modes are complete."""
     assert case.acoustics is not None
     return case.acoustics.highest_frequency or housing.trusted_limit_hz
-
-
-def microphones_of(case: Case, housing: SolvedHousing) -> tuple[dict[str, FloatArray], float | None]:
-    """Positions of a case's microphones [m], and the area of the box that the last nine stand on [m²]."""
-    assert case.acoustics is not None
-    found = {one.name: np.array(one.position) for one in case.acoustics.microphone}
-    if case.acoustics.microphone_box is None:
-        return found, None
-    assert case.acoustics.floor is not None
-    low, high = (np.array(corner) for corner in housing.mesh.bounds)
-    low[1] = case.acoustics.floor
-    positions, area = measurement_box(low, high, case.acoustics.microphone_box)
-    return found | {f"box {number}": place for number, place in enumerate(positions, start=1)}, area
 
 
 def solve_sound(
@@ -363,10 +332,12 @@ def solve_sound(
     assert case.acoustics is not None
     radiation = build_radiation(case, housing, progress)
     limit = highest_frequency(case, housing)
-    positions, area = microphones_of(case, housing)
+    positions, area = microphones_of(case, housing.mesh)
     places = np.array(list(positions.values())).reshape(-1, 3)
-    _require_free(radiation, positions)
-    told: list[dict[str, Any]] = []
+    # Before the work; all of them.
+    if problems := list(microphone_problems(case, positions, radiation.require_in_air)):
+        raise CaseError(problems)
+    told = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
 
     def of_mode(number: int) -> tuple[ModeSound, RadiatedSound]:
         rates = np.zeros((radiation.modal[0].shape[1], 1))
@@ -457,14 +428,3 @@ def with_histories(
         transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
     )
     return replace(solved, histories=heard), housing
-
-
-def _require_free(radiation: HousingRadiation, positions: Mapping[str, FloatArray]) -> None:
-    """Refuse microphones inside or on the housing, or behind the plane, before the work."""
-    for name, place in positions.items():
-        try:
-            radiation.require_in_air(place[None])
-        except HousingError as error:
-            raise CaseError(
-                [Problem(f"acoustics.microphone {name!r}", place.tolist(), f"a point in the air; {error}")]
-            ) from error

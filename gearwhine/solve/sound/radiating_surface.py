@@ -1,0 +1,273 @@
+"""Radiating surface and microphones of a case before its modes are known: what they are, and all that is wrong there.
+
+:func:`require_acoustics` wraps the housing as the solution will and finds every microphone that is not in the air,
+triangles that are too large, and a floor above the soles, so that none of them ends a command after the long work.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case.acoustics import Acoustics
+from gearwhine.case.check_machine import millimetres
+from gearwhine.case.errors import did_you_mean
+from gearwhine.output.quantity import warning
+from housing import HousingError
+from housing.acoustics.boundary_elements import BoundaryElements
+from housing.acoustics.medium import HardPlane, Medium
+from housing.acoustics.radiation import wrapped
+from housing.acoustics.sound_levels import measurement_box
+from housing.acoustics.surface_velocity import face_surface
+from housing.errors import TriangleSizeError
+from housing.fem.surface import FlatFace, flat_faces
+from meshes import Mesh
+from meshes.elements import pick_facets
+
+FloatArray = npt.NDArray[np.float64]
+
+_HOLES = 1.1  # of the widest seat, that are closed by default
+_COARSE = 20.0  # triangles along the housing where nothing says how large they are
+_DEEP = 20.0  # sizes of the housing from which a floor below it is doubtful
+_FAR = 200.0  # the same of the distance of a microphone
+_IN_METRES = "a number without a unit is in m"
+
+
+def highest_known_frequency(case: Case) -> float | None:
+    """Return the highest frequency of a case's sound as far as the case gives it [Hz]."""
+    assert case.acoustics is not None
+    limit = None if case.housing is None else case.housing.frequency_limit
+    return case.acoustics.highest_frequency or limit
+
+
+def wrap_settings(case: Case, limit_hz: float) -> tuple[float, float, HardPlane | None]:
+    """Return the edge of the triangles and the diameter of the holes that are closed [m], and the floor.
+
+    Parameters
+    ----------
+    case : Case
+        With `[acoustics]`.
+    limit_hz : float
+        Highest frequency of the sound [Hz].
+    """
+    given = case.acoustics
+    assert given is not None
+    edge = given.mesh_size or given.speed_of_sound / (6.0 * limit_hz)
+    seats = [seat.diameter for seat in case.housing.seat if seat.diameter] if case.housing is not None else []
+    holes = given.close_holes or _HOLES * max(seats, default=edge)
+    floor = None if given.floor is None else HardPlane(np.array([0.0, given.floor, 0.0]), np.array([0.0, 1.0, 0.0]))
+    return edge, holes, floor
+
+
+def surface_names(case: Case, mesh: Mesh) -> list[Problem]:
+    """Return the names of surfaces in `[acoustics]` that the housing does not have."""
+    known = tuple(mesh.surfaces)
+    return [
+        Problem(
+            f"acoustics.{key}[{place}]",
+            name,
+            f"a surface of the housing ({', '.join(known)}){did_you_mean(name, known)}",
+        )
+        for key in ("still", "faces")
+        for place, name in enumerate(getattr(case.acoustics, key))
+        if name not in known
+    ]
+
+
+def flat_face(mesh: Mesh, name: str, place: int) -> FlatFace:
+    """Return a surface of a mesh as a flat face; ``place`` is its number in the case.
+
+    Raises
+    ------
+    CaseError
+        Where it is not flat.
+    """
+    surface = mesh.surfaces[name]
+    wanted = {tuple(sorted(nodes)) for block in surface for nodes in block.nodes.tolist()}
+    for face in flat_faces(mesh):
+        own = [tuple(sorted(nodes)) for block in face.facets for nodes in block.nodes.tolist()]
+        if wanted & set(own):
+            chosen = np.array([nodes in wanted for nodes in own])
+            if len(wanted) > chosen.sum():
+                break
+            return type(face)(pick_facets(face.facets, chosen), face.area, face.center, face.normal)
+    raise CaseError([Problem(f"acoustics.faces[{place}]", name, "a flat surface, for Rayleigh's integral")])
+
+
+def microphones_of(case: Case, mesh: Mesh) -> tuple[dict[str, FloatArray], float | None]:
+    """Positions of a case's microphones [m], and the area of the box that the last nine stand on [m²]."""
+    assert case.acoustics is not None
+    found = {one.name: np.array(one.position) for one in case.acoustics.microphone}
+    if case.acoustics.microphone_box is None:
+        return found, None
+    assert case.acoustics.floor is not None
+    low, high = (np.array(corner) for corner in mesh.bounds)
+    low[1] = case.acoustics.floor
+    positions, area = measurement_box(low, high, case.acoustics.microphone_box)
+    return found | {f"box {number}": place for number, place in enumerate(positions, start=1)}, area
+
+
+def microphone_problems(
+    case: Case, positions: Mapping[str, FloatArray], require_in_air: Callable[[FloatArray], None]
+) -> Iterator[Problem]:
+    """Yield the microphones at which the sound pressure cannot be found.
+
+    Parameters
+    ----------
+    case : Case
+    positions : mapping of str to ndarray, shape (3,)
+        Of :func:`microphones_of` [m].
+    require_in_air : callable
+        Raises `HousingError` where points, shape (n, 3), are not in the air.
+    """
+    assert case.acoustics is not None
+    own = len(case.acoustics.microphone)
+    for number, (name, place) in enumerate(positions.items()):
+        try:
+            require_in_air(place[None])
+        except HousingError as error:
+            if number < own:
+                key = f'acoustics.microphone[{number}].position (microphone "{name}")'
+                value = ", ".join(map(millimetres, place.tolist()))
+                yield Problem(key, value, f"a point in the air; {error}")
+            else:
+                told = f"a distance at which microphone {name!r} is in the air; {error}"
+                yield Problem("acoustics.microphone_box", millimetres(case.acoustics.microphone_box or 0.0), told)
+
+
+def require_acoustics(case: Case, mesh: Mesh) -> None:
+    """Refuse a radiating surface or microphones that cannot be, before the modes are solved.
+
+    Parameters
+    ----------
+    case : Case
+        Where it has no `[acoustics]` there is nothing to refuse.
+    mesh : Mesh
+        Of its housing; straight elements do.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
+    if case.acoustics is None:
+        return
+    problems = surface_names(case, mesh)
+    if case.acoustics.method == "rayleigh":
+        problems += _face_problems(case, mesh) if not problems else []
+    elif case.acoustics.method == "boundary-elements":
+        problems += _surface_problems(case, case.acoustics, mesh)
+    if problems:
+        raise CaseError(problems)
+
+
+def acoustics_warnings(case: Case, bounds: FloatArray, limit_hz: float | None) -> list[dict[str, Any]]:
+    """Return what is allowed in `[acoustics]` but likely not meant.
+
+    Parameters
+    ----------
+    case : Case
+        Where it has no `[acoustics]` there is no warning.
+    bounds : ndarray, shape (2, 3)
+        Lowest and highest corner of the housing [m].
+    limit_hz : float or None
+        Frequency up to which its modes are complete, where that is known [Hz].
+    """
+    given = case.acoustics
+    if given is None:
+        return []
+    found = []
+    size = float(np.ptp(bounds, axis=0).max())
+    large = f"the size of the housing, {millimetres(size)}"
+    if given.floor is not None and (depth := float(bounds[0, 1]) - given.floor) > _DEEP * size:
+        message = (
+            f"acoustics.floor lies {depth:.3g} m below the housing, {depth / size:.0f} times {large}: there it hardly "
+            f"counts; {_IN_METRES}, so that a floor under the soles is floor = '{1e3 * float(bounds[0, 1]):.4g} mm'"
+        )
+        found.append(warning("acoustics floor", message, below_m=depth))
+    middle = 0.5 * (bounds[0] + bounds[1])
+    for one in given.microphone:
+        distance = float(np.linalg.norm(np.array(one.position) - middle))
+        if distance > _FAR * size:
+            message = (
+                f'acoustics.microphone "{one.name}" is {distance:.3g} m from the housing, {distance / size:.0f} times '
+                f"{large}; {_IN_METRES}"
+            )
+            found.append(warning("acoustics microphone", message, distance_m=distance))
+    if given.microphone_box is not None and given.microphone_box > _FAR * size:
+        message = (
+            f"acoustics.microphone_box of {given.microphone_box:.3g} m is {given.microphone_box / size:.0f} times "
+            f"{large}; {_IN_METRES}"
+        )
+        found.append(warning("acoustics microphone", message, distance_m=given.microphone_box))
+    highest = given.highest_frequency
+    if highest is not None and limit_hz is not None and highest > limit_hz * (1.0 + 1e-9):
+        message = (
+            f"acoustics.highest_frequency of {highest:.5g} Hz is above {limit_hz:.5g} Hz, up to which the housing's "
+            "modes are complete: between them the sound lacks modes and may be too low by any amount; raise "
+            f"housing.frequency_limit to {highest:.5g} Hz or more, or leave the highest frequency out"
+        )
+        found.append(warning("acoustics frequency", message, highest_hz=highest, complete_below_hz=limit_hz))
+    return found
+
+
+def _face_problems(case: Case, mesh: Mesh) -> list[Problem]:
+    """Return faces that are not flat, and microphones that are not in front of the one that there is."""
+    assert case.acoustics is not None
+    problems, faces = list[Problem](), list[FlatFace]()
+    for place, name in enumerate(case.acoustics.faces):
+        try:
+            faces.append(flat_face(mesh, name, place))
+        except CaseError as error:
+            problems += error.problems
+    positions, _ = microphones_of(case, mesh)
+    if len(faces) == 1 and not problems and positions:
+        (face,) = faces
+        surface, _ = face_surface(mesh, face.facets)
+        elements = BoundaryElements(surface, _medium(case.acoustics), HardPlane(face.center, face.normal))
+        problems += microphone_problems(case, positions, elements.require_in_air)
+    return problems
+
+
+def _surface_problems(case: Case, given: Acoustics, mesh: Mesh) -> Iterator[Problem]:
+    """Yield what is wrong with the wrap of boundary elements, the floor and the microphones."""
+    limit = highest_known_frequency(case)
+    coarse = float(np.ptp(mesh.bounds, axis=0).max()) / _COARSE
+    known = given.mesh_size is not None or limit is not None
+    edge, holes, floor = wrap_settings(case, limit or given.speed_of_sound / (6.0 * coarse))
+    medium = _medium(given)
+    written = f"{1e3 * edge:.4g} mm"
+    try:
+        surface = wrapped(mesh, edge, holes, floor)
+    except TriangleSizeError as error:
+        yield Problem("acoustics.mesh_size", written, f"another edge; {error}")
+        return
+    except HousingError as error:
+        yield Problem("acoustics", given.method, f"a housing that can be wrapped; {error}")
+        return
+    try:
+        elements = BoundaryElements(surface, medium, floor)
+    except HousingError:
+        lowest = millimetres(float(mesh.bounds[0, 1]))
+        yield Problem(
+            "acoustics.floor", millimetres(given.floor or 0.0), f"a height at or below the soles, y = {lowest}"
+        )
+        elements = BoundaryElements(wrapped(mesh, edge, holes, None), medium)
+    if known:
+        try:
+            elements.require_few()
+            if limit is not None:
+                elements.require_resolved(limit)
+        except TriangleSizeError as error:
+            yield Problem("acoustics.mesh_size", written, f"another edge; {error}")
+    positions, _ = microphones_of(case, mesh)
+    if elements.plane is None and floor is not None:
+        # The nine on the floor follow from its height.
+        positions = {one.name: positions[one.name] for one in given.microphone}
+    yield from microphone_problems(case, positions, elements.require_in_air)
+
+
+def _medium(given: Acoustics) -> Medium:
+    return Medium(given.density, given.speed_of_sound)
