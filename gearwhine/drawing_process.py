@@ -54,8 +54,11 @@ def draw_in_process(
     progress: Progress,
     *,
     sheet: str | None = None,
+    beside: str | None = None,
 ) -> list[str]:
     """Draw shapes into a folder, and with a name for it also the ``sheet`` of all; the files' names.
+
+    With a view ``beside`` each picture shows both sides, see :func:`housing.pictures.images.render_shapes`.
 
     Raises
     ------
@@ -68,6 +71,7 @@ def draw_in_process(
         "folder": str(folder),
         "format": file_format,
         "view": view,
+        "beside": beside,
         "sheet": sheet,
         "shapes": [{key: getattr(shape, key) for key in _CAPTIONS} for shape in shapes],
     }
@@ -211,7 +215,7 @@ def _draw(desk: Path) -> list[str]:
         _tell({"progress": message})
 
     if task["format"] == "png":
-        files = render_shapes(housing, shapes, folder, view=view, progress=progress)
+        files = render_shapes(housing, shapes, folder, view=view, beside=task["beside"], progress=progress)
         if task["sheet"] is not None:
             progress("drawing all on one sheet")
             files.append(render_sheet(housing, shapes, folder / task["sheet"], view=view))

@@ -363,7 +363,8 @@ def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) 
     """Draw where the housing radiates; return warnings.
 
     They are ``sound-faces-all.png`` over all lines and ``sound-faces-123.4Hz.png`` at each of the loudest, each on
-    a scale of its own: red places send sound out, blue ones take it in. Without a renderer a warning says so.
+    a scale of its own and from two opposite sides: red places send sound out, blue ones take it in. Without a renderer
+    a warning says so.
 
     Parameters
     ----------
@@ -378,7 +379,9 @@ def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) 
     try:
         if shapes:
             surface = _radiating_surface(solved)
-            draw_in_process(surface, shapes, place, "png", "iso", progress)
+            # Flat faces radiate to one side; another surface is closed, and the first view shows half of it.
+            beside = None if solved.radiation.method == "rayleigh" else "iso-opposite"
+            draw_in_process(surface, shapes, place, "png", "iso", progress, beside=beside)
     except RendererUnavailableError as error:
         return [warning("pictures", f"no picture of the radiating surface: {error}")]
     return []

@@ -146,7 +146,7 @@ def render(
         bool, Parameter(name=["--measured"], negative=(), help="Draw measured shapes beside the model's.")
     ] = False,
     view: Annotated[
-        Literal["iso", "front", "back", "left", "right", "top"], Parameter(help="Direction of view.")
+        Literal["iso", "front", "back", "left", "right", "top", "iso-opposite"], Parameter(help="Direction of view.")
     ] = "iso",
     format: Annotated[  # noqa: A002 - the name of the option
         Literal["png", "glb", "gif", "mp4"],

@@ -501,7 +501,10 @@ _PICTURES = (
         "Sound power level of each line, the loudest with names, and of third octaves; marks where ERP differs "
         "from the line: the housing radiates less or more than a plane wave of its velocity.",
     ),
-    Picture("sound-faces-all", "Mean sound intensity out of the housing over all lines: red radiates, blue absorbs."),
+    Picture(
+        "sound-faces-all",
+        "Mean sound intensity out of the housing over all lines, from two sides: red radiates, blue absorbs.",
+    ),
     Picture("sound-faces", "The same at one of the loudest lines.", small=True),
     Picture(
         "sound-directivity",

@@ -100,12 +100,14 @@ def render_shapes(
     folder: Path,
     *,
     view: str = "iso",
+    beside: str | None = None,
     size: tuple[int, int] = (1000, 780),
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[Path]:
     """Draw one picture of each shape, where it is widest, named after it; see :func:`render_modes`.
 
-    The colours are titled by the quantity of the first.
+    The colours are titled by the quantity of the first. With a view ``beside``, such as the opposite one, each picture
+    is two of that size side by side, with one scale of colours.
     """
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / f"{shape.name}.png" for shape in shapes]
@@ -115,7 +117,12 @@ def render_shapes(
         for shape, path in zip(shapes, files, strict=True):
             progress(f"drawing {shape.title}")
             scene.show(shape)
-            drawn = scene.drawn(shape)
+            if beside is not None:
+                scene.look(view, bar=False)
+            drawn = [scene.drawn(shape)]
+            if beside is not None:
+                scene.look(beside, beside=True)
+                drawn.append(scene.drawn(shape))
             if saving is not None:
                 saving.result()
             saving = pool.submit(_shrink_and_save, scene, drawn, path)
@@ -147,8 +154,9 @@ def render_sheet(
     return path
 
 
-def _shrink_and_save(scene: Scene, drawn: npt.NDArray[np.uint8], path: Path) -> None:
-    _save(scene.shrunk(drawn), path)
+def _shrink_and_save(scene: Scene, drawn: Sequence[Image], path: Path) -> None:
+    """Write images side by side, each in the size of a picture."""
+    _save(np.concatenate([scene.shrunk(one) for one in drawn], axis=1), path)
 
 
 def _save(image: npt.NDArray[np.uint8], path: Path) -> None:

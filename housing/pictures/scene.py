@@ -62,6 +62,8 @@ def load_pyvista() -> Any:
 
 Image = npt.NDArray[np.uint8]
 
+_SHADE = 0.35, 0.75  # ambient and diffuse light
+_SIGNED_SHADE = 0.75, 0.3
 _VIEWS = {
     "iso": (1.0, 0.75, 1.25),
     "front": (0.0, 0.0, 1.0),
@@ -69,6 +71,7 @@ _VIEWS = {
     "left": (-1.0, 0.0, 0.0),
     "right": (1.0, 0.0, 0.0),
     "top": (0.0, 1.0, 0.001),
+    "iso-opposite": (-1.0, -0.75, -1.25),
 }
 VIEWS = tuple(_VIEWS)
 """Directions of view."""
@@ -132,7 +135,8 @@ class Scene:
         self._plotter = pyvista.Plotter(off_screen=True, window_size=finer)
         try:
             self._furnish(outline, tile, quantity)
-            self._aim(view, rest.bounds)
+            self._bounds = rest.bounds
+            self._aim(view)
         except BaseException:
             self._plotter.close()
             raise
@@ -153,6 +157,8 @@ class Scene:
         values = shape.largest * shape.amplitude if shape.values is None else shape.values
         self._solid["shown"] = values[self._origin]
         self._actor.mapper.lookup_table.apply_cmap(_COLOURS if shape.values is None else _SIGNED_COLOURS, 256)
+        # Signed colours are read on faces of every direction: shade makes a face look as if it had another value.
+        self._actor.prop.ambient, self._actor.prop.diffuse = _SHADE if shape.values is None else _SIGNED_SHADE
         self._actor.mapper.scalar_range = (0.0 if shape.values is None else -shape.largest, shape.largest)
 
     def picture(self, shape: DrawnShape, angle: float = 0.0) -> Image:
@@ -185,8 +191,8 @@ class Scene:
             cmap=_COLOURS,
             clim=(0.0, 1.0),
             smooth_shading=True,
-            ambient=0.35,
-            diffuse=0.75,
+            ambient=_SHADE[0],
+            diffuse=_SHADE[1],
             show_scalar_bar=False,
         )
         # The far side of a closed skin is never seen, and costs a third of the drawing.
@@ -223,10 +229,28 @@ class Scene:
         )
         plotter.add_axes(color=_INK, xlabel="x", ylabel="y", zlabel="z")
 
-    def _aim(self, view: str, bounds: Sequence[float]) -> None:
+    def look(self, view: str, *, beside: bool = False, bar: bool = True) -> None:
+        """Look from another direction.
+
+        Parameters
+        ----------
+        view : str
+            One of :data:`VIEWS`.
+        beside : bool
+            Whether the picture stands beside one that has the captions; it names its view in their place.
+        bar : bool
+            Whether the colour bar is drawn.
+        """
+        if beside:
+            self._title.input, self._note.input = " ", "The other side, in the same colours"
+        for one in self._plotter.scalar_bars.values():
+            one.SetVisibility(bar)
+        self._aim(view)
+
+    def _aim(self, view: str) -> None:
         self._plotter.view_vector(_VIEWS[view], viewup=(0.0, 1.0, 0.0))
         self._plotter.enable_parallel_projection()
-        self._plotter.reset_camera(bounds=_frame(bounds))
+        self._plotter.reset_camera(bounds=_frame(self._bounds))
         self._plotter.camera.zoom(1.2)
         self._plotter.camera.SetWindowCenter(0.0, _LOWER)
 

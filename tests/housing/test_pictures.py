@@ -84,6 +84,29 @@ def test_values_of_either_sign_have_their_own_colours(box: Mesh, modes: ModeSet,
 
 
 @pytest.mark.usefixtures("renderer")
+def test_two_opposite_views_show_every_face_in_one_scale(box: Mesh, tmp_path: Path) -> None:
+    """Left the top, right and front, right the underside, left and back: red faces are where the values are."""
+    surface = drawn_housing(box)
+    low, high = surface.rest.min(axis=0), surface.rest.max(axis=0)
+    found = {}
+    for name, on in (("top", surface.rest[:, 1] == high[1]), ("underside", surface.rest[:, 1] == low[1])):
+        shape = DrawnShape(name, "", "", 0.0 * surface.rest, "I", 1.0, np.where(on, 1.0, 0.0))
+        (path,) = render_shapes(surface, [shape], tmp_path, beside="iso-opposite", size=(320, 240))
+        image = _pixels(path).astype(int)
+        assert image.shape == (240, 640, 3)
+        redder = (image[..., 0] - image[..., 2])[40:]
+        found[name] = [np.count_nonzero(half[:, :280] > 120) for half in (redder[:, :320], redder[:, 320:])]
+        # One bar, on the right.
+        bars = [np.count_nonzero(np.abs(half[:, 283:302]) > 60) for half in (redder[:, :320], redder[:, 320:])]
+        assert bars[0] == 0
+        assert bars[1] > 100
+    assert found["top"][0] > 200
+    assert found["underside"][1] > 200
+    assert found["top"][1] < 0.2 * found["top"][0]
+    assert found["underside"][0] < 0.2 * found["underside"][1]
+
+
+@pytest.mark.usefixtures("renderer")
 def test_a_flat_face_alone_is_drawn_with_its_rim(tmp_path: Path) -> None:
     """It has no edge between faces; its rim is grey in front of its red."""
     corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
