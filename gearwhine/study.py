@@ -195,7 +195,7 @@ class Study:
         self,
         modes: str | None = None,
         *,
-        view: Literal["iso", "front", "back", "left", "right", "top"] = "iso",
+        view: Literal["iso", "front", "back", "left", "right", "top", "iso-opposite"] = "iso",
         mode_format: ModeFormat = "png",
         measured: bool = False,
     ) -> Result[SolvedHousing]:

@@ -271,7 +271,7 @@ def render(
     case : Case
     modes : str, optional
         ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
-    view : {"iso", "front", "back", "left", "right", "top"}
+    view : {"iso", "front", "back", "left", "right", "top", "iso-opposite"}
     mode_format : {"png", "glb", "gif", "mp4"}
         Pictures, models that move, or films; the result writes them.
     lines : sequence of float
