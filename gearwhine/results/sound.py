@@ -85,9 +85,14 @@ MODE_COLUMNS = (
 def _contributions(row: Any) -> dict[str, list[dict[str, Any]]]:
     solved, line = row
     power = line.sound.power
+    own = 0.5 * np.diag(line.sound.resistance)
+    alone = {name: float(power_level(one)) for name, one in zip(solved.bearings, own.tolist(), strict=True)}
     return {
         "housing_modes": parts_of_modes(line.sound.by_mode, len(solved.mode_frequencies), power),
-        "bearings": _worth_telling(zip(solved.bearings, line.sound.by_motion.tolist(), strict=True), power),
+        "bearings": [
+            part | {"alone_db": alone[part["name"]]}
+            for part in _worth_telling(zip(solved.bearings, line.sound.by_motion.tolist(), strict=True), power)
+        ],
         "faces": _worth_telling(line.sound.by_face.items(), power),
     }
 
@@ -148,7 +153,7 @@ def _picture_of(row: Document) -> tuple[str, ...]:
     return (f"picture sound-faces-{row['frequency_hz']:.1f}Hz",)
 
 
-def _largest(heading: str, group: str, *, share: bool = True) -> Column:
+def _largest(heading: str, group: str) -> Column:
     """Return the column that names the largest part of a line's power, with its share."""
 
     def text(row: Document) -> str:
@@ -156,7 +161,7 @@ def _largest(heading: str, group: str, *, share: bool = True) -> Column:
         if not parts:
             return ""
         name = str(parts[0]["name"]).removeprefix(_MODE_NAME).replace(_LOCAL, "local")
-        return f"{name}, {100.0 * parts[0]['share']:.0f} %" if share else name
+        return f"{name}, {100.0 * parts[0]['share']:.0f} %"
 
     return Column(heading, text)
 
@@ -166,8 +171,9 @@ _ORDER = Column("order", "order", ".4g")
 _LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB]", "sound_power_db_a", ".1f"))
 _NAME = Column("what it is", lambda row: arrowed(str(row["name"])))
 _MODE, _FACE = _largest("by mode", "housing_modes"), _largest("by face", "faces")
+_BEARING = _largest("by bearing", "bearings")
 
-LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _largest("by bearing", "bearings", share=False), _FACE)
+LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _BEARING, _FACE)
 """Of a line, on the terminal and the first page."""
 
 LINE_COLUMNS = (
@@ -178,7 +184,7 @@ LINE_COLUMNS = (
     Column("ERP [dB]", "equivalent_power_db", ".1f"),
     Column("efficiency", "radiation_efficiency", ".2g"),
     _MODE,
-    _largest("by bearing", "bearings"),
+    _BEARING,
     _FACE,
 )
 """Of a line, in the report."""
@@ -262,6 +268,12 @@ SWEPT_LINE = (
     ),
 )
 """Of a line of a sweep's point, its entry in the document, and the natural frequencies of the housing [Hz]."""
+
+PARTS = (
+    "Parts are shares of the line's power with phase: the motions by all bearings add up as complex amplitudes, and "
+    "the part of one is what its own motion radiates in the pressure of all. They are signed and sum to 100 %"
+)
+"""How the parts of a line are to be read."""
 
 LEFT_OUT = (
     Quantity("name", lambda one: one.name),
@@ -470,6 +482,7 @@ def sections(document: Document) -> tuple[Section, ...]:
         microphones = microphones[:-_ON_BOX]
     tables = (
         *table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_SHOWN], "Loudest lines, and the largest part of each"),
+        *((PARTS,) if document["lines"] else ()),
         *table_of(columns_of(MICROPHONE), microphones, "All lines at the microphones"),
         *table_of(MODE_COLUMNS, document["modes"], "Modes; a radiation efficiency of 1 is that of a plane wave"),
     )
@@ -491,8 +504,8 @@ def report(document: Document) -> Section:
 _READ = (
     "L_W is the sound power level re 1 pW, L_WA the same A-weighted. The equivalent radiated power (ERP) is an "
     "estimate that takes a radiation efficiency of 1. The order is the frequency over that of the first driver's "
-    "rotation. Parts are signed: others that work against the largest one make it exceed 100 %. Mode local is the "
-    "compliance around the bearings beyond the housing's modes."
+    f"rotation. {PARTS}: others that work against the largest one make it exceed that. Mode local is the compliance "
+    "around the bearings beyond the housing's modes."
 )
 
 _PICTURES = (
