@@ -345,6 +345,7 @@ class Study:
         formats: Sequence[Format] = ("csv", "uff", "wav"),
         *,
         signals: Signals = "sensors",
+        seconds: float | None = None,
     ) -> list[str]:
         """Write results in formats of other programs; see :func:`gearwhine.analyses.case.export_results`.
 
@@ -355,7 +356,7 @@ class Study:
         """
         from gearwhine.analyses.case import export_results
 
-        return list(export_results(Path(folder), self.case, formats, signals=signals)["files"])
+        return list(export_results(Path(folder), self.case, formats, signals=signals, seconds=seconds)["files"])
 
 
 def _text(value: object) -> str:

@@ -128,6 +128,7 @@ def export_results(
     formats: Sequence[Format] = ("csv", "uff", "wav"),
     *,
     signals: Signals = "sensors",
+    seconds: float | None = None,
 ) -> dict[str, Any]:
     """Write the results in a folder in formats of other programs, into its sub-folder ``exports``.
 
@@ -142,6 +143,9 @@ def export_results(
         and sound pressures of the microphones as sound.
     signals : {"sensors", "all"}
         Whether the universal files leave out forces and motions of bearings, gears and meshes.
+    seconds : float, optional
+        Least length of the sound file of a record that repeats [s], by default 5; 0 for one period. A record that does
+        not repeat, such as a run-up, is as long as it is.
 
     Returns
     -------
@@ -151,7 +155,8 @@ def export_results(
     Raises
     ------
     CaseError
-        Where the folder holds no results, or nothing that can be written in any of these formats.
+        Where the folder holds no results, or nothing that can be written in any of these formats, or the length is
+        none.
     """
     from gearwhine.output import export
     from gearwhine.output.store import stored_results
@@ -162,6 +167,10 @@ def export_results(
         raise CaseError([Problem("export", str(folder), expected)])
     case = case or _stored_case(folder)
     document: dict[str, Any] = {}
+    length = export.SOUND_SECONDS if seconds is None else seconds
+    if not 0.0 <= length <= export.LONGEST_SOUND:
+        expected = f"a length of sound files from 0 to {export.LONGEST_SOUND:g} s"
+        raise CaseError([Problem("export --seconds", length, expected)])
     with staging(folder) as place:
         own = place / _EXPORTS
         own.mkdir()
@@ -170,11 +179,12 @@ def export_results(
         if "uff" in formats:
             document["universal_files"] = export.write_universal_files(folder, own, _sensors(case), signals)
         if "wav" in formats:
-            document["sounds"] = export.write_sounds(folder, own)
+            document["sounds"] = export.write_sounds(folder, own, seconds=length)
         files = sorted(path.relative_to(place).as_posix() for path in own.iterdir())
         if not files:
             expected = f"results with what can be written as {', '.join(formats)}"
-            raise CaseError([Problem("export", str(folder), f"{expected}: run the case with a transient and sensors")])
+            how = "run the case with [transient], and with sensors, or with [acoustics] and microphones"
+            raise CaseError([Problem("export", str(folder), f"{expected}: {how}")])
     return document | {"folder": str(folder), "files": files}
 
 
@@ -207,6 +217,7 @@ def export_sections(document: Document) -> tuple[Section, ...]:
         Column("peak", lambda row: f"{_either(row, 'peak'):.3g}"),
         Column("rms", lambda row: f"{_either(row, 'rms'):.3g}"),
         Column("length [s]", "seconds", ".3f"),
+        Column("periods", "periods", "d"),
     )
     tables = (Column("file", "file"), Column("rows", "rows"))
     functions = (Column("file", "file"), Column("functions", "functions"))

@@ -141,6 +141,14 @@ def export(
             help="Accelerations of sensors and sound pressures of microphones as sound, with their full scale.",
         ),
     ] = False,
+    seconds: Annotated[
+        float | None,
+        Parameter(
+            name=["--seconds"],
+            help="With --wav: least length of a steady record, which is repeated without a seam; 0 for one period. "
+            "Default: 5. A run-up is as long as it is.",
+        ),
+    ] = None,
     all_signals: Annotated[
         bool,
         Parameter(name=["--all-signals"], negative=(), help="With --uff: forces and motions of the machine, too."),
@@ -158,6 +166,6 @@ def export(
     formats = [name for name, wanted in asked.items() if wanted] or list(asked)
 
     def work(folder: Path, given: "Case | None", progress: "Progress") -> dict[str, Any]:
-        return export_results(folder, given, formats, signals="all" if all_signals else "sensors")
+        return export_results(folder, given, formats, signals="all" if all_signals else "sensors", seconds=seconds)
 
     _on_results(results, common, work, shown_by(export_sections))

@@ -37,6 +37,12 @@ _Places = dict[tuple[str, str], tuple[int, int]]  # point and direction by kind 
 AUDIO_RATE = 48_000
 """Sampling rate of sound files [Hz]."""
 
+SOUND_SECONDS = 5.0
+"""Least length of the sound file of a record that repeats [s]."""
+
+LONGEST_SOUND = 600.0
+"""Longest that may be asked for [s]: 115 MB."""
+
 _DATA = "results.nc"
 _FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # of a full scale
 _RATIO_LIMIT = 10_000  # of the terms of a resampling ratio: the pitch is right to 1e-8
@@ -127,7 +133,7 @@ def write_universal_files(
     points = [(float(x), float(y), float(z)) for _, (x, y, z), _ in sensors]
     places = {("sensor", name): (number, direction) for number, (name, _, direction) in enumerate(sensors, start=1)}
     written: list[Document] = []
-    for command, data in _datasets(folder):
+    for command, _, data in _datasets(folder):
         count = 0
 
         def counted(functions: Iterable[UniversalFunction]) -> Iterator[UniversalFunction]:
@@ -147,14 +153,14 @@ def write_universal_files(
     return written
 
 
-def _datasets(folder: Path) -> Iterator[tuple[str, xr.Dataset]]:
+def _datasets(folder: Path) -> Iterator[tuple[str, Document, xr.Dataset]]:
     import xarray as xr
 
     for own, document in stored_results(folder):
         path = folder / own / _DATA
         if path.is_file() and not path.is_symlink():
             with xr.open_dataset(path, engine="h5netcdf") as data:
-                yield str(document.get("command", "results")), data
+                yield str(document.get("command", "results")), document, data
 
 
 def _microphone_places(data: xr.Dataset, before: int) -> tuple[_Places, list[tuple[float, float, float]]]:
@@ -254,13 +260,16 @@ def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str) -> tuple[s
     return ("; ".join(told),)
 
 
-def write_sounds(folder: Path, place: Path, rate: int = AUDIO_RATE) -> list[Document]:
+def write_sounds(
+    folder: Path, place: Path, rate: int = AUDIO_RATE, *, seconds: float = SOUND_SECONDS
+) -> list[Document]:
     """Write the histories of sensors and microphones as sound files in 32-bit floating point, to hear and to measure.
 
-    The history less its mean is resampled to an audio rate by a band-limited interpolation and divided by a full
-    scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …) m/s² or Pa above its peak. The full scale stands in
-    the file's name, in its comment (chunk LIST INFO ICMT) and in what is returned: the signal is the sample times the
-    full scale.
+    A record of whole turns at steady speed is a period of the motion: it is repeated without a seam until the file is
+    as long as asked for. Any other record is as long as it is. The history less its mean is resampled to an audio rate
+    by a band-limited interpolation and divided by a full scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …)
+    m/s² or Pa above its peak. The full scale stands in the file's name, in its comment (chunk LIST INFO ICMT) and in
+    what is returned: the signal is the sample times the full scale.
 
     Parameters
     ----------
@@ -270,23 +279,27 @@ def write_sounds(folder: Path, place: Path, rate: int = AUDIO_RATE) -> list[Docu
         Where the files go.
     rate : int
         [Hz].
+    seconds : float
+        Least length of the file of a record that repeats [s]; 0 for one period.
 
     Returns
     -------
     list of dict
-        File, sensor or microphone, full scale, peak and root mean square [m/s² or Pa], length [s] and sampling rate
-        [Hz].
+        File, sensor or microphone, full scale, peak and root mean square [m/s² or Pa], length [s], number of periods
+        and sampling rate [Hz].
     """
     written: list[Document] = []
-    for command, data in _datasets(folder):
+    for command, document, data in _datasets(folder):
         for one in _SOUNDS:
-            if one.variable not in data:
+            if one.variable not in data or one.time not in data:
                 continue
             times = np.asarray(data[one.time].values, dtype=np.float64)
             names = [str(name) for name in data[one.label].values]
             for stem, name in zip(file_stems(names, f"{command}-"), names, strict=True):
                 signal = np.asarray(data[one.variable].sel({one.label: name}).values, dtype=np.float64)
-                sound = resampled(signal - signal.mean(), (times[-1] - times[0]) / (len(times) - 1), rate)
+                interval = (times[-1] - times[0]) / (len(times) - 1)
+                count = periods(len(times) * interval, seconds, rate) if _repeats(document) else 0
+                sound = repeated(signal - signal.mean(), interval, rate, count)
                 scale = full_scale(float(np.abs(sound).max()))
                 path = place / f"{stem}-full-scale-{scale:g}-{one.suffix.replace('_', '-')}.wav"
                 comment = f"{one.what} at {name}; full scale (sample 1.0) is {scale:g} {one.unit}; gearwhine {command}"
@@ -299,6 +312,7 @@ def write_sounds(folder: Path, place: Path, rate: int = AUDIO_RATE) -> list[Docu
                         f"peak_{one.suffix}": float(np.abs(sound).max()),
                         f"rms_{one.suffix}": float(np.sqrt(np.mean(sound**2))),
                         "seconds": len(sound) / rate,
+                        "periods": max(count, 1),
                         "sampling_rate_hz": rate,
                     }
                 )
@@ -321,6 +335,57 @@ _SOUNDS = (
     _Sound("sensor_acceleration", "sensor", "time", "acceleration", "m/s2", "m_per_s2"),
     _Sound("microphone_pressure", "microphone", "microphone_time", "sound pressure", "Pa", "pa"),
 )
+
+
+def _repeats(document: Document) -> bool:
+    """Whether the record of a command holds whole turns of every shaft at steady speed."""
+    return str(document.get("record", {}).get("spectra", {}).get("window")) == "uniform"
+
+
+def periods(period: float, seconds: float, rate: int) -> int:
+    """Return how many periods a sound takes to be as long as asked for, or a little more where that closes it better.
+
+    Its samples end where it begins again, to a part of a sample: of the numbers up to half as many again, the one with
+    the smallest part.
+
+    Parameters
+    ----------
+    period : float
+        [s].
+    seconds : float
+        Least length [s].
+    rate : int
+        Of the samples [Hz].
+    """
+    least = max(math.ceil(seconds / period - 1e-9), 1)
+    apart = [
+        abs(count * period * rate - round(count * period * rate)) for count in range(least, least + least // 2 + 1)
+    ]
+    # By a thousandth of a sample, the first of those that are alike.
+    return least + min(range(len(apart)), key=lambda place: round(apart[place], 3))
+
+
+def repeated(signal: FloatArray, interval: float, rate: int, count: int) -> FloatArray:
+    """Resample a signal, of which `count` periods follow each other; 0 for one that does not repeat.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        One period, or a record that does not repeat.
+    interval : float
+        Between its samples [s].
+    rate : int
+        Of the result [Hz].
+    count : int
+    """
+    if count == 0:
+        return resampled(signal, interval, rate)
+    # Before and behind it is what the filter reaches, so that no end is heard.
+    reach = math.ceil((_HALF_LENGTH + 1) * max(1.0 / rate, interval) / (len(signal) * interval))
+    sound = resampled(np.tile(signal, count + 2 * reach), interval, rate)
+    period = len(signal) * interval * rate
+    first = round(reach * period)
+    return np.ascontiguousarray(sound[first : first + round(count * period)])
 
 
 def full_scale(peak: float) -> float:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearwhine.cli import run_command
-from gearwhine.output.export import full_scale, resampled
+from gearwhine.output.export import full_scale, periods, repeated, resampled
 
 
 @given(st.floats(50.0, 15e3), st.floats(0.0, 6.0), st.sampled_from([1 / 163840, 1 / 44100, 1 / 96e3, 1.9e-5]))
@@ -40,3 +40,37 @@ def test_what_is_not_there_is_said(tmp_path: Path, capsys: pytest.CaptureFixture
     assert run_command(["export", "small-gearbox", "-q", "--wav", "-o", str(tmp_path / "out")]) == 2
     assert "results with what can be written as wav" in capsys.readouterr().err
     assert not (tmp_path / "out" / "exports").exists()
+
+
+def test_a_period_is_repeated_without_a_seam() -> None:
+    """Three harmonics of 37 Hz, known at every time: 185 periods of 2,000 samples are 5 s."""
+    count, period = 2000, 1.0 / 37.0
+
+    def sound(times: np.ndarray) -> np.ndarray:
+        w = 2.0 * np.pi * 37.0
+        return np.sin(w * times + 0.3) + 0.5 * np.cos(11.0 * w * times) + 0.2 * np.sin(60.0 * w * times - 1.0)
+
+    signal = sound(period / count * np.arange(count))
+    assert periods(period, 5.0, 48_000) == 185
+    found = repeated(signal, period / count, 48_000, 185)
+    assert len(found) == 240_000
+    # It begins at the sample next to a period's beginning.
+    shift = round(48_000 * period) / 48_000 - period
+    shifts = [shift, *(round(n * 48_000 * period) / 48_000 - n * period for n in (2, 3))]
+    errors = [np.abs(found - sound(np.arange(240_000) / 48_000 + one)).max() for one in shifts]
+    assert min(errors) < 1e-4
+    # Played again and again there is no seam: the next sample is the first one.
+    assert (
+        np.abs(found[:100] - sound(np.arange(240_000, 240_100) / 48_000 + shifts[int(np.argmin(errors))])).max() < 1e-4
+    )
+    assert np.sqrt(np.mean(found**2)) == pytest.approx(np.sqrt(np.mean(signal**2)), rel=1e-5)
+    assert np.array_equal(repeated(signal, period / count, 48_000, 0), resampled(signal, period / count, 48_000))
+
+
+def test_the_number_of_periods_closes_the_loop_best() -> None:
+    assert periods(0.5, 5.0, 48_000) == 10
+    assert periods(0.5, 0.0, 48_000) == 1
+    assert periods(12.0, 5.0, 48_000) == 1
+    # 480.25 samples a period: four of them are whole, and 52 the first multiple of four that lasts 0.5 s.
+    assert periods(480.25 / 48_000, 0.5, 48_000) == 52
+    assert periods(480.0 / 48_000, 0.5, 48_000) == 50

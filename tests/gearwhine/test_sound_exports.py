@@ -10,8 +10,11 @@ import pyuff
 from scipy.io import wavfile
 from sounding_gearbox import QUICK, heard_run
 
+import gearwhine as gw
 from gearwhine.analyses.case import export_results, export_sections
+from gearwhine.case import CaseError
 from gearwhine.cli.command_line import run_command
+from gearwhine.output.export import write_sounds
 
 Exported = tuple[Path, dict[str, Any]]
 
@@ -75,6 +78,42 @@ def test_sounds_are_told_in_their_own_unit(exported: Exported) -> None:
     (top,) = [one for one in document["sounds"] if one.get("sensor") == "top"]
     (row,) = [row for row in rows if row["sensor or microphone"] == "top"]
     assert (row["unit"], row["rms"]) == ("m/s²", f"{top['rms_m_per_s2']:.3g}")
+
+
+def test_a_steady_record_is_repeated_at_its_own_level(exported: Exported, tmp_path: Path) -> None:
+    """Eight turns at 5500 rpm last 87 ms; repeated for seconds every line keeps its level, and the file its scale."""
+    place, document = exported
+    own = tmp_path / "once"
+    own.mkdir()
+    once = {one["file"]: one for one in write_sounds(place.parent, own, seconds=0.0)}
+    assert len(once) == len(document["sounds"])
+    for one in document["sounds"]:
+        short = once[one["file"]]  # with the same full scale in its name
+        assert short["periods"] == 1
+        assert short["seconds"] == pytest.approx(8.0 * 60.0 / 5500.0, abs=1e-4)
+        assert one["seconds"] >= 5.0 - 1e-4
+        assert one["seconds"] == pytest.approx(one["periods"] * 8.0 * 60.0 / 5500.0, abs=1e-4)
+        unit = "pa" if "microphone" in one else "m_per_s2"
+        assert one[f"rms_{unit}"] == pytest.approx(short[f"rms_{unit}"], rel=0.03)
+    # A window over all of it finds every line of the sound at the level that the document has.
+    (ear,) = [one for one in document["sounds"] if "microphone" in one]
+    rate, samples = wavfile.read(place / ear["file"])
+    window, times = np.hanning(len(samples)), np.arange(len(samples)) / rate
+    loudest = sorted(heard_run().document["sound"]["lines"], key=lambda line: -line["microphones_db"]["ear"])[:3]
+    for line in loudest:
+        rotating = np.exp(-2j * np.pi * line["frequency_hz"] * times)
+        amplitude = 2.0 * abs(np.sum(window * samples * ear["full_scale_pa"] * rotating)) / window.sum()
+        level = 20.0 * np.log10(amplitude / np.sqrt(2.0) / 20e-6)
+        assert level == pytest.approx(line["microphones_db"]["ear"], abs=0.05)
+
+
+def test_lengths_that_are_none_and_folders_without_signals_are_told(exported: Exported, tmp_path: Path) -> None:
+    place, _ = exported
+    with pytest.raises(CaseError, match="a length of sound files from 0 to 600 s"):
+        export_results(place.parent, formats=("wav",), seconds=-1.0)
+    gw.load("steel-box", {"housing.box.mesh_size": "60 mm"}).modes().write(tmp_path / "modes", pictures=False)
+    with pytest.raises(CaseError, match=r"with sensors, or with \[acoustics\] and microphones"):
+        export_results(tmp_path / "modes", formats=("wav",))
 
 
 def test_the_command_tells_the_sound_of_its_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
