@@ -463,19 +463,20 @@ def sweep(
     """
     start = time.perf_counter()
     keys = swept_keys(case, over)
-    from gearwhine.sweep import collected_sweep, default_workers, run_sweep, sweep_document, sweep_points
+    from gearwhine.sweep import collected_sweep, default_workers, missed_peaks, run_sweep, sweep_document, sweep_points
 
     points = sweep_points(*source, keys)
     count = workers or default_workers()
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
     told: list[dict[str, Any]] = []
-    housing = None
+    housing, radiated = None, None
     if case.acoustics is not None and case.housing is not None:
         from gearwhine.sweep.sound import add_sound
 
-        told, housing = add_sound(case, keys, swept, solve_housing(case, progress, folder=folder), progress)
-    dataset = collected_sweep(case, keys, swept)
-    document = {"title": case.title} | sweep_document(keys, swept)
+        told, housing, radiated = add_sound(case, keys, swept, solve_housing(case, progress, folder=folder), progress)
+    peaks = missed_peaks(keys, swept, radiated)
+    dataset = collected_sweep(case, keys, swept, peaks)
+    document = {"title": case.title} | sweep_document(keys, swept, peaks)
     add_warnings(document, told)
     document["workers"] = count if scheduler is None else None
     document["seconds"] = {"total": time.perf_counter() - start}

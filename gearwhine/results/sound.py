@@ -240,7 +240,7 @@ SWEPT_LINE = (
         "sound_line_level",
         unit="dB",
         long_name="sound power level of the loudest lines re 1 pW",
-        heading="its L_W\n[dB]",
+        heading="its L_W [dB]",
         shown=".1f",
     ),
     Quantity(
@@ -249,7 +249,7 @@ SWEPT_LINE = (
         "sound_line_mode",
         unit="1",
         long_name="number of the housing mode with the largest part of the line's power",
-        heading="by mode",
+        heading="most by mode",
         shown=_mode_text,
     ),
     Quantity(

@@ -47,14 +47,43 @@ PEAK = (
         heading="between [rpm]",
         shown=_peak_between,
     ),
-    Quantity("line", lambda one: one.line, heading="line", shown=lambda row: arrowed(str(row["line"]))),
-    Quantity("mode", lambda one: one.mode, heading="meets the mode"),
+    Quantity(
+        "line",
+        lambda one: one.line,
+        "missed_peak_line",
+        long_name="line of a peak between two points",
+        heading="line",
+        shown=lambda row: arrowed(str(row["line"])),
+    ),
+    Quantity(
+        "mode",
+        lambda one: one.mode,
+        "missed_peak_mode",
+        long_name="coupled mode that the line meets there",
+        heading="meets the mode",
+    ),
     Quantity("frequency_hz", lambda one: one.frequency_hz, heading="at [Hz]", shown=".1f"),
     Quantity("damping_ratio", lambda one: one.damping_ratio),
-    Quantity("speed_rpm", lambda one: one.speed_rpm, heading="speed [rpm]", shown=".1f"),
+    Quantity(
+        "speed_rpm",
+        lambda one: one.speed_rpm,
+        "missed_peak_speed",
+        unit="rpm",
+        long_name="speed of the peak, of the first driver",
+        heading="speed [rpm]",
+        shown=".1f",
+    ),
     Quantity("half_width_rpm", lambda one: one.half_width_rpm, heading="half-power\nwidth ± [rpm]", shown=".2g"),
-    Quantity("output", lambda one: one.output),
-    Quantity("level_db", lambda one: one.level_db, heading="estimate", shown=_peak_level),
+    Quantity("output", lambda one: one.output, "missed_peak_output", long_name="sound, or the sensor that peaks"),
+    Quantity(
+        "level_db",
+        lambda one: one.level_db,
+        "missed_peak_level",
+        unit="dB",
+        long_name="estimated level of the line there: of sound power re 1 pW, of an amplitude re 1 m/s2",
+        heading="estimate",
+        shown=_peak_level,
+    ),
     Quantity("rise_db", lambda one: one.rise_db, heading="above the louder\npoint [dB]", shown=".1f"),
 )
 """Of a peak between two points of a sweep over speed, see :class:`gearwhine.sweep.resolution.MissedPeak`."""
@@ -88,6 +117,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     done = [point for point in document["points"] if point["status"] == "done"]
     if done:
         yield from table_of(_columns(document, done), done)
+        heard = [point for point in done if "sound" in point]
+        yield from table_of(_sound_columns(document), heard, "Sound of each point, and its loudest line")
     for point in document["points"]:
         if point["status"] == "failed":
             where = ", ".join(f"{key}={text}" for key, text in point["settings"].items())
@@ -115,13 +146,7 @@ def _missed(document: Document) -> Iterator[str | Table]:
 def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
     """Return columns of the swept keys, some sensor levels, some mesh forces, and the energy balance."""
     first = done[0]
-    columns = [
-        Column(
-            axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""),
-            partial(_value, axis["name"]),
-        )
-        for axis in document["axes"]
-    ]
+    columns = _axes(document)
     columns += [
         Column(f"{sensor['name']}\nrms [m/s²]", partial(_level, sensor["name"]))
         for sensor in first["sensors"][:_MOST_SENSORS]
@@ -134,13 +159,25 @@ def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
             ),
             Column("apart", partial(_apart, place)),
         ]
-    if any("sound" in point for point in done):
-        columns += [
-            Column("sound L_W\n[dB]", partial(_sound, "total_db")),
-            Column("A-weighted\n[dB]", partial(_sound, "total_db_a")),
-            *(Column(one.heading, partial(_loudest, one)) for one in columns_of(SWEPT_LINE)),
-        ]
     return (*columns, Column("energy\nerror", lambda point: f"{point['energy_error']:.0e}"))
+
+
+def _axes(document: Document) -> list[Column]:
+    """Return columns of the swept keys."""
+    return [
+        Column(axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""), partial(_value, axis["name"]))
+        for axis in document["axes"]
+    ]
+
+
+def _sound_columns(document: Document) -> tuple[Column, ...]:
+    """Return columns of the swept keys, the sound power levels, and the loudest line with the mode that carries it."""
+    return (
+        *_axes(document),
+        Column("L_W [dB]", "sound.total_db", ".1f"),
+        Column("L_WA [dB]", "sound.total_db_a", ".1f"),
+        *(Column(one.heading, partial(_loudest, one)) for one in columns_of(SWEPT_LINE)),
+    )
 
 
 def _value(name: str, point: Document) -> str:
@@ -156,13 +193,9 @@ def _apart(place: int, point: Document) -> str:
     return percent(point["gear_pairs"][place]["contact_loss_fraction"])
 
 
-def _sound(key: str, point: Document) -> str:
-    return f"{point['sound'][key]:.1f}" if "sound" in point else ""
-
-
 def _loudest(column: Column, point: Document) -> str:
     """Return a cell of the loudest line of a point."""
-    return column.text(point["sound"]["loudest"]) if "sound" in point else ""
+    return column.text(point["sound"]["loudest"])
 
 
 def _level(name: str, point: Document) -> str:

@@ -14,7 +14,7 @@ from gearwhine.output.quantity import document_of
 from gearwhine.results.sound import SWEPT_LINE
 from gearwhine.results.sweep import PEAK
 from gearwhine.sweep.points import axis_name
-from gearwhine.sweep.resolution import missed_peaks, over_with, peak_warnings, speeds_to_add
+from gearwhine.sweep.resolution import MissedPeak, over_with, peak_warnings, speeds_to_add
 from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import POINTS, PointFailure, PointResult
 
@@ -27,7 +27,9 @@ _PEAKS = 10  # of each sensor, the highest
 _SAME_ORDER = 9  # decimals to which two lines are one
 
 
-def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> xr.Dataset:
+def collected_sweep(
+    case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint], peaks: Sequence[MissedPeak] = ()
+) -> xr.Dataset:
     """Collect every point of a sweep over its swept keys; NaN where a point failed or has no such line.
 
     Spectra stand over *order*, cycles for each turn of the first driver: records hold a number of its turns, so the
@@ -61,6 +63,7 @@ def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptP
     _add_bearings(grid, variables, coordinates)
     _add_operating_points(grid, variables, coordinates)
     _add_sound(grid, variables, coordinates)
+    _add_missed_peaks(peaks, variables)
     modes = max((result.housing_frequencies_hz.size for result in grid.results()), default=0)
     if modes:
         coordinates["housing_mode"] = ("housing_mode", np.arange(1, modes + 1), _unit("1", "number of the mode"))
@@ -80,8 +83,10 @@ def collected_sweep(case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptP
     return xr.Dataset(variables, coordinates, attributes)
 
 
-def sweep_document(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> dict[str, Any]:
-    """Return a sweep as the command's JSON."""
+def sweep_document(
+    keys: Sequence[SweptKey], swept: Sequence[SweptPoint], peaks: Sequence[MissedPeak] = ()
+) -> dict[str, Any]:
+    """Return a sweep as the command's JSON, with the peaks that lie between its points."""
     rows = []
     for one in swept:
         values = {axis_name(key.key): key.values[place] for key, place in zip(keys, one.point.place, strict=True)}
@@ -94,7 +99,6 @@ def sweep_document(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> dic
         else:
             row |= {"status": "done"} | {key: value for key, value in one.outcome.document.items() if key != "warnings"}
         rows.append(row)
-    peaks = missed_peaks(keys, swept)
     found: dict[str, Any] = {"missed_peaks": [document_of(PEAK, one) for one in peaks]}
     if peaks:
         speeds = speeds_to_add(peaks)
@@ -317,6 +321,18 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
     coordinates["mesh_harmonic"] = ("mesh_harmonic", harmonics, {})
     what = "sound power level of each mesh harmonic re 1 pW; none where its part of the point's power is too small"
     variables["mesh_harmonic_level"] = grid.rows(("mesh_harmonic",), (len(harmonics),), of_harmonics, _unit("dB", what))
+
+
+def _add_missed_peaks(peaks: Sequence[MissedPeak], variables: dict[str, Any]) -> None:
+    """Add the peaks between the points of a sweep over speed, the one that rises most first."""
+    if not peaks:
+        return
+    along = "missed_peak"
+    for quantity in PEAK:
+        if quantity.name:
+            values = [quantity.of(peak) for peak in peaks]
+            told = {"units": quantity.unit} if quantity.unit else {}
+            variables[quantity.name] = (along, values, told | {"long_name": quantity.long_name})
 
 
 def _pair_name(pair: Mapping[str, Any]) -> str:

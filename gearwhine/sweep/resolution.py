@@ -3,12 +3,13 @@
 A line of order o has the frequency o n at the speed n, and meets a mode of the damped frequency f at n = f / o. Where
 neither of two neighbouring speeds lies within the mode's half-power bandwidth 2 ζ f about it, the points do not resolve
 the peak. Its level is that of the line at the points times the ratio of the linear response to the mesh's transmission
-error, between the points in proportion to their distance; the transmission error is taken as that of the points.
+error, between the points in proportion to their distance; the transmission error is taken as that of the points. The
+sound power of that response is radiated as those of the lines are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -24,6 +25,7 @@ from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import PointResult
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _SAME = 1e-6  # relative difference of two orders that are one
 _NEAR = 0.5  # of the spacing of a record's lines: distance of a line from its order
@@ -76,7 +78,12 @@ class MissedPeak:
     rise_db: float
 
 
-def missed_peaks(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> list[MissedPeak]:
+RadiatedLevel = Callable[[float, ComplexArray], float]
+
+
+def missed_peaks(
+    keys: Sequence[SweptKey], swept: Sequence[SweptPoint], radiated: RadiatedLevel | None = None
+) -> list[MissedPeak]:
     """Return the peaks between the points of a sweep over speed that are louder than all at both points.
 
     The one that rises most first. Of a sweep with sound they are those of the sound power, else of the sensors.
@@ -86,6 +93,9 @@ def missed_peaks(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> list[
     keys : sequence of SweptKey
     swept : sequence of SweptPoint
         Done, with the sound in their documents.
+    radiated : callable, optional
+        Takes a frequency [Hz] and the rates of the housing's coordinates, shape (n,), and returns their sound power
+        level [dB]. By default the sound is that of a body of even walls.
     """
     along = next((number for number, key in enumerate(keys) if SPEED_KEY in key.keys), None)
     if along is None or not keys[along].is_numeric:
@@ -105,7 +115,7 @@ def missed_peaks(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> list[
         for below, above in pairwise(points):
             # Speeds of two senses have a standstill between them.
             if _speed(below) * _speed(above) > 0.0:
-                found += _between(settings, below, above)
+                found += _between(settings, below, above, radiated)
     return sorted(found, key=lambda peak: -peak.rise_db)
 
 
@@ -161,6 +171,7 @@ class _End:
     speed_rpm: float
     resonances: Resonances
     result: PointResult
+    radiated: RadiatedLevel | None = None
 
     def level(self, output: str, order: float) -> float | None:
         """Level of a line at an output; None where it is not known."""
@@ -181,6 +192,23 @@ class _End:
         squares = 0.5 * self.result.sensor_spectra[output][1:] ** 2
         return float(10.0 * np.log10(max(2.0 * squares.sum(), _TINY)))
 
+    def mode_near(self, hertz: float) -> int:
+        """Return the number of the mode nearest to a frequency [Hz]: another speed may have it elsewhere."""
+        return int(np.argmin(np.abs(self.resonances.frequencies - hertz)))
+
+    def correction(self, output: str, mesh: int, harmonic: int, mode: int) -> float:
+        """Level by which a mode's peak over the line at this point differs from that of even walls [dB]."""
+        found = self.resonances
+        if output != SOUND or self.radiated is None or harmonic > found.harmonic_rates.shape[1]:
+            return 0.0
+        at = np.array([float(found.frequencies[mode]), harmonic * found.mesh_orders[mesh] * self.speed_rpm / 60.0])
+        rates = (found.mode_rates[mesh, mode], found.harmonic_rates[mesh, harmonic - 1])
+        if not all(np.any(one) for one in rates):
+            return 0.0
+        peak, line = (self.radiated(hertz, one) for hertz, one in zip(at.tolist(), rates, strict=True))
+        even = self.response(output, mesh, at)
+        return peak - line - float(even[0] - even[1])
+
     def response(self, output: str, mesh: int, frequencies: FloatArray) -> FloatArray:
         """Level of the response of an output to a mesh's error at some frequencies [Hz]."""
         found = self.resonances
@@ -188,12 +216,14 @@ class _End:
         return np.asarray(np.interp(frequencies, found.grid, curve))
 
 
-def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> Iterator[MissedPeak]:
+def _between(
+    settings: dict[str, str], below: SweptPoint, above: SweptPoint, radiated: RadiatedLevel | None
+) -> Iterator[MissedPeak]:
     ends = []
     for one in sorted((below, above), key=lambda point: abs(_speed(point))):
         assert isinstance(one.outcome, PointResult)
         assert one.outcome.resonances is not None
-        ends.append(_End(abs(_speed(one)), one.outcome.resonances, one.outcome))
+        ends.append(_End(abs(_speed(one)), one.outcome.resonances, one.outcome, radiated))
     low, high = ends
     if (low.resonances.meshes, low.resonances.outputs) != (high.resonances.meshes, high.resonances.outputs):
         return
@@ -206,7 +236,7 @@ def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> 
         for harmonic in range(1, 1 + int(60.0 * found.grid[-1] / (order * low.speed_rpm))):
             peaks: dict[int, MissedPeak] = {}
             for output in outputs:
-                for number, hertz, level in _peaks(low, high, output, mesh, harmonic * order):
+                for number, hertz, level in _peaks(low, high, output, mesh, harmonic):
                     rise = level - totals[output]
                     if rise > 0.0 and (number not in peaks or rise > peaks[number].rise_db):
                         rpm = 60.0 / (harmonic * order)
@@ -224,11 +254,21 @@ def _between(settings: dict[str, str], below: SweptPoint, above: SweptPoint) -> 
                             level_db=level,
                             rise_db=rise,
                         )
-            yield from peaks.values()
+            yield from _apart(peaks.values())
 
 
-def _peaks(low: _End, high: _End, output: str, mesh: int, order: float) -> Iterator[tuple[int, float, float]]:
+def _apart(peaks: Iterable[MissedPeak]) -> Iterator[MissedPeak]:
+    """Yield the peaks of a line, the one that rises most first, without those of modes within its half-power band."""
+    kept: list[MissedPeak] = []
+    for peak in sorted(peaks, key=lambda one: -one.rise_db):
+        if all(abs(peak.speed_rpm - one.speed_rpm) > one.half_width_rpm for one in kept):
+            kept.append(peak)
+            yield peak
+
+
+def _peaks(low: _End, high: _End, output: str, mesh: int, harmonic: int) -> Iterator[tuple[int, float, float]]:
     """Yield the peaks of a line between two points that neither resolves: number of the mode, frequency, and level."""
+    order = harmonic * float(low.resonances.mesh_orders[mesh])
     first, last = order * low.speed_rpm / 60.0, order * high.speed_rpm / 60.0
     levels = [(end, at, end.level(output, order)) for end, at in ((low, first), (high, last))]
     known = [(end, at, level) for end, at, level in levels if level is not None]
@@ -236,13 +276,16 @@ def _peaks(low: _End, high: _End, output: str, mesh: int, order: float) -> Itera
     if not known:
         return
 
+    def between(frequencies: FloatArray, each: Sequence[FloatArray | float]) -> FloatArray:
+        part = (frequencies - first) / (last - first)
+        return np.asarray(each[0] if len(each) == 1 else (1.0 - part) * each[0] + part * each[1])
+
     def curve(frequencies: FloatArray) -> FloatArray:
         each = [
             level + end.response(output, mesh, frequencies) - end.response(output, mesh, np.array([at]))
             for end, at, level in known
         ]
-        part = (frequencies - first) / (last - first)
-        return np.asarray(each[0] if len(each) == 1 else (1.0 - part) * each[0] + part * each[1])
+        return between(frequencies, each)
 
     inside = (found.frequencies - found.half_widths > first) & (found.frequencies + found.half_widths < last)
     for number in np.flatnonzero(inside).tolist():
@@ -252,4 +295,5 @@ def _peaks(low: _End, high: _End, output: str, mesh: int, order: float) -> Itera
         top = int(np.argmax(level))
         # On the flank of a higher peak a mode is not what the points miss.
         if level[top] > curve(middle + half * np.array([-_OUTSIDE, _OUTSIDE])).max():
-            yield number, float(near[top]), float(level[top])
+            each = [end.correction(output, mesh, harmonic, end.mode_near(middle)) for end, _, _ in known]
+            yield number, float(near[top]), float(level[top] + between(near[top], each))

@@ -20,6 +20,7 @@ from gearwhine.case import Case
 from gearwhine.solve.sound.motion_lines import pulsating_efficiency
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 SOUND = "sound"
 """Name of the output of the sound power, beside those of the sensors."""
@@ -52,6 +53,11 @@ class Resonances:
     response : ndarray, shape (o, k, f)
         Level of each output by a unit transmission error of each mesh [dB]; of the sound the square of the housing's
         velocity times the radiation efficiency of a pulsating sphere.
+    mode_rates : ndarray of complex, shape (k, m, n)
+        Rates of the housing's coordinates by a unit transmission error of each mesh at each mode's frequency; n is 0
+        where the housing does not radiate.
+    harmonic_rates : ndarray of complex, shape (k, h, n)
+        The same at the multiples of each mesh frequency at this speed, 0 above the limit.
     """
 
     frequencies: FloatArray
@@ -62,6 +68,8 @@ class Resonances:
     grid: FloatArray
     outputs: tuple[str, ...]
     response: FloatArray
+    mode_rates: ComplexArray
+    harmonic_rates: ComplexArray
 
 
 def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Resonances | None:
@@ -99,12 +107,30 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
         assert case.acoustics is not None
         # The surface is not known here: a body of a square metre stands for it, in proportion alone.
         efficiency = pulsating_efficiency(grid / _TWO_PI, 1.0, case.acoustics.speed_of_sound)
-        outputs[SOUND] = [10.0 * _log(_squared_rate(machine, one.coordinates, grid) * efficiency) for one in found]
+        outputs[SOUND] = [
+            10.0 * _log((np.abs(_rates(machine, one.coordinates, grid)) ** 2).sum(axis=1) * efficiency) for one in found
+        ]
     chosen = _swinging(modes, limit_hz)
     # One line for each mesh, in their order.
     orders = [line.order for line in excitation_lines(machine, shaft_orders=(), mesh_harmonics=(1,))]
+    turning_hz = abs(machine.speeds[machine.leading_rotor]) / _TWO_PI
+    most = int(limit_hz / (min(orders) * turning_hz))
+    size = 0 if machine.housing is None else machine.housing.size
+
+    def rates(hertz: FloatArray, mesh: int) -> ComplexArray:
+        moved = mesh_error_response(machine, _TWO_PI * hertz, mesh=mesh, contact=contact, modes=modes)
+        return _rates(machine, moved.coordinates, moved.frequencies)
+
+    def harmonics(mesh: int) -> ComplexArray:
+        multiples = np.asarray(orders[mesh] * turning_hz * np.arange(1, most + 1), dtype=np.float64)
+        known = multiples[multiples <= limit_hz]
+        own = rates(known, mesh) if len(known) else np.zeros((0, size), dtype=np.complex128)
+        return np.concatenate([own, np.zeros((most - len(own), size), dtype=np.complex128)])
+
+    damped = modes.eigenvalues.imag[chosen] / _TWO_PI
+    none = np.zeros((len(touching), len(damped), 0), dtype=np.complex128)
     return Resonances(
-        frequencies=modes.eigenvalues.imag[chosen] / _TWO_PI,
+        frequencies=damped,
         half_widths=-modes.eigenvalues.real[chosen] / _TWO_PI,
         names=tuple(modes.labels[number] for number in chosen.tolist()),
         meshes=tuple(machine.meshes[number].name for number in touching),
@@ -112,6 +138,8 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
         grid=grid / _TWO_PI,
         outputs=tuple(outputs),
         response=np.array(list(outputs.values())),
+        mode_rates=np.array([rates(damped, number) for number in touching]) if heard else none[:, : len(damped)],
+        harmonic_rates=np.array([harmonics(number) for number in touching]) if heard else none[:, :0],
     )
 
 
@@ -123,11 +151,11 @@ def _swinging(modes: CoupledModes, limit_hz: float) -> npt.NDArray[np.intp]:
     return np.asarray(chosen[np.argsort(damped[chosen], kind="stable")])
 
 
-def _squared_rate(machine: CoupledMachine, coordinates: npt.NDArray[np.complex128], omega: FloatArray) -> FloatArray:
-    """Sum of the squares of the housing's rates, whose shapes are normalised to the mass."""
+def _rates(machine: CoupledMachine, coordinates: ComplexArray, omega: FloatArray) -> ComplexArray:
+    """Rates of the housing's coordinates, whose shapes are normalised to the mass, shape (f, n)."""
     assert machine.housing is not None
     own = machine.rows(machine.housing.name, np.eye(machine.housing.size))
-    return np.asarray(omega**2 * (np.abs(coordinates @ own.T) ** 2).sum(axis=1))
+    return np.asarray(1j * omega[:, None] * (coordinates @ own.T))
 
 
 def _log(values: FloatArray) -> FloatArray:

@@ -304,7 +304,14 @@ def _arrays(result: PointResult) -> Variables:
 
 def _resonance_arrays(found: Resonances) -> Variables:
     mode, mesh, grid, output = ("coupled_mode",), ("mesh",), ("response_frequency",), ("output",)
-    return {
+    parts, told = ("coordinate", "part"), {"units": "s-1 kg0.5", "long_name": "rates by a unit transmission error"}
+    arrays: Variables = {}
+    if found.mode_rates.size and found.harmonic_rates.size:
+        arrays = {
+            "mode_rates": ((*mesh, *mode, *parts), _parts(found.mode_rates), told),
+            "harmonic_rates": ((*mesh, "harmonic", *parts), _parts(found.harmonic_rates), told),
+        }
+    return arrays | {
         "coupled_frequency": (mode, found.frequencies, {"units": "Hz", "long_name": "damped natural frequency"}),
         "coupled_half_width": (mode, found.half_widths, {"units": "Hz", "long_name": "half the half-power bandwidth"}),
         "coupled_name": (mode, list(found.names), {"long_name": "kind and place of the coupled mode"}),
@@ -320,9 +327,18 @@ def _resonance_arrays(found: Resonances) -> Variables:
     }
 
 
+def _parts(values: npt.NDArray[np.complex128]) -> FloatArray:
+    return np.stack([values.real, values.imag], axis=-1)
+
+
 def _resonances(arrays: dict[str, npt.NDArray[Any]]) -> Resonances | None:
     if "response" not in arrays:
         return None
+    shape = len(arrays["mesh"]), len(arrays["coupled_frequency"]), 0
+    none = np.zeros((*shape, 2)), np.zeros((shape[0], 0, 0, 2))
+    of_modes, of_harmonics = (
+        arrays.get(name, empty) for name, empty in zip(("mode_rates", "harmonic_rates"), none, strict=True)
+    )
     return Resonances(
         frequencies=arrays["coupled_frequency"],
         half_widths=arrays["coupled_half_width"],
@@ -332,6 +348,8 @@ def _resonances(arrays: dict[str, npt.NDArray[Any]]) -> Resonances | None:
         grid=arrays["response_frequency"],
         outputs=tuple(map(str, arrays["output"])),
         response=arrays["response"],
+        mode_rates=of_modes[..., 0] + 1j * of_modes[..., 1],
+        harmonic_rates=of_harmonics[..., 0] + 1j * of_harmonics[..., 1],
     )
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from gearwhine.output.quantity import document_of, warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.results.sound import SWEPT_LINE, parts_of_modes
 from gearwhine.solve.sound.proofs import doubts, interior_pressure, power_balance_db
+from gearwhine.sweep.resolution import RadiatedLevel
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
 from housing.acoustics.modal_radiation import POINTS, ModalRadiation
@@ -46,7 +48,7 @@ def add_sound(
     swept: Sequence[SweptPoint],
     housing: SolvedHousing,
     progress: Progress = silent,
-) -> tuple[list[dict[str, Any]], SolvedHousing]:
+) -> tuple[list[dict[str, Any]], SolvedHousing, RadiatedLevel | None]:
     """Add the sound to the documents of a sweep's points.
 
     Parameters
@@ -65,6 +67,9 @@ def add_sound(
         Warnings.
     SolvedHousing
         Whose record holds the radiation over frequency, where that was of use.
+    callable or None
+        Sound power level of other rates of the housing's coordinates, without a solution: interpolated where the
+        radiation is known over frequency, else by their equivalent power. None where there is no sound.
 
     Raises
     ------
@@ -79,9 +84,9 @@ def add_sound(
 
     if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):
         message = "the sound of a sweep is left out: its housing, materials or acoustics change from point to point"
-        return [warning("sound_of_sweep", message)], housing
+        return [warning("sound_of_sweep", message)], housing, None
     if told := left_out_warnings(case):
-        return told, housing
+        return told, housing, None
     told = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
     radiation = build_radiation(case, housing, progress)
     positions, _ = microphones_of(case, housing.mesh)
@@ -143,7 +148,18 @@ def add_sound(
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
-    return [*told, *_beyond_warnings(keys, swept, highest_frequency(case, housing))], housing
+    told += _beyond_warnings(keys, swept, highest_frequency(case, housing))
+    return told, housing, partial(_radiated, radiation, table)
+
+
+def _radiated(radiation: HousingRadiation, table: ModalRadiation | None, hertz: float, rates: ComplexArray) -> float:
+    """Sound power level of rates of the housing's coordinates without a solution [dB]."""
+    from gearwhine.solve.sound.motion_lines import pulsating_efficiency
+
+    if table is not None and table.holds(hertz) and table.power(hertz, rates)[2] <= _SURE:
+        return float(power_level(table.power(hertz, rates)[0]))
+    sphere = pulsating_efficiency(np.array([hertz]), radiation.area, radiation.medium.speed_of_sound)
+    return float(power_level(radiation.equivalent_power(rates[:, None])[0] * sphere[0]))
 
 
 def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limit: float) -> Iterator[dict[str, Any]]:

@@ -199,7 +199,7 @@ def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
 @pytest.mark.parametrize("changes", [RUN_UP, BASE])
 def test_a_sweep_leaves_out_what_a_run_leaves_out(changes: dict[str, Any]) -> None:
     case = sounding_gearbox(TOP | changes).case
-    (told,), _ = add_sound(case, swept_keys(case, ["operation.torque=10 N*m,20 N*m"]), [], sounding_housing())
+    (told,), *_ = add_sound(case, swept_keys(case, ["operation.torque=10 N*m,20 N*m"]), [], sounding_housing())
     assert told["name"] == "sound_left_out"
     solved = quick_run(24.0).solved.transient
     assert solved is not None

@@ -214,7 +214,7 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
         one = PointResult(
             {}, np.zeros(0), line_frequencies=frequencies, line_rates=rates, line_names=named, line_kinds=named
         )
-        told, kept = add_sound(study.case, keys, [SweptPoint(SimpleNamespace(case=study.case), one, False)], housing)
+        told, kept, _ = add_sound(study.case, keys, [SweptPoint(SimpleNamespace(case=study.case), one, False)], housing)
         assert told == []
         return one.document["sound"]["lines"], kept
 
@@ -264,5 +264,5 @@ def test_sweep_sounds_as_its_points_do(tmp_path):
     loudest = max(found.lines, key=lambda line: line.sound.power)
     assert swept.dataset["sound_line_frequency"].values[0, 0] == pytest.approx(loudest.frequency_hz)
     keys = swept_keys(alone.case, ["housing.damping_ratio=0.01,0.02"])
-    (told,), _ = add_sound(alone.case, keys, [], alone.housing)
+    (told,), *_ = add_sound(alone.case, keys, [], alone.housing)
     assert "sound of a sweep is left out" in told["message"]

@@ -207,6 +207,22 @@ def test_a_sweep_shows_its_loudest_mesh_harmonics_and_the_orders_of_its_meshes()
     assert set(ends) == {"1×", "2×", "3×", "4×", "5×", "6×"}
 
 
+def test_a_sweep_marks_the_peaks_that_its_points_pass_by() -> None:
+    dataset = swept_sound()
+    dataset["speed"].attrs["units"] = "rpm"
+    dataset = dataset.assign(
+        missed_peak_speed=("missed_peak", [1500.0, 2500.0, 3500.0]),
+        missed_peak_level=("missed_peak", [85.0, -3.0, 90.0]),
+        missed_peak_output=("missed_peak", ["sound", "roof", "sound"]),
+    )
+    figure = dict(draw_sweep("t", dataset))["sweep-sound"]
+    (circles,) = [line for line in figure.axes[0].lines if line.get_markerfacecolor() == "none"]
+    assert np.asarray(circles.get_xydata()).tolist() == [[1500.0, 85.0], [3500.0, 90.0]]
+    assert any("circles: peaks that the points pass by" in text.get_text() for text in figure.texts)
+    plain = dict(draw_sweep("t", swept_sound()))["sweep-sound"]
+    assert not any("circles" in text.get_text() for text in plain.texts)
+
+
 def test_a_grid_of_several_keys_has_a_level_for_each_combination() -> None:
     torques = xr.DataArray([10.0, 20.0], dims="torque", attrs={"units": "N m"})
     dataset = xr.concat([swept_sound(), swept_sound() + 1.0], torques)

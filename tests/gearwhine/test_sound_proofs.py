@@ -91,7 +91,7 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
     )
     swept: Any = [SimpleNamespace(outcome=outcome, point=SimpleNamespace(case=case, texts=("10 N*m",)))]
     keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
-    told, housing = add_sound(case, keys, swept, sounding_housing())
+    told, housing, _ = add_sound(case, keys, swept, sounding_housing())
     assert told == []
     assert housing is sounding_housing()  # two lines need no table
     found = outcome.document["sound"]
@@ -136,7 +136,7 @@ def test_a_point_whose_powers_disagree_is_left_without_sound(monkeypatch: pytest
     apart = [abs(10.0 ** (0.1 * sound["power_balance_db"]) - 1.0) for sound in sounds]
     worse = int(np.argmax(apart))
     monkeypatch.setattr(radiation, "POWERS_AGREE", 0.5 * sum(apart))
-    (told,), _ = add_sound(case, keys, swept, sounding_housing())
+    (told,), *_ = add_sound(case, keys, swept, sounding_housing())
     assert told["message"].startswith(f"the sound at operation.torque={10 * (1 + worse)} N*m is left out: ")
     assert "through the surface" in told["message"]
     assert "sound" not in outcomes[worse].document
@@ -151,7 +151,7 @@ def test_points_whose_mesh_frequency_is_above_the_sound_are_told() -> None:
         for one, text in zip(cases, ("4000 rpm", "5500 rpm", "6000 rpm"), strict=True)
     ]
     keys = swept_keys(sounding, ["operation.speed=4000 rpm,5500 rpm,6000 rpm"])
-    (told,), _ = add_sound(sounding, keys, swept, sounding_housing())
+    (told,), *_ = add_sound(sounding, keys, swept, sounding_housing())
     assert "at 2 of 3 points, such as operation.speed=6000 rpm, a mesh frequency of up to 2800 Hz" in told["message"]
     assert add_sound(sounding, keys, swept[:1], sounding_housing())[0] == []
 

@@ -32,7 +32,16 @@ def resonances(natural: float = NATURAL) -> Resonances:
     response = 10.0 * np.log10(size(grid, natural))[None, None]
     widths = np.array([RATIO * natural])
     return Resonances(
-        np.array([natural]), widths, ("housing: housing",), (TEETH,), np.array([ORDER]), grid, (SOUND,), response
+        np.array([natural]),
+        widths,
+        ("housing: housing",),
+        (TEETH,),
+        np.array([ORDER]),
+        grid,
+        (SOUND,),
+        response,
+        np.zeros((1, 1, 0), dtype=complex),
+        np.zeros((1, 0, 0), dtype=complex),
     )
 
 
@@ -79,6 +88,22 @@ def test_points_that_resolve_the_peak_or_stand_above_it_miss_nothing() -> None:
     assert missed_peaks(*swept(-1400.0, 1650.0)) == []  # through a standstill
 
 
+def test_the_sound_of_a_peak_is_radiated_as_the_lines_are() -> None:
+    """A mode that radiates 4 dB more than even walls would: at both points, from which the peak is told, less so."""
+    keys, points = swept(1400.0, 1650.0)
+    for one, rpm in zip(points, (1400.0, 1650.0), strict=True):
+        found = one.outcome.resonances
+        rates = np.sqrt(size(ORDER * rpm / 60.0))
+        object.__setattr__(found, "mode_rates", np.full((1, 1, 1), 2.0 + 0j))
+        object.__setattr__(found, "harmonic_rates", np.full((1, 1, 1), 2.0 * rates + 0j))
+
+    def radiated(hertz: float, rates: Any) -> float:
+        return 10.0 * float(np.log10(abs(rates[0]) ** 2)) + (4.0 if abs(hertz - NATURAL) < 1.0 else 0.0)
+
+    (peak,) = missed_peaks(keys, points, radiated)
+    assert peak.level_db == pytest.approx(94.0, abs=0.05)
+
+
 def test_without_sound_a_sensor_misses_its_peak() -> None:
     """Amplitudes of its line; their response is that of the velocity here."""
     keys, points = swept(1400.0, 1650.0)
@@ -110,6 +135,16 @@ def test_a_mode_on_the_flank_of_another_is_not_told() -> None:
         object.__setattr__(found, "half_widths", np.array([7.0, 7.2]))
         object.__setattr__(found, "names", ("housing: housing", "rotor: input"))
     assert [peak.mode for peak in missed_peaks(keys, points)] == ["housing: housing"]
+
+
+def test_modes_within_one_half_power_band_are_one_peak() -> None:
+    keys, points = swept(1400.0, 1650.0)
+    for one in points:
+        found = one.outcome.resonances
+        object.__setattr__(found, "frequencies", np.array([NATURAL - 0.5, NATURAL]))
+        object.__setattr__(found, "half_widths", np.array([7.0, 7.0]))
+        object.__setattr__(found, "names", ("torsion: input", "housing: housing"))
+    assert len(missed_peaks(keys, points)) == 1
 
 
 def test_speeds_that_are_one_are_added_once() -> None:
@@ -148,7 +183,7 @@ def test_the_speeds_that_a_gearbox_passes_by_are_as_loud_as_told(sweeps: tuple[d
     totals = {point["values"]["speed"]: point["sound"]["total_db"] for point in second["points"]}
     (speed,) = [speed for speed in totals if abs(speed - peak["speed_rpm"]) < 0.2 * peak["half_width_rpm"]]
     # What varies with the mesh stiffness, spur teeth's, is not in the estimate.
-    assert totals[speed] == pytest.approx(peak["level_db"], abs=2.0)
+    assert totals[speed] == pytest.approx(peak["level_db"], abs=1.5)
     assert totals[speed] > max(totals[4000.0], totals[5000.0]) + 6.0
     assert second["resumed"] == 2
     assert second["missed_peaks"] == []
@@ -159,17 +194,18 @@ def test_terminal_tells_the_loudest_line_its_mode_and_the_speeds_to_add(
 ) -> None:
     first, second = sweeps
     (section,) = sections(first)
-    points, peaks = (part for part in section.content if isinstance(part, Table))
+    _, points, peaks = (part for part in section.content if isinstance(part, Table))
     columns, cells = points.filled()
     row = dict(zip([column.heading.replace("\n", " ") for column in columns], cells[1], strict=True))
     found = first["points"][1]["sound"]
     loudest = max(found["lines"], key=lambda line: line["sound_power_db"])
     largest = max(loudest["contributions"]["housing_modes"], key=lambda part: abs(part["share"]))
     assert row["loudest line"] == loudest["name"].replace("->", "→")
+    assert (row["L_W [dB]"], row["L_WA [dB]"]) == (f"{found['total_db']:.1f}", f"{found['total_db_a']:.1f}")
     assert row["its L_W [dB]"] == f"{loudest['sound_power_db']:.1f}"
     number, share = largest["name"].removeprefix("housing mode "), f"{100.0 * largest['share']:.0f} %"
-    assert row["by mode"].startswith(f"{number} at ")
-    assert row["by mode"].endswith(f" Hz, {share}")
+    assert row["most by mode"].startswith(f"{number} at ")
+    assert row["most by mode"].endswith(f" Hz, {share}")
     assert found["loudest"]["mode"] == int(number)
     assert len(peaks.rows) == len(first["missed_peaks"])
     said = " ".join(section.sentences)

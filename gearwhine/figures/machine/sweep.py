@@ -7,6 +7,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -34,6 +35,8 @@ from gearwhine.output.sections import arrowed
 
 if TYPE_CHECKING:
     import xarray as xr
+
+FloatArray = npt.NDArray[np.float64]
 
 _MOST_WATERFALLS = 12  # of a grid over several keys
 _LOUD = 40.0  # levels below the highest that have colours of their own [dB]
@@ -129,7 +132,9 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
     below = legend_height(1 + len(harmonics), _COLUMNS) if harmonics else _legend_height(places)
     lower = FOOT + below
     upper = lower + (_LINES + _FORCES_GAP if alone else 0.0)
-    note = f"{title}; sound power levels re 1 pW, solid: A-weighted, dashed: unweighted"
+    missed = alone and len(_missed_peaks(dataset, along)[0])
+    circles = "; circles: peaks that the points pass by, an estimate" if missed else ""
+    note = f"{title}; sound power levels re 1 pW, solid: A-weighted, dashed: unweighted{circles}"
     figure = sheet(HEAD + _FIRST + upper + _FORCES, f"Sound over {_key(dataset, along)}", note)
     # Both have one width, with room for the scale of colours.
     width = PANEL_WIDTH - _SCALE if alone else PANEL_WIDTH
@@ -140,6 +145,8 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
     for name, color in zip(harmonics, SERIES[1:], strict=False):
         level = dataset["mesh_harmonic_level"].sel(mesh_harmonic=name).values
         axes.plot(at[order], level[order], color=color, lw=0.9, ls=(0, (4, 3)), marker=".", ms=2.5)
+    if alone:
+        _mark_missed_peaks(axes, dataset, along)
     axes.set_ylabel("sound power level [dB]")
     if alone:
         panel_title(axes, "all lines, and mesh harmonics" if harmonics else "all lines")
@@ -160,6 +167,21 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
         legend_below(figure, handles, _COLUMNS)
     _name_lines(figure, dataset, places)
     return figure
+
+
+def _missed_peaks(dataset: xr.Dataset, along: str) -> tuple[FloatArray, FloatArray]:
+    """Speeds [rpm] and estimated sound power levels [dB] of the peaks between the points."""
+    if along != "speed" or "missed_peak_speed" not in dataset or dataset["speed"].attrs.get("units") != "rpm":
+        return np.empty(0), np.empty(0)
+    heard = dataset["missed_peak_output"].values == "sound"
+    sign = np.sign(float(dataset["speed"].values[0]))
+    return sign * dataset["missed_peak_speed"].values[heard], dataset["missed_peak_level"].values[heard]
+
+
+def _mark_missed_peaks(axes: Any, dataset: xr.Dataset, along: str) -> None:
+    speeds, levels = _missed_peaks(dataset, along)
+    if len(speeds):
+        axes.plot(speeds, levels, ls="", marker="o", ms=4.0, mfc="none", mec=INK, mew=0.7, zorder=4)
 
 
 def _loudest_harmonics(dataset: xr.Dataset) -> list[str]:
