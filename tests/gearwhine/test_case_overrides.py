@@ -76,6 +76,9 @@ def test_one_thickness_of_all_walls_is_written_out_where_one_wall_is_set() -> No
     every = changed("housing.box.wall.*=7 mm").housing.box  # type: ignore[union-attr]
     assert every is not None
     assert set(every.wall.model_dump().values()) == {0.007}  # type: ignore[union-attr]
+    any_table = changed("housing.*.wall.back=8 mm").housing.box  # type: ignore[union-attr]
+    assert any_table is not None
+    assert (any_table.walls.back, any_table.walls.front) == (0.008, 0.01)
     with pytest.raises(CaseError, match=r"housing\.box\.wall\.bakc: expected no such key; did you mean 'back'"):
         changed("housing.box.wall.bakc=3 mm")
     with pytest.raises(CaseError, match=r"housing\.box\.wall\.back: "):

@@ -26,7 +26,7 @@ from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
-from gearwhine.solve import housing_modes
+from gearwhine.solve import housing_modes, load_sensitivity
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
 from gearwhine.solve.load_sensitivity import case_changes, housing_fields
@@ -320,6 +320,26 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
     np.testing.assert_allclose(own, expected, atol=2e-3 * np.abs(expected).max())
     np.testing.assert_allclose(stepped, 1e-7 * own, atol=1e-3 * np.abs(1e-7 * own).max())
     assert not np.allclose(slopes, own, rtol=1e-6)
+
+
+def test_short_steps_of_either_way_are_the_slope(case: Case, solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bearings and flanks follow the equilibrium here, which has a part in the lines of its own."""
+    monkeypatch.setattr(load_sensitivity, "_LENGTH", 1e-9)
+    monkeypatch.setattr(load_sensitivity, "_PART", 1e-6)
+    housing, point, _ = solved
+    machine = describe_machine(case, full_housing_component(case, housing))
+    found = load_sensitivity.solve_load_sensitivity(case, machine, point, housing)
+    kinds = {one.kind for one in found.influences}
+    assert kinds == {"housing", "bearing stiffness", "bearing position"}
+    for kind in kinds:
+        rows = [one for one in found.influences if one.kind == kind]
+        slopes, there, back = (
+            np.array([getattr(one, name) for one in rows]) for name in ("lines", "stepped", "reversed")
+        )
+        largest = np.abs(slopes).max(axis=0)
+        assert (largest > 0.0).all()
+        assert (np.abs(there - slopes) < 1e-3 * largest).all()
+        assert (np.abs(back + slopes) < 1e-3 * largest).all()
 
 
 def test_the_damping_follows_the_modes() -> None:
