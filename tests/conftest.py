@@ -187,7 +187,9 @@ def unrendered() -> Iterator[None]:
 
     from gearwhine import drawing_process
 
-    def shapes_unrendered(housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None) -> list[str]:
+    def shapes_unrendered(
+        housing: Any, shapes: Any, folder: Path, *_: Any, sheet: str | None = None, beside: str | None = None
+    ) -> list[str]:
         names = [f"{shape.name}.png" for shape in shapes] + ([] if sheet is None else [sheet])
         for name in names:
             (folder / name).write_bytes(_POINT)
