@@ -134,7 +134,9 @@ def _missed(document: Document) -> Iterator[str | Table]:
     peaks = document.get("missed_peaks", ())  # not in summaries of earlier versions
     if not peaks:
         return
-    yield from table_of(columns_of(PEAK), peaks[:_MOST_PEAKS], "Peaks between the points, by the linear response")
+    of_sensors = "" if peaks[0]["output"] == _SOUND else "; of sensors the amplitude of the line"
+    caption = f"Peaks between the points, by the linear response{of_sensors}"
+    yield from table_of(columns_of(PEAK), peaks[:_MOST_PEAKS], caption)
     speeds = ", ".join(f"{speed:g} rpm" for speed in document["speeds_to_add_rpm"])
     more = f", of which the table has {_MOST_PEAKS}" if len(peaks) > _MOST_PEAKS else ""
     yield (

@@ -132,7 +132,11 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
     return Resonances(
         frequencies=damped,
         half_widths=-modes.eigenvalues.real[chosen] / _TWO_PI,
-        names=tuple(modes.labels[number] for number in chosen.tolist()),
+        # The housing stands for its own place.
+        names=tuple(
+            modes.kinds[number] if modes.kinds[number] == modes.where[number] else modes.labels[number]
+            for number in chosen.tolist()
+        ),
         meshes=tuple(machine.meshes[number].name for number in touching),
         mesh_orders=np.array([orders[number] for number in touching]),
         grid=grid / _TWO_PI,

@@ -47,6 +47,7 @@ _LINES, _SCALE = 50.0, 17.0  # height of the panel of loudest lines, and room fo
 _FIRST = 5.0  # above the first, for its title
 _COLUMNS = 3  # of the names of lines
 _HARMONICS = 3  # mesh harmonics that have a line of their own
+_CIRCLES = "; circles: peaks that the points pass by, an estimate"
 _ORDERS = 6  # multiples of a mesh frequency that are drawn among the loudest lines
 
 
@@ -75,11 +76,17 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
     sensors = [str(name) for name in dataset["sensor"].values]
     below, count = _legend_height(places), len(sensors)
     height = HEAD + _FIRST + count * _LEVELS + (count - 1) * _LEVELS_GAP + FOOT + below
-    figure = sheet(height, f"Acceleration over {_key(dataset, along)}", title)
+    # Of a grid the peaks of several lines would stand beside each other.
+    missed = {sensor: _missed_peaks(dataset, along, sensor) for sensor in sensors if len(places) == 1}
+    circles = _CIRCLES if any(len(speeds) for speeds, _ in missed.values()) else ""
+    figure = sheet(height, f"Acceleration over {_key(dataset, along)}", f"{title}{circles}")
     for number, sensor in enumerate(reversed(sensors)):
         axes = panel(figure, FOOT + below + number * (_LEVELS + _LEVELS_GAP), _LEVELS)
         _draw_lines(axes, dataset["sensor_rms"].sel(sensor=sensor), along, places)
-        levels = dataset["sensor_rms"].sel(sensor=sensor).values
+        speeds, peaks = missed.get(sensor, (np.empty(0), np.empty(0)))
+        peaks = np.sqrt(0.5) * 10.0 ** (peaks / 20.0)
+        _mark_missed_peaks(axes, speeds, peaks)
+        levels = np.concatenate([dataset["sensor_rms"].sel(sensor=sensor).values.ravel(), peaks])
         levels = levels[np.isfinite(levels) & (levels > 0.0)]
         if levels.size:
             log_axis(axes, 0.8 * float(levels.min()), 1.25 * float(levels.max()))
@@ -132,8 +139,7 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
     below = legend_height(1 + len(harmonics), _COLUMNS) if harmonics else _legend_height(places)
     lower = FOOT + below
     upper = lower + (_LINES + _FORCES_GAP if alone else 0.0)
-    missed = alone and len(_missed_peaks(dataset, along)[0])
-    circles = "; circles: peaks that the points pass by, an estimate" if missed else ""
+    circles = _CIRCLES if alone and len(_missed_peaks(dataset, along, "sound")[0]) else ""
     note = f"{title}; sound power levels re 1 pW, solid: A-weighted, dashed: unweighted{circles}"
     figure = sheet(HEAD + _FIRST + upper + _FORCES, f"Sound over {_key(dataset, along)}", note)
     # Both have one width, with room for the scale of colours.
@@ -145,8 +151,8 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
     for name, color in zip(harmonics, SERIES[1:], strict=False):
         level = dataset["mesh_harmonic_level"].sel(mesh_harmonic=name).values
         axes.plot(at[order], level[order], color=color, lw=0.9, ls=(0, (4, 3)), marker=".", ms=2.5)
-    if alone:
-        _mark_missed_peaks(axes, dataset, along)
+    speeds, peaks = _missed_peaks(dataset, along, "sound") if alone else (np.empty(0), np.empty(0))
+    _mark_missed_peaks(axes, speeds, peaks)
     axes.set_ylabel("sound power level [dB]")
     if alone:
         panel_title(axes, "all lines, and mesh harmonics" if harmonics else "all lines")
@@ -169,19 +175,18 @@ def _sound_levels(title: str, dataset: xr.Dataset, along: str, places: list[dict
     return figure
 
 
-def _missed_peaks(dataset: xr.Dataset, along: str) -> tuple[FloatArray, FloatArray]:
-    """Speeds [rpm] and estimated sound power levels [dB] of the peaks between the points."""
+def _missed_peaks(dataset: xr.Dataset, along: str, output: str) -> tuple[FloatArray, FloatArray]:
+    """Speeds [rpm] and estimated levels [dB] of the peaks of an output between the points."""
     if along != "speed" or "missed_peak_speed" not in dataset or dataset["speed"].attrs.get("units") != "rpm":
         return np.empty(0), np.empty(0)
-    heard = dataset["missed_peak_output"].values == "sound"
+    own = dataset["missed_peak_output"].values == output
     sign = np.sign(float(dataset["speed"].values[0]))
-    return sign * dataset["missed_peak_speed"].values[heard], dataset["missed_peak_level"].values[heard]
+    return sign * dataset["missed_peak_speed"].values[own], dataset["missed_peak_level"].values[own]
 
 
-def _mark_missed_peaks(axes: Any, dataset: xr.Dataset, along: str) -> None:
-    speeds, levels = _missed_peaks(dataset, along)
+def _mark_missed_peaks(axes: Any, speeds: FloatArray, values: FloatArray) -> None:
     if len(speeds):
-        axes.plot(speeds, levels, ls="", marker="o", ms=4.0, mfc="none", mec=INK, mew=0.7, zorder=4)
+        axes.plot(speeds, values, ls="", marker="o", ms=4.0, mfc="none", mec=INK, mew=0.7, zorder=4)
 
 
 def _loudest_harmonics(dataset: xr.Dataset) -> list[str]:
