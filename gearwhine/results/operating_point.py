@@ -784,11 +784,16 @@ def _step(row: Document) -> str:
     return str(row.get("step_words", row["step"]))  # not in summaries of earlier versions
 
 
+def _short_step(row: Document) -> str:
+    """Return the step of a wall or face in words; of a bearing its size, since names are long."""
+    return str(row["step"]) if str(row["kind"]).startswith("bearing") else _step(row)
+
+
 _STEP_KEYS = ("parameter", "kind", "step", "step_words", "reverse_words")
 _INFLUENCE_COLUMNS = (
     Column("parameter", "parameter"),
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
-    Column("step", _step),
+    Column("step", _short_step),
     Column("pair", "pair"),
     Column("misaligned\n[µrad]", "misalignment_rad", "+.3f", _MICRO),
     Column("K_Hβ", "k_h_beta", "+.4f"),
@@ -816,18 +821,21 @@ def _influences(document: Document) -> Iterator[str | Table]:
             yield f"{len(found) - _MOST_INFLUENCES} weaker parameters of {what} are in the files only"
 
 
+def _first_order(row: Document) -> str:
+    return f"{row['first_order_db']:+.2f}" + (" (off)" if row.get("first_order_is_off") else "")
+
+
 _LINE_COLUMNS = (
     Column("parameter", "parameter"),
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
     Column("step", _step),
     Column("level\n[dB]", "level_db", "+.2f"),
-    Column("first order\n[dB]", "first_order_db", "+.2f"),
+    Column("first order\n[dB]", _first_order),
     Column("reverse", "reverse_words"),
     Column("level\n[dB]", "reverse_level_db", "+.2f"),
-    Column("remark", lambda row: "first order is off" if row.get("first_order_is_off") else ""),
 )
 _OFF_NOTE = (
-    "First order is off: the level at a step differs from it by more than 1 dB, or by more than 0.3 dB and in sign, "
+    "(off): the level at a step differs from the first order by more than 1 dB, or by more than 0.3 dB and in sign, "
     "since a resonance moves within the step. Take the levels, and solve the changed case before relying on them"
 )
 

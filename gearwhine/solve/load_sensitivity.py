@@ -97,7 +97,7 @@ class Influence:
         if self.kind == "bearing stiffness":
             return f"{self._size} stiffer", f"{self._size} softer"
         if self.kind == "bearing position":
-            return f"{self._size} towards +z", f"{self._size} towards -z"
+            return f"{self._size} to +z", f"{self._size} to -z"
         return f"{self._size} more", f"{self._size} less"
 
     @property
