@@ -89,6 +89,18 @@ def test_faces_of_rayleigh_and_what_is_in_front_of_them() -> None:
     assert "behind the hard plane" in next(iter(found.values()))
 
 
+@pytest.mark.usefixtures("no_modes")
+@pytest.mark.parametrize("of", ["check", "sound"])
+def test_elements_of_a_face_that_are_too_large_are_told_with_its_microphones(of: str) -> None:
+    coarse = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "8 kHz"}
+    rayleigh = {"acoustics.method": "rayleigh", "acoustics.faces": ["top"], "acoustics.microphone": [INSIDE]}
+    found = problems(coarse | rayleigh, of)
+    assert set(found) == {"acoustics.faces[0]", 'acoustics.microphone[0].position (microphone "in")'}
+    assert "too large for 8000 Hz" in found["acoustics.faces[0]"]
+    fine = {"housing.box.mesh_size": "60 mm", "housing.frequency_limit": "2 kHz"}
+    assert "acoustics.faces[0]" not in problems(fine | rayleigh, of)
+
+
 def test_choices_that_rayleigh_does_not_take_are_told_together() -> None:
     found = refused(
         {

@@ -222,13 +222,25 @@ def _face_problems(case: Case, mesh: Mesh) -> list[Problem]:
             faces.append(flat_face(mesh, name, place))
         except CaseError as error:
             problems += error.problems
+    limit = highest_known_frequency(case)
+    for place, face in enumerate(faces if limit is not None and not problems else ()):
+        assert limit is not None
+        # Straight elements stand for curved ones, whose middle nodes halve their edges.
+        straight = all(block.nodes.shape == block.corners.shape for block in face.facets)
+        try:
+            _face_elements(case.acoustics, mesh, face).require_resolved(limit, elements=1.5 if straight else 3.0)
+        except TriangleSizeError as error:
+            told = f"a face of smaller elements, whose sides are the triangles of 'rayleigh'; {error}"
+            problems.append(Problem(f"acoustics.faces[{place}]", case.acoustics.faces[place], told))
     positions, _ = microphones_of(case, mesh)
-    if len(faces) == 1 and not problems and positions:
-        (face,) = faces
-        surface, _ = face_surface(mesh, face.facets)
-        elements = BoundaryElements(surface, _medium(case.acoustics), HardPlane(face.center, face.normal))
-        problems += microphone_problems(case, positions, elements.require_in_air)
+    if len(faces) == 1 and positions:
+        problems += microphone_problems(case, positions, _face_elements(case.acoustics, mesh, faces[0]).require_in_air)
     return problems
+
+
+def _face_elements(given: Acoustics, mesh: Mesh, face: FlatFace) -> BoundaryElements:
+    surface, _ = face_surface(mesh, face.facets)
+    return BoundaryElements(surface, _medium(given), HardPlane(face.center, face.normal))
 
 
 def _surface_problems(case: Case, given: Acoustics, mesh: Mesh) -> Iterator[Problem]:
