@@ -1,12 +1,13 @@
 """Parts of a machine: shafts, gears on shafts, excitation; and checks of their names, stations and seats."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 from typing import Protocol
 
 from coupling.errors import CouplingError
 from coupling.gears import Gear
+from coupling.gears.geometry.toothed_section import toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing
@@ -15,6 +16,7 @@ from coupling.machine.loads import AnyTorque, BaseMotion, Drive, ShaftForce
 from rotors import Disc, Rotor
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
+from rotors.model.profile import StiffnessDiameter
 
 _SAME_STATION = 1e-6  # part of the rotor's length
 
@@ -71,12 +73,16 @@ class ShaftGear:
     inertia : tuple of float, optional
         Mass [kg], polar and diametral moment of inertia [kg m²], in place of those of the gear's geometry; zeros where
         a disc of the rotor stands for the gear.
+    stiffens_shaft : bool
+        Whether the shaft bends, twists and stretches under the gear as in one piece with it
+        (`coupling.gears.geometry.toothed_section`). A gear with a rim never does.
     """
 
     gear: Gear
     shaft: str
     at: float
     inertia: tuple[float, float, float] | None = None
+    stiffens_shaft: bool = True
 
     @property
     def name(self) -> str:
@@ -159,10 +165,28 @@ class MachineParts(Protocol):
 
 
 def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
-    """Rotor with the gears on it as discs; a gear without mass and inertias adds none."""
+    """Rotor with the gears on it as discs, which stiffen it over their faces; one without inertias adds no disc."""
     rigid = [(gear.at, *gear.mass_and_inertias) for gear in gears]
     discs = [Disc(*one) for one in rigid if any(one[1:])]
-    return Rotor(rotor.name, rotor.segments, [*rotor.discs, *discs], rotor.mass_model)
+    stiff = [one for gear in gears for one in _stiffness_diameters(gear, rotor.length)]
+    return replace(rotor, discs=[*rotor.discs, *discs], stiffness_diameters=[*rotor.stiffness_diameters, *stiff])
+
+
+def _stiffness_diameters(mounted: ShaftGear, length: float) -> list[StiffnessDiameter]:
+    """Root circle over the face, and the section with teeth where these carry, on a shaft of some length [m]."""
+    gear = mounted.gear
+    if not mounted.stiffens_shaft or gear.rim_thickness is not None:
+        return []
+    section, root = toothed_section(gear), 2.0 * gear.root_circle_radius
+    found = []
+    for short, bending, torsion in (
+        (0.0, root, root),
+        (section.end_length, section.bending_diameter, section.torsion_diameter),
+    ):
+        half = 0.5 * gear.face_width - short
+        left, right = max(mounted.at - half, 0.0), min(mounted.at + half, length)
+        found += [StiffnessDiameter(left, right, bending, torsion)] if left < right else []
+    return found
 
 
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
