@@ -605,8 +605,8 @@ class Machine:
         for gear, start in zip(gears, starts, strict=True):
             at = gear.at if aligned else 0.5 * (left + right) - start
             stations, length = at + face_stations(geometry.face_width), self.shaft(gear.shaft).rotor.length
-            # A rim on a web does not follow the shaft over the face: its teeth stand on one section.
-            within = gear.gear.rim_thickness is None and stations[0] >= 0.0 and stations[-1] <= length
+            # A rim on a web, or a disc, does not follow the shaft over the face: its teeth stand on one section.
+            within = gear.in_one_piece and stations[0] >= 0.0 and stations[-1] <= length
             placed.append(StaticGear(gear.name, gear.shaft, at, stations if within else None))
         return placed[0], placed[1]
 

@@ -75,7 +75,8 @@ class ShaftGear:
         a disc of the rotor stands for the gear.
     stiffens_shaft : bool
         Whether the shaft bends, twists and stretches under the gear as in one piece with it
-        (`coupling.gears.geometry.toothed_section`). A gear with a rim never does.
+        (`coupling.gears.geometry.toothed_section`); else the gear is a disc on one section of it. A gear with a rim is
+        one always.
     """
 
     gear: Gear
@@ -88,6 +89,11 @@ class ShaftGear:
     def name(self) -> str:
         """Name of the gear."""
         return self.gear.name
+
+    @property
+    def in_one_piece(self) -> bool:
+        """Whether gear and shaft deform as one piece over the face; else the gear stands on one section."""
+        return self.stiffens_shaft and self.gear.rim_thickness is None
 
     @property
     def mass_and_inertias(self) -> tuple[float, float, float]:
@@ -175,7 +181,7 @@ def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
 def _stiffness_diameters(mounted: ShaftGear, length: float) -> list[StiffnessDiameter]:
     """Root circle over the face, and the section with teeth where these carry, on a shaft of some length [m]."""
     gear = mounted.gear
-    if not mounted.stiffens_shaft or gear.rim_thickness is not None:
+    if not mounted.in_one_piece:
         return []
     section, root = toothed_section(gear), 2.0 * gear.root_circle_radius
     found = []

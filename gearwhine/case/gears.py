@@ -321,8 +321,8 @@ class Gear(Table):
     web: PositiveLength | None = None
     """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
     stiffens_shaft: StrictBool = True
-    """Whether the shaft bends and twists under the gear as in one piece with it; a gear with a `rim` never stiffens it.
-    `false` for a gear that grips its shaft loosely, or that a published model takes as a disc."""
+    """Whether the shaft bends and twists under the gear as in one piece with it. `false`, and any `rim`: the gear is a
+    disc on one section of its shaft, as in many published models, or gripped loosely."""
     tip_relief: Relief | None = None
     """Tip relief."""
     root_relief: Relief | None = None
