@@ -7,7 +7,7 @@ from typing import Protocol
 
 from coupling.errors import CouplingError
 from coupling.gears import Gear
-from coupling.gears.geometry.toothed_section import toothed_section
+from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing
@@ -174,24 +174,24 @@ def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
     """Rotor with the gears on it as discs, which stiffen it over their faces; one without inertias adds no disc."""
     rigid = [(gear.at, *gear.mass_and_inertias) for gear in gears]
     discs = [Disc(*one) for one in rigid if any(one[1:])]
-    stiff = [one for gear in gears for one in _stiffness_diameters(gear, rotor.length)]
+    stiff = [one for gear in gears for one in _stiffness_diameters(gear, rotor)]
     return replace(rotor, discs=[*rotor.discs, *discs], stiffness_diameters=[*rotor.stiffness_diameters, *stiff])
 
 
-def _stiffness_diameters(mounted: ShaftGear, length: float) -> list[StiffnessDiameter]:
-    """Root circle over the face, and the section with teeth where these carry, on a shaft of some length [m]."""
+def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiameter]:
+    """Root circle, and the section with teeth, over the part of the face in which each carries."""
     gear = mounted.gear
     if not mounted.in_one_piece:
         return []
-    section, root = toothed_section(gear), 2.0 * gear.root_circle_radius
+    half, root, section = 0.5 * gear.face_width, 2.0 * gear.root_circle_radius, toothed_section(gear)
+    ends = max(mounted.at - half, 0.0), min(mounted.at + half, rotor.length)
+    bare = [bare_lengths(rotor.outer_diameter(end, mounted.at), root, gear.face_width) for end in ends]
     found = []
-    for short, bending, torsion in (
-        (0.0, root, root),
-        (section.end_length, section.bending_diameter, section.torsion_diameter),
-    ):
-        half = 0.5 * gear.face_width - short
-        left, right = max(mounted.at - half, 0.0), min(mounted.at + half, length)
-        found += [StiffnessDiameter(left, right, bending, torsion)] if left < right else []
+    for number, (plain, toothed) in enumerate(((root, section.bending_diameter), (root, section.torsion_diameter))):
+        for more, outer in ((0.0, plain), (section.end_length, toothed)):
+            left, right = ends[0] + bare[0][number] + more, ends[1] - bare[1][number] - more
+            if left < right:
+                found.append(StiffnessDiameter(left, right, *((outer, 0.0) if number == 0 else (0.0, outer))))
     return found
 
 

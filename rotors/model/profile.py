@@ -59,10 +59,8 @@ class StiffnessDiameter:
     ----------
     left, right
         Ends, m from the rotor's left end.
-    bending
-        Outer diameter in bending, shear and tension, m.
-    torsion
-        Outer diameter in torsion, m.
+    bending, torsion
+        Outer diameter in bending, shear and tension, and in torsion, m; 0 leaves the shaft as it is.
     """
 
     left: float
@@ -73,8 +71,8 @@ class StiffnessDiameter:
     def __post_init__(self) -> None:
         """Check the order of the ends and the diameters."""
         require(self.left < self.right, "stiffness diameter", (self.left, self.right), "its left end before its right")
-        require_finite("stiffness diameter in bending", self.bending, positive=True)
-        require_finite("stiffness diameter in torsion", self.torsion, positive=True)
+        require_finite("stiffness diameter in bending", self.bending, minimum=0.0)
+        require_finite("stiffness diameter in torsion", self.torsion, minimum=0.0)
 
 
 @dataclass(frozen=True)

@@ -130,6 +130,16 @@ class Rotor:
         """Length of the shaft, m."""
         return float(self.joints[-1])
 
+    def outer_diameter(self, at: float, towards: float) -> float:
+        """Outer diameter of the segment that begins at a place and lies towards another one, m; 0 of a coupling."""
+        inward = math.copysign(STATION_TOLERANCE * self.length, towards - at)
+        number = int(np.clip(np.searchsorted(self.joints, at + inward) - 1, 0, len(self.segments) - 1))
+        part = self.segments[number]
+        if isinstance(part, Coupling):
+            return 0.0
+        fraction = (at - float(self.joints[number])) / part.length
+        return part.section(min(max(fraction, 0.0), 1.0)).outer_diameter
+
     @property
     def stations(self) -> FloatArray:
         """Segment ends and disc positions, ascending, each place once, (stations,), m."""

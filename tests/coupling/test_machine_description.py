@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
 from coupling.gears import ConstantStiffness, Gear, GearError, SquareStiffness
-from coupling.gears.geometry.toothed_section import toothed_section
+from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
@@ -392,7 +392,8 @@ def test_material_damping_of_a_shaft_is_that_of_its_free_twist() -> None:
 def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar(*, stiffens: bool) -> None:
     """1/k of the bearing and ∫ dz/EA of the shaft between it and the gear, however few modes are kept.
 
-    A gear in one piece thickens half of its face to the root circle, and from 1.9 modules on to the section with teeth.
+    A gear in one piece thickens half of its face from where stress has spread: to the root circle, and 1.9 modules on to
+    the section with teeth.
     """
     at, axial = 0.1, 5e7
     stiffness = np.diag([1e8, 1e8, axial, 0.0, 0.0])
@@ -405,9 +406,11 @@ def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar(*, stiffens:
     whole = machine.assemble(components=[component]).system.mean_stiffness
     moved = along @ np.linalg.lstsq(whole, along, rcond=1e-12)[0]
     body, half = helical.gear, 0.5 * helical.gear.face_width
-    bare = min(1.9 * body.module, half)
-    lengths = [at - half, bare, half - bare]
-    diameters = [0.03, 2.0 * body.root_circle_radius, toothed_section(body).bending_diameter]
+    root = 2.0 * body.root_circle_radius
+    bare = bare_lengths(0.03, root, body.face_width)[0]
+    toothless = min(1.9 * body.module, half - bare)
+    lengths = [at - half + bare, toothless, half - bare - toothless]
+    diameters = [0.03, root, toothed_section(body).bending_diameter]
     if not stiffens:
         diameters = [0.03] * 3
     stretch = sum(length / (211e9 * math.pi / 4.0 * outer**2) for length, outer in zip(lengths, diameters, strict=True))

@@ -58,7 +58,7 @@ def bent_and_twisted(part: Segment, length: float, bending: float, torsion: floa
 def stretched(part: Segment, length: float, outer: float) -> Segment:
     """Part of the same mass that stretches as one of another diameter."""
     ratio = (outer**2 - part.inner_diameter**2) / (part.outer_diameter**2 - part.inner_diameter**2)
-    return replace(part, length=length, material=replace(part.material, youngs_modulus=ratio * 2.1e11))
+    return replace(part, length=length, material=ShaftMaterial(ratio * 2.1e11, 8.0e10, 7850.0))
 
 
 BY_HAND = [
@@ -134,7 +134,7 @@ def test_a_cone_is_stiffened_up_to_the_diameter_and_keeps_its_mass() -> None:
     rotor, ends = Rotor("shaft", [JAW, CONE], stiffness_diameters=stiff), [JAW.length, JAW.length + L]
     shaft = static_shaft(rotor, ends)
     bores = [CONE.section(fraction).inner_diameter for fraction in (0.0, 1 / 6, 1 / 2)]
-    by_hand = [
+    by_hand: list[Segment | Coupling] = [
         JAW,
         replace(CONE, length=L / 6, outer_diameter=0.04, right_outer_diameter=0.04, right_inner_diameter=bores[1]),
         replace(CONE, length=L / 3, outer_diameter=0.045, right_outer_diameter=0.045, inner_diameter=bores[1],
@@ -158,7 +158,7 @@ def test_modes_of_a_stiffened_cone_are_those_of_many_short_cylinders() -> None:
     def stepped(count: int) -> Rotor:
         middles = (np.arange(count) + 0.5) / count
         sections = [CONE.section(float(place)) for place in middles]
-        parts = [
+        parts: list[Segment | Coupling] = [
             Segment(CONE.length / count, one.outer_diameter, one.inner_diameter, STEEL, "cowper") for one in sections
         ]
         return replace(rotor, segments=parts)
@@ -183,7 +183,7 @@ def test_a_file_for_ross_says_that_the_stiffness_is_left_out(tmp_path: Path) -> 
     [
         ((0.3, 0.9, 0.05, 0.05), r"rotor 'shaft' stiffness diameter position is 0\.9; expected a place on the shaft"),
         ((0.3, 0.2, 0.05, 0.05), "its left end before its right"),
-        ((0.2, 0.3, -0.05, 0.05), "stiffness diameter in bending is -0.05; expected a positive number"),
+        ((0.2, 0.3, -0.05, 0.05), "stiffness diameter in bending is -0.05"),
         ((0.2, 0.3, 0.05, math.nan), "stiffness diameter in torsion is nan"),
     ],
 )
