@@ -392,8 +392,8 @@ def test_material_damping_of_a_shaft_is_that_of_its_free_twist() -> None:
 def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar(*, stiffens: bool) -> None:
     """1/k of the bearing and ∫ dz/EA of the shaft between it and the gear, however few modes are kept.
 
-    A gear in one piece thickens half of its face from where stress has spread: to the root circle, and 1.9 modules on to
-    the section with teeth.
+    A gear in one piece thickens half of its face from where stress has spread into it: to the root circle, and 1.9
+    modules on to the section with teeth.
     """
     at, axial = 0.1, 5e7
     stiffness = np.diag([1e8, 1e8, axial, 0.0, 0.0])

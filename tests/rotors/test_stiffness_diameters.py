@@ -190,3 +190,13 @@ def test_a_file_for_ross_says_that_the_stiffness_is_left_out(tmp_path: Path) -> 
 def test_bad_input_is_refused(given: tuple[float, float, float, float], message: str) -> None:
     with pytest.raises(RotorError, match=message):
         Rotor("shaft", STEPS, stiffness_diameters=[StiffnessDiameter(*given)])
+
+
+def test_outer_diameter_at_a_shoulder_is_that_of_the_side_asked_for() -> None:
+    rotor = Rotor("shaft", [*STEPS, JAW, CONE])
+    assert rotor.outer_diameter(0.4, 0.3) == 0.03
+    assert rotor.outer_diameter(0.4, 0.5) == 0.05
+    assert rotor.outer_diameter(0.0, 0.1) == 0.03
+    assert rotor.outer_diameter(0.72, 0.73) == 0.0
+    assert rotor.outer_diameter(0.77 + 0.5 * CONE.length, 0.9) == pytest.approx(0.045)
+    assert rotor.outer_diameter(rotor.length, 0.8) == pytest.approx(0.06)
