@@ -45,6 +45,7 @@ from coupling.machine.parts import (
     Driving,
     Shaft,
     ShaftGear,
+    carrying_length,
     inertia_with_discs,
     pair_label,
     require_names,
@@ -604,10 +605,9 @@ class Machine:
         placed = []
         for gear, start in zip(gears, starts, strict=True):
             at = gear.at if aligned else 0.5 * (left + right) - start
-            stations, length = at + face_stations(geometry.face_width), self.shaft(gear.shaft).rotor.length
-            # A rim on a web, or a disc, does not follow the shaft over the face: its teeth stand on one section.
-            within = gear.in_one_piece and stations[0] >= 0.0 and stations[-1] <= length
-            placed.append(StaticGear(gear.name, gear.shaft, at, stations if within else None))
+            stations = at + face_stations(geometry.face_width)
+            carriers = np.clip(stations, *carrying_length(gear, self.shaft(gear.shaft).rotor))
+            placed.append(StaticGear(gear.name, gear.shaft, at, carriers, stations - carriers))
         return placed[0], placed[1]
 
     def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
@@ -618,8 +618,7 @@ class Machine:
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:
-                    places.append(gear.at)
-                    places += [] if gear.stations is None else gear.stations.tolist()
+                    places += [gear.at, *gear.carriers.tolist()]
         exact = static_shaft(self.rotor(shaft.name), places)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 

@@ -178,21 +178,40 @@ def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
     return replace(rotor, discs=[*rotor.discs, *discs], stiffness_diameters=[*rotor.stiffness_diameters, *stiff])
 
 
+def carrying_length(mounted: ShaftGear, rotor: Rotor) -> tuple[float, float]:
+    """Return the ends of the length of shaft that moves with a gear's body [m].
+
+    The body is rigid beyond them, where the stress of the shaft has not spread into it. A disc moves with the section
+    in the middle of its face.
+    """
+    if not mounted.in_one_piece:
+        return mounted.at, mounted.at
+    return _core(mounted, rotor)[0]
+
+
+def _core(mounted: ShaftGear, rotor: Rotor) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the ends of the length over which a gear stiffens its shaft, in bending and in torsion [m]."""
+    gear, half = mounted.gear, 0.5 * mounted.gear.face_width
+    ends = max(mounted.at - half, 0.0), min(mounted.at + half, rotor.length)
+    root = 2.0 * gear.root_circle_radius
+    left, right = (bare_lengths(rotor.outer_diameter(end, mounted.at), root, gear.face_width) for end in ends)
+    bending, torsion = ((ends[0] + a, ends[1] - b) for a, b in zip(left, right, strict=True))
+    return bending, torsion
+
+
 def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiameter]:
     """Root circle, and the section with teeth, over the part of the face in which each carries."""
-    gear = mounted.gear
     if not mounted.in_one_piece:
         return []
-    half, root, section = 0.5 * gear.face_width, 2.0 * gear.root_circle_radius, toothed_section(gear)
-    ends = max(mounted.at - half, 0.0), min(mounted.at + half, rotor.length)
-    bare = [bare_lengths(rotor.outer_diameter(end, mounted.at), root, gear.face_width) for end in ends]
-    found = []
-    for number, (plain, toothed) in enumerate(((root, section.bending_diameter), (root, section.torsion_diameter))):
-        for more, outer in ((0.0, plain), (section.end_length, toothed)):
-            left, right = ends[0] + bare[0][number] + more, ends[1] - bare[1][number] - more
-            if left < right:
-                found.append(StiffnessDiameter(left, right, *((outer, 0.0) if number == 0 else (0.0, outer))))
-    return found
+    root, section = 2.0 * mounted.gear.root_circle_radius, toothed_section(mounted.gear)
+    bending, torsion = _core(mounted, rotor)
+    lengths = [
+        (*bending, root, 0.0),
+        (*torsion, 0.0, root),
+        (bending[0] + section.end_length, bending[1] - section.end_length, section.bending_diameter, 0.0),
+        (torsion[0] + section.end_length, torsion[1] - section.end_length, 0.0, section.torsion_diameter),
+    ]
+    return [StiffnessDiameter(*one) for one in lengths if one[0] < one[1]]
 
 
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
