@@ -27,7 +27,7 @@ from gearwhine.from_case.mesh import build_mesh
 from housing.acoustics import boundary_elements
 from housing.acoustics.boundary_elements import BoundaryElements, SoundField
 from housing.acoustics.known_source import KnownSources
-from housing.acoustics.medium import AIR, HardPlane
+from housing.acoustics.medium import HardPlane
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.radiation import HousingRadiation
 
@@ -132,14 +132,16 @@ def places(elements: BoundaryElements) -> tuple[FloatArray, FloatArray]:
 
 def study(only: str) -> None:
     """Print the table."""
-    print("| surface | triangles | depth | Hz | edges | largest | rms | 1 m | beside | power, dB | inside | balance, dB |")
+    print(
+        "| surface | triangles | depth | Hz | edges | largest | rms | 1 m | beside | power, dB | inside | balance, dB |"
+    )
     print("|" + 12 * "---|")
     for name, elements in bodies(only):
         sources, limit = elements.known_sources, elements.highest_frequency(1.0)
         if not len(sources.places):
             print(f"| {name} | {len(elements.surface.triangles)} | none |")
             continue
-        depth = boundary_depth(elements, sources)
+        depth = shallowest(elements, sources)
         far, near = places(elements)
         for edges in EDGES:
             hertz = limit / edges
@@ -153,7 +155,7 @@ def study(only: str) -> None:
                   f"{100.0 * field.interior_residual:.2f} % | {balance:.3f} |", flush=True)  # fmt: skip
 
 
-def boundary_depth(elements: BoundaryElements, sources: KnownSources) -> float:
+def shallowest(elements: BoundaryElements, sources: KnownSources) -> float:
     """Distance of the shallowest source from the centre of the nearest triangle, in its edges."""
     centers = elements.surface.corners.mean(axis=1)
     apart = np.linalg.norm(sources.places[:, None] - centers, axis=2) / elements.surface.lengths
@@ -174,7 +176,8 @@ def _free(elements: BoundaryElements, points: FloatArray) -> list[bool]:
 
 def cost(only: str, repeats: int) -> None:
     """Print the time of a solution with the proof over that without, in turn in one process."""
-    print("| surface | triangles | motions | with, s | ratio of medians | choosing the sources, s |\n|---|---|---|---|---|---|")
+    heads = "surface, triangles, motions, with [s], ratio of medians, choice of sources [s]"
+    print(f"| {heads.replace(', ', ' | ')} |\n|" + 6 * "---|")
     for name, elements in bodies(only):
         surface, hertz = elements.surface, elements.highest_frequency()
         start = time.process_time()
