@@ -32,8 +32,9 @@ ComplexArray = npt.NDArray[np.complex128]
 SOURCE_DEPTH = 1.0
 """Longest edges from the centre of every triangle that a source has to stand away from.
 
-The linear functions of a triangle follow exp(−i k r) / r the worse the nearer the source is. At this distance the
-error is still that of the wavelength: sources three times as deep have the same within half of it.
+The linear functions of a triangle follow exp(−i k r) / r the worse the nearer the source is. From this distance on
+that no longer counts beside the wave's own: at six edges a wavelength, and at three, sources three times as deep have
+the same error within a tenth; at twelve the largest is less than twice as much.
 """
 
 _APART = 0.6  # of the largest depth that the second source has to have
@@ -100,9 +101,10 @@ class KnownSources:
         if not len(deep) or deep.max() < SOURCE_DEPTH:
             return cls(np.zeros((0, 3)), plane)
         first = int(np.argmax(deep))
-        far = np.where(deep >= max(_APART * deep[first], SOURCE_DEPTH), 1.0, 0.0)
-        second = int(np.argmax(far * np.linalg.norm(candidates - candidates[first], axis=1)))
-        return cls(candidates[[first, second] if second != first else [first]], plane)
+        deep_enough = deep >= max(_APART * deep[first], SOURCE_DEPTH)
+        apart = np.where(deep_enough, np.linalg.norm(candidates - candidates[first], axis=1), 0.0)
+        second = int(np.argmax(apart))
+        return cls(candidates[[first, second] if apart[second] > 0.0 else [first]], plane)
 
     def _arms(self, points: FloatArray) -> list[FloatArray]:
         """Points from the sources and from their images [m], each of shape (n_points, n, 3)."""
