@@ -14,6 +14,10 @@ them, and hence none in the pressure inside and hardly any in the power.
 The error is relative to the amplitude of the source at the same place, Σ 1/r over source and image, which has no
 zeros, so that an error counts alike near the source and far from it. Two sources stand apart from each other, so that
 each part of a long body is near one.
+
+Vertices over a floor that is nearer than a tenth of an edge do not count. Like a thin plate's, the equations of a face
+and of its image are nearly the same there, and the pressure in such a gap is lost, but not that outside of it: a sole
+of 26 mm triangles 1 mm above the floor errs by 400 % and all other vertices by 5 %, as they do without a gap.
 """
 
 from dataclasses import dataclass
@@ -37,6 +41,8 @@ that no longer counts beside the wave's own: at six edges a wavelength, and at t
 the same error within a tenth; at twelve the largest is less than twice as much.
 """
 
+_GAP = 0.1  # longest edges between a triangle and the floor that it faces, below which its vertices do not count
+_FACING = -0.5  # cosine of its normal against the floor's
 _APART = 0.6  # of the largest depth that the second source has to have
 _ROWS = 64  # points whose distances from all triangles are held at once
 
@@ -48,8 +54,8 @@ class SourceError:
     Attributes
     ----------
     largest : float
-        Of all vertices, relative to the amplitude of the source there. Infinite where no source can stand, zero where
-        there is nothing to prove.
+        Of all vertices that count, relative to the amplitude of the source there. Infinite where no source can stand,
+        zero where there is nothing to prove.
     rms : float
         Root mean square over the vertices.
     place : tuple of float
@@ -175,11 +181,11 @@ class KnownField:
 
     @cached_property
     def error(self) -> SourceError:
-        """Error of the source whose error is largest."""
-        vertex = int(np.argmax(self.errors.max(axis=1)))
-        x, y, z = self.surface.points[vertex].tolist()
-        rms = np.sqrt((self.errors**2).mean(axis=0)).max()
-        return SourceError(float(self.errors.max()), float(rms), (x, y, z))
+        """Error of the source whose error is largest, at the vertices that do not lie over a narrow gap."""
+        counted = np.flatnonzero(~over_narrow_gap(self.surface, self.sources.plane))
+        errors = self.errors[counted]
+        x, y, z = self.surface.points[counted[np.argmax(errors.max(axis=1))]].tolist()
+        return SourceError(float(errors.max()), float(np.sqrt((errors**2).mean(axis=0)).max()), (x, y, z))
 
     def errors_of(self, points: FloatArray, found: ComplexArray) -> FloatArray:
         """Error of the pressure found at points in the air, relative to the amplitude there, shape (n_points,).
@@ -193,6 +199,16 @@ class KnownField:
         """
         apart = np.abs(found - self.sources.pressure(points, self.wavenumber)) / self.sources.amplitude(points)
         return np.asarray(apart.max(axis=1))
+
+
+def over_narrow_gap(surface: RadiatingSurface, plane: HardPlane | None) -> npt.NDArray[np.bool_]:
+    """Whether each vertex belongs to a triangle that faces a floor nearer than a tenth of its longest edge."""
+    narrow = np.zeros(len(surface.points), dtype=bool)
+    if plane is not None:
+        heights = plane.height(surface.points)[surface.triangles].max(axis=1)
+        facing = surface.normals @ plane.normal < _FACING
+        narrow[surface.triangles[facing & (heights < _GAP * surface.lengths)]] = True
+    return narrow
 
 
 def depths(surface: RadiatingSurface, points: FloatArray) -> FloatArray:

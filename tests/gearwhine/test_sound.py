@@ -1,6 +1,7 @@
 """Sound of a case: parts that add up, two motions that sound alike, measurement by ISO 3744, and refusals."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -232,11 +233,21 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
         assert one["power_balance_db"] == pytest.approx(other["power_balance_db"], abs=0.1)
         assert one["microphones_db"]["ear"] == pytest.approx(other["microphones_db"]["ear"], abs=0.05)
         assert one["radiation_efficiency"] == pytest.approx(other["radiation_efficiency"], rel=0.01)
+        # Of the table the larger error of the frequencies beside, which grows with them.
+        assert 0.9 < one["known_source_error"] / other["known_source_error"] < 1.6
+        assert 0.9 < one["known_source_rms"] / other["known_source_rms"] < 1.6
     with staging(tmp_path / "out") as place:
         write_mode_cache(place, kept)
     again = solve_housing(study.case, folder=tmp_path / "out")
     monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.ModalRadiation.solve", None)  # needs no solution
     assert heard(5, again)[0] == interpolated
+    # A file of a version without known sources, whose key is another one, too: its radiation is solved anew.
+    sources = [name for name in again.record.extras if "source" in name]
+    assert sources == ["radiation_source_error", "radiation_source_rms", "point_source_error"]
+    earlier = {name: array for name, array in again.record.extras.items() if name not in sources}
+    record = replace(again.record, extras=earlier, notes={**again.record.notes, "radiation": "of an earlier version"})
+    with pytest.raises(TypeError):
+        heard(5, replace(again, record=record))
     deaf = gw.load("small-gearbox", low).case
     monkeypatch.undo()
     monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 5)

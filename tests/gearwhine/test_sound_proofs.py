@@ -24,7 +24,7 @@ from gearwhine.solve.sound.solution import build_radiation, solve_sound
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing import HousingError
-from housing.acoustics import radiation
+from housing.acoustics import boundary_elements, radiation
 from housing.acoustics.radiation import counting
 
 
@@ -88,6 +88,29 @@ def test_every_mode_that_radiates_is_held_against_known_sources(monkeypatch: pyt
     monkeypatch.setattr(radiation, "SOURCE_LOST", 0.5 * worst["known_source_error"])
     with pytest.raises(HousingError, match=r"of a known source inside is off by .* at the vertex"):
         gw.load("steel-box", COARSE).sound()
+
+
+def test_a_vertex_that_is_lost_on_the_default_triangles_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The fault that a user heard as 5 dB at a microphone: the correction for a bent pressure without its bound."""
+    case = sounding_gearbox({"acoustics.highest_frequency": "3 kHz"}).case
+    housing = sounding_housing()
+
+    def solved() -> Any:
+        wrapped = build_radiation(case, housing)
+        rates = np.zeros((wrapped.modal[0].shape[1], 1))
+        rates[4] = 1.0
+        return wrapped.solve(2500.0, rates)
+
+    sound = solved()
+    sound.require_proofs()
+    assert doubts(sound, "a line") == []
+    monkeypatch.setattr(boundary_elements, "_MOST_BENT", np.inf)
+    lost = solved()
+    lost.require_balance()
+    assert interior_pressure(lost) == pytest.approx(interior_pressure(sound), rel=0.3)
+    assert lost.source_error.largest > 20.0 * sound.source_error.largest
+    with pytest.raises(HousingError, match=r"at 2500\.0 Hz the pressure of a known source inside is off by .* mm of"):
+        lost.require_proofs()
 
 
 def test_the_worst_of_the_microphones_is_told() -> None:

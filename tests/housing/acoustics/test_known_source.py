@@ -15,6 +15,7 @@ from housing.acoustics.known_source import (
     KnownField,
     KnownSources,
     depths,
+    over_narrow_gap,
 )
 from housing.acoustics.medium import AIR, HardPlane
 from housing.acoustics.radiating_surface import RadiatingSurface
@@ -172,6 +173,26 @@ def test_a_source_over_a_floor_has_its_image():
     assert bare.error.largest > 0.9
     assert elements.known_sources.plane is FLOOR
     assert (elements.known_sources.places[:, 1] > 0.0).all()
+
+
+def test_vertices_over_a_narrow_gap_do_not_count():
+    """A body 0.02 edges above the floor, whose gap the triangles do not resolve, is outside as the one that stands."""
+    size, edge = (0.3, 0.25, 0.2), 0.04
+    found = {}
+    for height in (0.0, 0.001, 0.012):
+        elements = BoundaryElements(box(size, edge, low=(-0.1, height, -0.1)), AIR, FLOOR)
+        # Places apart from the gap, the same for all.
+        elements.__dict__["known_sources"] = KnownSources(np.array([[0.04, 0.15, -0.02], [0.0, 0.11, 0.03]]), FLOOR)
+        field = field_at(elements, 1200.0)
+        assert field.known is not None
+        low = field.known.surface.points[:, 1] < height + 1e-9
+        narrow = over_narrow_gap(field.known.surface, FLOOR)
+        np.testing.assert_array_equal(narrow, low if height == 0.001 else np.zeros_like(low))
+        outside = field.known.errors[~low].max()
+        found[height] = field.source_error.largest, outside, field.known.errors[low].max()
+    assert found[0.001][2] > 10.0 * found[0.0][1]
+    assert found[0.001][0] == found[0.001][1] < 1.3 * found[0.0][1]
+    assert found[0.012][0] == max(found[0.012][1:]) < 3.0 * found[0.0][1]
 
 
 def uneven(part: float) -> tuple[RadiatingSurface, int]:
