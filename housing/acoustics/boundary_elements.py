@@ -396,10 +396,10 @@ class BoundaryElements:
             return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside)
         sources, columns = self.known_sources, given.shape[1]
         every = self._solve_closed(wavenumber, np.hstack([flux, sources.flux(self.surface, wavenumber)]))
-        pressure = np.ascontiguousarray(every[:, :columns])
+        pressure = every[:, :columns].copy()
         known = None
         if len(sources.places):
-            known = KnownField(self.surface, sources, wavenumber, every[:, columns:])
+            known = KnownField(self.surface, sources, wavenumber, every[:, columns:].copy())
         if self._checks:
             checks = self._inner_points[: self._checks]
             inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)

@@ -90,6 +90,23 @@ def test_transient_sounds_as_the_steady_state(study, sound, run):
     assert run.document["sound"]["lines"]
 
 
+def test_known_sources_at_microphones_count_over_time_too(run, monkeypatch):
+    """The record has lines to 2.6 kHz, its sound over time the frequencies to 3 kHz, where a known source is worse."""
+    solved = run.solved.sound
+    of_lines = np.max([line.microphone_errors for line in solved.lines], axis=0)
+    over_time = solved.histories.source_errors
+    assert np.all(over_time > 0.0)
+    assert over_time.max() > of_lines.max()
+    assert solved.histories.source_frequency_hz > max(line.frequency_hz for line in solved.lines)
+    told = [one["known_source_error"] for one in run.document["sound"]["microphones"]]
+    assert told == pytest.approx(np.maximum(of_lines, over_time))
+    assert "microphone_known_source" not in [one["name"] for one in solved.warnings()]
+    monkeypatch.setattr("gearwhine.solve.sound.proofs.SOURCE_HEARD", 0.99 * over_time.max())
+    (doubt,) = [one for one in solved.warnings() if one["name"] == "microphone_known_source"]
+    assert (doubt["relative"], doubt["frequency_hz"]) == (over_time.max(), solved.histories.source_frequency_hz)
+    assert list(solved.microphones)[int(over_time.argmax())] in doubt["message"]
+
+
 def test_a_tones_level_in_the_sound_file_is_that_of_its_line(run, tmp_path):
     folder = tmp_path / "out"
     run.write(folder, pictures=False)

@@ -51,12 +51,15 @@ class MicrophoneHistories:
     source_errors : ndarray, shape (n_microphones,)
         Largest error of known sources over the transfer's frequencies, see
         :attr:`housing.acoustics.modal_radiation.ModalRadiation.point_source_error`.
+    source_frequency_hz : float
+        Of the largest of them all.
     """
 
     times: FloatArray
     pressure: FloatArray
     error: float
     source_errors: FloatArray
+    source_frequency_hz: float
 
 
 def microphone_histories(
@@ -106,6 +109,7 @@ def microphone_histories(
         np.ascontiguousarray(pressure.T),
         transfer.pressure_error,
         transfer.point_source_error.max(axis=0),
+        float(transfer.frequencies[transfer.point_source_error.max(axis=1).argmax()]),
     )
 
 

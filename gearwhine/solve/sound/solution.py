@@ -288,13 +288,16 @@ class SolvedSound:
         return gathered([*found, *self._microphone_doubts()])
 
     def _microphone_doubts(self) -> list[dict[str, Any]]:
-        """Warnings of microphones at which known sources are off, of each line that counts."""
+        """Warnings of microphones at which known sources are off, of lines that count and of the sound over time."""
         counted = {id(sound) for sound in counting([line.sound for line in self.lines])}
         told: list[dict[str, Any]] = []
         for line in self.lines:
             if line.microphone_errors is not None and id(line.sound) in counted:
                 errors = dict(zip(self.microphones, line.microphone_errors.tolist(), strict=True))
                 told += microphone_doubts(line.frequency_hz, errors)
+        if self.histories is not None and self.radiation.method == "boundary-elements":
+            errors = dict(zip(self.microphones, self.histories.source_errors.tolist(), strict=True))
+            told += microphone_doubts(self.histories.source_frequency_hz, errors)
         return told
 
 
