@@ -35,7 +35,7 @@ _SURE = 0.03  # error of a line by the modal basis that passes
 _BALANCED = 1e-6  # part of the largest load that may be left of the equilibrium
 _SAME_POWER = 0.5  # difference of a line's sound power levels by two ways that passes [dB]
 _LEAK = 0.1  # pressure inside the radiating surface over that on it that passes
-_SOURCE_OFF = 0.5  # error of a known source's pressure at a vertex of the radiating surface that passes
+_SOURCE_OFF = 1.0  # error of a known source's pressure at a vertex of the radiating surface that passes
 _PERIODIC = 1e-3  # part by which a periodic motion may miss itself, or change with finer elements
 
 _CHAPTERS = {

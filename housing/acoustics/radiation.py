@@ -38,8 +38,8 @@ POWERS_AGREE = 0.1
 LEAK = 0.1
 """Pressure inside, relative to that on the surface, above which a solution is doubtful."""
 
-SOURCE_OFF = 0.5
-"""Error of a known source's pressure at a vertex above which a solution is doubtful: 3.5 dB at that place."""
+SOURCE_OFF = 1.0
+"""Error of a known source's pressure at a vertex above which a solution is doubtful: it is as large as the pressure."""
 
 SOURCE_LOST = 5.0
 """Error of a known source's pressure at a vertex above which a solution is refused: the equations do not hold it.

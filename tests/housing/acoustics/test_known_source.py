@@ -214,11 +214,11 @@ def uneven(part: float) -> tuple[RadiatingSurface, int]:
 def test_a_vertex_that_the_equations_leave_free_is_seen_by_known_sources_alone(monkeypatch: pytest.MonkeyPatch):
     surface, drawn = uneven(0.76)
     bounded = field_at(BoundaryElements(surface, AIR), 1300.0)
-    assert bounded.source_error.largest < SOURCE_OFF / 4.0
+    assert bounded.source_error.largest < 0.1 * SOURCE_OFF
     monkeypatch.setattr(boundary_elements, "_MOST_BENT", np.inf)
     free = field_at(BoundaryElements(surface, AIR), 1300.0)
     error = free.source_error
-    assert error.largest > 2.0 * SOURCE_OFF
+    assert error.largest > 1.2 * SOURCE_OFF
     # Where nine tenths of a spike count as bending: beside the vertex that is drawn.
     part = boundary_elements._bending(surface).tocsr().diagonal()
     assert part.max() == pytest.approx(0.9, abs=0.01)
