@@ -100,10 +100,11 @@ def test_a_table_holds_the_error_of_known_sources_of_each_solution(radiation, ta
         error = solved.source_error
         assert (table.source_error[place], table.source_rms[place]) == pytest.approx((error.largest, error.rms))
         assert table.point_source_error[place] == pytest.approx(solved.source_error_at(PLACES), rel=1e-6)
-        between = hertz - 1e-3
-        assert (
-            place == 0 or table.around(between, table.source_error) == table.source_error[place - 1 : place + 1].max()
-        )
+    falling = np.arange(len(table.frequencies), 0.0, -1.0)
+    middle = 0.5 * (table.frequencies[3] + table.frequencies[4])
+    assert (table.around(middle, falling), table.around(middle, falling[::-1])) == (falling[3], falling[::-1][4])
+    assert (table.around(LOWEST, falling), table.around(HIGHEST, falling[::-1])) == (falling[0], falling[0])
+    assert table.around(middle, np.zeros((len(falling), 0))) == 0.0  # without points
     # With the frequency on the same triangles: from the linear functions' own error to that of short waves.
     assert 0.0 < table.source_error[0] < 0.5 * table.source_error[-1] < 0.3
     assert 0.0 < table.point_source_error.max() < 0.05
