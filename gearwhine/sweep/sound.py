@@ -17,11 +17,19 @@ import numpy.typing as npt
 from gearwhine.case.speeds_and_torques import mesh_frequencies
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
-from gearwhine.solve.sound.proofs import doubts, interior_pressure, power_balance_db
+from gearwhine.solve.sound.proofs import (
+    doubts,
+    gathered,
+    interior_pressure,
+    known_source,
+    known_source_at,
+    microphone_doubts,
+    power_balance_db,
+)
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
 from housing.acoustics.modal_radiation import POINTS, ModalRadiation
-from housing.acoustics.radiation import LEAK, POWERS_AGREE, counting
+from housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
 from housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
 
 if TYPE_CHECKING:
@@ -36,6 +44,7 @@ ComplexArray = npt.NDArray[np.complex128]
 _TWO_PI = 2.0 * np.pi
 _SURE = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 _FAINT = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
+_UNPROVED: dict[str, Any] = {"known_source_error": None, "known_source_rms": None}
 _OF_THE_HOUSING = ("housing", "material", "acoustics")
 
 
@@ -68,8 +77,8 @@ def add_sound(
     Raises
     ------
     CaseError, housing.HousingError
-        As :func:`gearwhine.solve.sound.solution.solve_sound`; where the powers of a line disagree, if they do at
-        every point. A single point is left without sound, with a warning.
+        As :func:`gearwhine.solve.sound.solution.solve_sound`; where a line fails its proofs, if one does at every
+        point. A single point is left without sound, with a warning.
     """
     from gearwhine.solve.sound.kept_radiation import kept_radiation
     from gearwhine.solve.sound.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
@@ -125,6 +134,8 @@ def add_sound(
         told += [entry for line in counted for entry in line.told]
         balances = [line.entry["power_balance_db"] for line in counted]
         leaks = [line.entry["interior_pressure"] for line in counted]
+        sources = [line.entry for line in counted if line.entry["known_source_error"] is not None]
+        worst = max(sources, key=lambda entry: float(entry["known_source_error"]), default=_UNPROVED)
         entries = [line.entry for line in found]
         outcome = swept[number].outcome
         assert isinstance(outcome, PointResult)
@@ -134,11 +145,12 @@ def add_sound(
             "total_db_a": sum_of_levels(entry["sound_power_db_a"] for entry in entries),
             "power_balance_db": max((one for one in balances if one is not None), key=abs, default=None),
             "interior_pressure": max((one for one in leaks if one is not None), default=None),
+            **{key: worst[key] for key in _UNPROVED},
             "lines": sorted(entries, key=lambda entry: -float(entry["sound_power_db"])),
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
-    return [*told, *_beyond_warnings(keys, swept, highest_frequency(case, housing))], housing
+    return [*gathered(told), *_beyond_warnings(keys, swept, highest_frequency(case, housing))], housing
 
 
 def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limit: float) -> Iterator[dict[str, Any]]:
@@ -175,7 +187,7 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
     """Return the figures of a sound, which is not held: a sweep has thousands."""
     refused = None
     try:
-        sound.require_balance()
+        sound.require_proofs()
     except HousingError as error:
         refused = error
     heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
@@ -183,7 +195,12 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
         sound.frequency_hz, sound.power, sound.radiation_efficiency, dict(zip(positions, heard, strict=True))
     )
     entry |= {"power_balance_db": power_balance_db(sound), "interior_pressure": interior_pressure(sound)}
-    return _Line(entry, sound.power, sound.surface_power, doubts(sound, "a line"), refused)
+    proof, off = known_source(sound), known_source_at(sound, places)
+    entry |= _UNPROVED if proof is None else {"known_source_error": proof.largest, "known_source_rms": proof.rms}
+    told = doubts(sound, "a line")
+    if off is not None:
+        told += microphone_doubts(sound.frequency_hz, dict(zip(positions, off.tolist(), strict=True)))
+    return _Line(entry, sound.power, sound.surface_power, told, refused)
 
 
 def _interpolated(
@@ -197,9 +214,13 @@ def _interpolated(
     if not table.holds(hertz):
         return None
     power, surface_power, error = table.power(hertz, rates)
-    above = min(int(np.searchsorted(table.frequencies, hertz)), len(table.frequencies) - 1)
-    leak = float(table.interior_residual[max(above - 1, 0) : above + 1].max())
-    if max(error, table.pressure_error) > _SURE or abs(surface_power / power - 1.0) > POWERS_AGREE or leak > LEAK:
+    leak, off, rms, heard_off = (
+        table.around(hertz, values)
+        for values in (table.interior_residual, table.source_error, table.source_rms, table.point_source_error)
+    )
+    if max(error, table.pressure_error) > _SURE or abs(surface_power / power - 1.0) > POWERS_AGREE:
+        return None
+    if leak > LEAK or off > SOURCE_OFF or heard_off > SOURCE_HEARD:
         return None
     heard = table.pressure_at(np.array([hertz]))[0] @ rates
     efficiency = power / float(radiation.equivalent_power(rates[:, None])[0])
@@ -208,6 +229,8 @@ def _interpolated(
         "power_balance_db": float(power_level(surface_power) - power_level(power)),
         "interior_pressure": leak if radiation.method == "boundary-elements" else None,
     }
+    proved = {"known_source_error": off, "known_source_rms": rms}
+    entry |= proved if radiation.method == "boundary-elements" else _UNPROVED
     return _Line(entry, power, surface_power, [], None)
 
 
