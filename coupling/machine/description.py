@@ -18,7 +18,6 @@ import numpy.typing as npt
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears import GearPairGeometry
 from coupling.gears.contact.face_slices import face_stations
-from coupling.gears.geometry.toothed_section import toothed_section
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
@@ -46,6 +45,7 @@ from coupling.machine.parts import (
     Driving,
     Shaft,
     ShaftGear,
+    carrying_length,
     inertia_with_discs,
     pair_label,
     require_names,
@@ -210,7 +210,7 @@ class Machine:
         return next(shaft for shaft in self.shafts if shaft.name == name)
 
     def rotor(self, name: str) -> Rotor:
-        """Return a shaft's rotor with its gears as discs."""
+        """Return a shaft's rotor with its gears, which are discs that stiffen it over their faces."""
         return rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
 
     def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
@@ -605,34 +605,21 @@ class Machine:
         placed = []
         for gear, start in zip(gears, starts, strict=True):
             at = gear.at if aligned else 0.5 * (left + right) - start
-            stations, length = at + face_stations(geometry.face_width), self.shaft(gear.shaft).rotor.length
-            # A rim on a web does not follow the shaft over the face: its teeth stand on one section.
-            within = gear.gear.rim_thickness is None and stations[0] >= 0.0 and stations[-1] <= length
-            placed.append(StaticGear(gear.name, gear.shaft, at, stations if within else None))
+            stations = at + face_stations(geometry.face_width)
+            carriers = np.clip(stations, *carrying_length(gear, self.shaft(gear.shaft).rotor))
+            placed.append(StaticGear(gear.name, gear.shaft, at, carriers, stations - carriers))
         return placed[0], placed[1]
 
     def _static_shaft(self, shaft: Shaft, pairs: Sequence[StaticPair]) -> StaticShaftPart:
-        """Shaft with nodes at bearings, loads and faces, thickened by its solid gears with their teeth."""
+        """Shaft with nodes at bearings, loads and faces."""
         places = [mounted.bearing.at for mounted in self._bearings_on(shaft.name)]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         places += [one.at for one in self.forces if one.rotor == shaft.name]
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:
-                    places.append(gear.at)
-                    places += [] if gear.stations is None else gear.stations.tolist()
-        bodies = []
-        for one in self.gears:
-            if one.shaft == shaft.name and one.gear.rim_thickness is None:
-                section, root = toothed_section(one.gear), 2.0 * one.gear.root_circle_radius
-                for diameters, short in (
-                    ((root, root), 0.0),
-                    ((section.bending_diameter, section.torsion_diameter), section.end_length),
-                ):
-                    half = 0.5 * one.gear.face_width - short
-                    left, right = max(one.at - half, 0.0), min(one.at + half, shaft.rotor.length)
-                    bodies += [(left, right, *diameters)] if left < right else []
-        exact = static_shaft(self.rotor(shaft.name), places, stiffened=bodies)
+                    places += [gear.at, *gear.carriers.tolist()]
+        exact = static_shaft(self.rotor(shaft.name), places)
         return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
 
     def _bearings_on(self, shaft: str) -> list[MountedBearing]:

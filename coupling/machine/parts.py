@@ -1,12 +1,13 @@
 """Parts of a machine: shafts, gears on shafts, excitation; and checks of their names, stations and seats."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 from typing import Protocol
 
 from coupling.errors import CouplingError
 from coupling.gears import Gear
+from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing
@@ -15,6 +16,7 @@ from coupling.machine.loads import AnyTorque, BaseMotion, Drive, ShaftForce
 from rotors import Disc, Rotor
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
+from rotors.model.profile import StiffnessDiameter
 
 _SAME_STATION = 1e-6  # part of the rotor's length
 
@@ -71,17 +73,27 @@ class ShaftGear:
     inertia : tuple of float, optional
         Mass [kg], polar and diametral moment of inertia [kg m²], in place of those of the gear's geometry; zeros where
         a disc of the rotor stands for the gear.
+    stiffens_shaft : bool
+        Whether the shaft bends, twists and stretches under the gear as in one piece with it
+        (`coupling.gears.geometry.toothed_section`); else the gear is a disc on one section of it. A gear with a rim is
+        one always.
     """
 
     gear: Gear
     shaft: str
     at: float
     inertia: tuple[float, float, float] | None = None
+    stiffens_shaft: bool = True
 
     @property
     def name(self) -> str:
         """Name of the gear."""
         return self.gear.name
+
+    @property
+    def in_one_piece(self) -> bool:
+        """Whether gear and shaft deform as one piece over the face; else the gear stands on one section."""
+        return self.stiffens_shaft and self.gear.rim_thickness is None
 
     @property
     def mass_and_inertias(self) -> tuple[float, float, float]:
@@ -159,10 +171,47 @@ class MachineParts(Protocol):
 
 
 def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
-    """Rotor with the gears on it as discs; a gear without mass and inertias adds none."""
+    """Rotor with the gears on it as discs, which stiffen it over their faces; one without inertias adds no disc."""
     rigid = [(gear.at, *gear.mass_and_inertias) for gear in gears]
     discs = [Disc(*one) for one in rigid if any(one[1:])]
-    return Rotor(rotor.name, rotor.segments, [*rotor.discs, *discs], rotor.mass_model)
+    stiff = [one for gear in gears for one in _stiffness_diameters(gear, rotor)]
+    return replace(rotor, discs=[*rotor.discs, *discs], stiffness_diameters=[*rotor.stiffness_diameters, *stiff])
+
+
+def carrying_length(mounted: ShaftGear, rotor: Rotor) -> tuple[float, float]:
+    """Return the ends of the length of shaft that moves with a gear's body [m].
+
+    The body is rigid beyond them, where the stress of the shaft has not spread into it. A disc moves with the section
+    in the middle of its face.
+    """
+    if not mounted.in_one_piece:
+        return mounted.at, mounted.at
+    return _core(mounted, rotor)[0]
+
+
+def _core(mounted: ShaftGear, rotor: Rotor) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the ends of the length over which a gear stiffens its shaft, in bending and in torsion [m]."""
+    gear, half = mounted.gear, 0.5 * mounted.gear.face_width
+    ends = max(mounted.at - half, 0.0), min(mounted.at + half, rotor.length)
+    root = 2.0 * gear.root_circle_radius
+    left, right = (bare_lengths(rotor.outer_diameter(end, mounted.at), root, gear.face_width) for end in ends)
+    bending, torsion = ((ends[0] + a, ends[1] - b) for a, b in zip(left, right, strict=True))
+    return bending, torsion
+
+
+def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiameter]:
+    """Root circle, and the section with teeth, over the part of the face in which each carries."""
+    if not mounted.in_one_piece:
+        return []
+    root, section = 2.0 * mounted.gear.root_circle_radius, toothed_section(mounted.gear)
+    bending, torsion = _core(mounted, rotor)
+    lengths = [
+        (*bending, root, 0.0),
+        (*torsion, 0.0, root),
+        (bending[0] + section.end_length, bending[1] - section.end_length, section.bending_diameter, 0.0),
+        (torsion[0] + section.end_length, torsion[1] - section.end_length, 0.0, section.torsion_diameter),
+    ]
+    return [StiffnessDiameter(*one) for one in lengths if one[0] < one[1]]
 
 
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:

@@ -516,11 +516,10 @@ class _StaticModel:
             middle = self._section(gear.shaft, gear.at)
             tilt = side * (pair.push[0] * middle[4] - pair.push[1] * middle[3])
             axial = side * pair.axial * (middle[2] + y * middle[3] - x * middle[4])
-            for number, z in enumerate(stations.tolist()):
-                section = middle if gear.stations is None else self._section(gear.shaft, float(gear.stations[number]))
-                across = side * (pair.push[0] * section[0] + pair.push[1] * section[1])
-                if gear.stations is None:
-                    across = across + z * tilt
+            for number, (carrier, arm) in enumerate(zip(gear.carriers.tolist(), gear.arms.tolist(), strict=True)):
+                section = self._section(gear.shaft, carrier)
+                x_moved, y_moved = section[0] + arm * section[4], section[1] - arm * section[3]
+                across = side * (pair.push[0] * x_moved + pair.push[1] * y_moved)
                 turned = pair.sense * made.base_radius
                 rows[number] += across + turned * section[5] + axial
                 twist[number] += turned * section[5]
@@ -541,25 +540,23 @@ class _StaticModel:
         stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
         # A spring as soft as the softest of the others leaves least rounding in the balance of forces.
         spring = float(min(values[values > _FREE * stiff], default=stiff))
-        found: list[str] = []
-        extra = np.zeros((self.size, self.size))
+        # A row for each free motion, which is any mixture of theirs where several are free.
+        free = vectors.T[values <= _FREE * stiff]
+        works = free @ motions.T @ self.load
         # Rounding leaves parts of other motions in a free one, which the loads drive as well.
         scale = float(np.abs(motions).max(axis=1) @ np.abs(self.load))
-        for value, vector in zip(values, vectors.T, strict=True):
-            if value > _FREE * stiff:
-                continue
-            motion = motions @ vector
-            work = float(motion @ self.load)
-            word = words[int(np.argmax(np.abs(vector)))]
-            if abs(work) > _CARRIED * scale:
-                raise CouplingError(
-                    f"nothing holds {word}, and the loads drive it; expected a bearing that holds it, such as one with "
-                    "axial stiffness on every shaft that helical gears or its weight push along its axis, and torques "
-                    "that balance"
-                )
-            found.append(word)
+        if np.linalg.norm(works) > _CARRIED * scale:
+            driven = words[int(np.argmax(np.abs(works @ free)))]
+            raise CouplingError(
+                f"nothing holds {driven}, and the loads drive it; expected a bearing that holds it, such as one with "
+                "axial stiffness on every shaft that helical gears or its weight push along its axis, and torques "
+                "that balance"
+            )
+        extra = np.zeros((self.size, self.size))
+        for motion in free @ motions.T:
             extra += spring * np.outer(motion, motion) / float(motion @ motion) ** 2
-        return extra, tuple(found)
+        *_, named = linalg.qr(free, mode="economic", pivoting=True)
+        return extra, tuple(words[number] for number in sorted(named[: len(free)]))
 
     def _rigid_motions(self) -> tuple[FloatArray, list[str]]:
         """Motions without elastic energy by all coordinates, (n, r), of about a metre at most, and their names."""

@@ -149,15 +149,17 @@ class StaticGear:
     name, shaft : str
     at : float
         Middle of the pair's common face from the shaft's left end [m].
-    stations : ndarray, shape (j,), or None
-        Stations of the pair's common face on the shaft, from its left end [m]; None for a gear with a rim, or
-        whose face reaches beyond the end of the shaft, which is rigid on the section at ``at``.
+    carriers : ndarray, shape (j,)
+        Sections of the shaft, from its left end, that carry the stations of the pair's common face [m].
+    arms : ndarray, shape (j,)
+        Rigid arms along the shaft from these sections to the stations [m].
     """
 
     name: str
     shaft: str
     at: float
-    stations: FloatArray | None
+    carriers: FloatArray
+    arms: FloatArray
 
 
 @dataclass(frozen=True, eq=False)

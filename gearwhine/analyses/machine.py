@@ -374,7 +374,8 @@ def sound(
     CaseError, coupling.CouplingError, coupling.PeriodicError
         Where the parts do not make a machine, no periodic motion is found, or the housing cannot be wrapped.
     housing.HousingError
-        Where the power through the surface and in the far field differ by more than 10 %.
+        Where the power through the surface and in the far field differ by more than 10 %, or a known source inside is
+        lost at a vertex of the surface.
     """
     # The acoustics' kernels are for this analysis alone.
     from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_steady

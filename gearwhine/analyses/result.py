@@ -35,6 +35,8 @@ _PROOFS = {
     "energy_error",
     "health",
     "interior_pressure",
+    "known_source_error",
+    "known_source_rms",
     "max_residual",
     "power_balance_db",
     "residual",

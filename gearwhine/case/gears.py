@@ -320,6 +320,9 @@ class Gear(Table):
     """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
     """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
+    stiffens_shaft: StrictBool = True
+    """Whether the shaft bends and twists under the gear as in one piece with it. `false`, and any `rim`: the gear is a
+    disc on one section of its shaft, as in many published models, or gripped loosely."""
     tip_relief: Relief | None = None
     """Tip relief."""
     root_relief: Relief | None = None

@@ -34,14 +34,14 @@ def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
 def shaft_gears(case: Case, rotor: str) -> list[ShaftGear]:
     """Build the gears on a rotor of the case, in the order of the file."""
     return [
-        ShaftGear(build_gear(case, gear), rotor, gear.at, gear_inertia(case, gear))
+        ShaftGear(build_gear(case, gear), rotor, gear.at, gear_inertia(case, gear), gear.stiffens_shaft)
         for gear in case.gear
         if gear.rotor == rotor and gear.at is not None
     ]
 
 
 def build_rotor(case: Case, given: GivenRotor) -> Rotor:
-    """Build a rotor of the case, its gears on it as discs."""
+    """Build a rotor of the case, its gears on it as discs that stiffen it."""
     return rotor_with_gears(given.build(case.material), shaft_gears(case, given.name))
 
 

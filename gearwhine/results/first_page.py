@@ -35,6 +35,7 @@ _SURE = 0.03  # error of a line by the modal basis that passes
 _BALANCED = 1e-6  # part of the largest load that may be left of the equilibrium
 _SAME_POWER = 0.5  # difference of a line's sound power levels by two ways that passes [dB]
 _LEAK = 0.1  # pressure inside the radiating surface over that on it that passes
+_SOURCE_OFF = 1.0  # error of a known source's pressure at a vertex of the radiating surface that passes
 _PERIODIC = 1e-3  # part by which a periodic motion may miss itself, or change with finer elements
 
 _CHAPTERS = {
@@ -44,7 +45,13 @@ _CHAPTERS = {
     "Coupled system": ("unstable mode",),
     "Motion": ("bearing load", "run signature"),
     "Steady state": ("superposition",),
-    "Sound": ("interior_pressure", "microphone_interpolation", "sound_left_out"),
+    "Sound": (
+        "interior_pressure",
+        "known_source",
+        "microphone_known_source",
+        "microphone_interpolation",
+        "sound_left_out",
+    ),
     "Sweep": ("sound_of_sweep", "sound_left_out", "sweep_resolution"),
     "Updated numbers": ("shapes",),
     "Operating point": (
@@ -308,7 +315,7 @@ def _proofs(document: Document) -> Iterator[Finding]:
 
 
 def _sound_proofs(document: Document) -> Iterator[Finding]:
-    """Yield how well the worst line or mode keeps its sound power, and the inside its silence."""
+    """Yield how well the worst line or mode keeps its sound power, the inside its silence, and a known source."""
     points = document["points"] if document.get("command") == "sweep" else ()
     sounds = [_sound_of(document), *(point.get("sound", {}) for point in points)]
     balances = [abs(one["power_balance_db"]) for one in sounds if one.get("power_balance_db") is not None]
@@ -324,6 +331,15 @@ def _sound_proofs(document: Document) -> Iterator[Finding]:
             f"Sound: the pressure inside the radiating surface, where zero is exact, is at most {percent(max(leaks))} "
             "of that on it.",
             passed=max(leaks) < _LEAK,
+            link=("section Sound", "section Sweep"),
+        )
+    sources = [one for one in sounds if one.get("known_source_error") is not None]
+    if sources:
+        worst = max(sources, key=lambda one: float(one["known_source_error"]))
+        yield Finding(
+            f"Sound: the pressure of a known source inside is off by at most {percent(worst['known_source_error'])} on "
+            f"the radiating surface, {percent(worst['known_source_rms'])} in the root mean square.",
+            passed=worst["known_source_error"] < _SOURCE_OFF,
             link=("section Sound", "section Sweep"),
         )
 

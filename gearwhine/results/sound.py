@@ -23,6 +23,7 @@ from housing.acoustics.sound_levels import power_level, pressure_level
 
 if TYPE_CHECKING:
     from gearwhine.solve.sound.solution import SolvedSound
+    from housing.acoustics.known_source import SourceError
 
 _METHODS = {
     "boundary-elements": "boundary elements over the whole surface",
@@ -37,6 +38,15 @@ _ON_BOX = 9  # microphones of the box, the last ones
 _MODE_NAME = "housing mode "
 _LOCAL = "local compliance"
 _FAINT = 0.02  # part of a power that is worth its place
+
+
+def _largest_error(error: "SourceError | None") -> float | None:
+    return None if error is None else error.largest
+
+
+def _rms_error(error: "SourceError | None") -> float | None:
+    return None if error is None else error.rms
+
 
 SURFACE = (
     Quantity("triangles", lambda one: sum(len(part.surface.triangles) for part in one.elements)),
@@ -72,6 +82,15 @@ MODE = (
     Quantity("faces", lambda one: {face: part for face, part in one.by_face.items() if abs(part) > _FAINT}),
     Quantity("power_balance_db", lambda one: one.power_balance_db),
     Quantity("interior_pressure", lambda one: one.interior_pressure),
+    Quantity(
+        "known_source_error",
+        lambda one: _largest_error(one.known_source),
+        "sound_mode_known_source_error",
+        (),
+        "1",
+        "largest error of a known source's pressure on the surface at the natural frequency",
+    ),
+    Quantity("known_source_rms", lambda one: _rms_error(one.known_source)),
 )
 """Of the sound of one housing mode."""
 
@@ -137,6 +156,8 @@ ENTRY = (
     Quantity("surface_power_db", lambda row: float(power_level(row[1].sound.surface_power))),
     Quantity("power_balance_db", lambda row: row[1].power_balance_db),
     Quantity("interior_pressure", lambda row: row[1].interior_pressure),
+    Quantity("known_source_error", lambda row: _largest_error(row[1].known_source)),
+    Quantity("known_source_rms", lambda row: _rms_error(row[1].known_source)),
     Quantity("contributions", _contributions),
     Quantity(
         "microphones_db",
@@ -287,8 +308,16 @@ MICROPHONE = (
     Quantity("position_m", lambda row: row[1]),
     Quantity("level_db", lambda row: row[2], heading="sound pressure [dB re 20 µPa]", shown=".1f"),
     Quantity("level_db_a", lambda row: row[3], heading="A-weighted [dB]", shown=".1f"),
+    Quantity(
+        "known_source_error",
+        lambda row: row[4],
+        "microphone_known_source_error",
+        (),
+        "1",
+        "largest error of a known source's pressure at the microphone",
+    ),
 )
-"""Of a microphone: name, position, level of all lines and the same A-weighted."""
+"""Of a microphone: name, position, level of all lines, the same A-weighted, and the error of a known source there."""
 
 
 HEARD_COLUMNS = (
@@ -312,8 +341,15 @@ def _heard(document: Document) -> list[Document]:
 
 def _microphones(solved: "SolvedSound") -> list[Any]:
     levels, weighted = solved.microphone_levels(), solved.microphone_levels(weighted=True)
+    errors = solved.microphone_errors
     return [
-        (name, place, levels[name] if solved.lines else None, weighted[name] if solved.lines else None)
+        (
+            name,
+            place,
+            levels[name] if solved.lines else None,
+            weighted[name] if solved.lines else None,
+            errors.get(name),
+        )
         for name, place in solved.microphones.items()
     ]
 
@@ -337,10 +373,12 @@ SOUND = (
     Quantity("total_db_a", lambda solved: solved.total_db_a if solved.lines else None),
     Quantity("power_balance_db", lambda solved: solved.power_balance_db),
     Quantity("interior_pressure", lambda solved: solved.interior_pressure),
+    Quantity("known_source_error", lambda solved: _largest_error(solved.known_source)),
+    Quantity("known_source_rms", lambda solved: _rms_error(solved.known_source)),
     Quantity("third_octaves", _bands),
     Quantity("faces_w", lambda solved: solved.by_face),
     Rows("modes", lambda solved: solved.modes, MODE, "sound_mode"),
-    Rows("microphones", _microphones, MICROPHONE),
+    Rows("microphones", _microphones, MICROPHONE, "microphone"),
     Quantity("box_power_db", lambda solved: solved.box_level_db),
     Quantity("microphone_error", lambda solved: None if solved.histories is None else solved.histories.error),
     Quantity(
@@ -361,6 +399,18 @@ SOUND = (
         "sound pressure at the microphone",
     ),
     _lines("sound_frequency", lambda line: line.frequency_hz, "Hz", "frequency of the line"),
+    Quantity(
+        "",
+        lambda solved: (
+            np.array([np.nan if line.known_source is None else line.known_source.largest for line in solved.lines])
+            if any(line.known_source is not None for line in solved.lines)
+            else None
+        ),
+        "sound_known_source_error",
+        ("sound_line",),
+        "1",
+        "largest error of a known source's pressure on the surface at the frequency of the line",
+    ),
     _lines("sound_name", lambda line: line.name, "", "name of the line"),
     _lines("sound_order", lambda line: line.order, "1", "order over the speed of the first driver"),
     _lines("sound_power", lambda line: line.sound.power, "W", "sound power of the line"),
@@ -418,6 +468,29 @@ def total_sentence(document: Document) -> str:
     )
 
 
+def known_source_sentence(document: Document) -> str:
+    """Return the error of known sources inside in words, or that there is no such proof."""
+    if "known_source_error" not in document:  # in summaries of earlier versions
+        return ""
+    if (error := document["known_source_error"]) is not None:
+        heard = [one.get("known_source_error") for one in document["microphones"]]
+        known = [one for one in heard if one is not None]
+        at_most = f", {percent(max(known))} at the microphones" if known else ""
+        return (
+            f"Proof by a known source inside: its pressure on the surface is off by at most {percent(error)}, "
+            f"{percent(document['known_source_rms'])} in the root mean square{at_most}"
+        )
+    why = {
+        "rayleigh": "flat faces in baffles have no inside",
+        "erp": "an estimate solves no equations",
+    }.get(document["method"])
+    if why is None:
+        if not document["lines"] and not document["modes"]:
+            return ""
+        why = "the housing is too thin beside its triangles, or nothing counts that it could prove"
+    return f"No proof by a known source: {why}"
+
+
 def left_out_sentence(document: Document) -> str:
     """Return the lines whose sound is not solved in words; empty where none is worth its name."""
     left_out = document.get("left_out", ())  # not in summaries of earlier versions
@@ -467,6 +540,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         power = sum(document["faces_w"].values())
         if power > 0.0:
             yield f"Radiating faces: {_parts({face: part / power for face, part in document['faces_w'].items()})}"
+    if proof := known_source_sentence(document):
+        yield proof
     if document["box_power_db"] is not None:
         levels = [one["level_db"] for one in document["microphones"][-_ON_BOX:]]
         yield (

@@ -175,7 +175,7 @@ def solve_lines(
     CaseError
         Where the radiating surface cannot be made.
     housing.HousingError
-        Where the powers of a line through the surface and in the far field differ by more than 10 %.
+        Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     if housing is None or not case.gear_pair or machine.speed == 0.0:
         return None

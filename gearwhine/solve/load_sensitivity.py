@@ -268,7 +268,7 @@ def solve_load_sensitivity(
     CaseError
         Where there is no such line, or the radiating surface cannot be made.
     housing.HousingError
-        Where the powers of a line through the surface and in the far field differ by more than 10 %.
+        Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     solved = solve_lines(case, machine, point, housing, progress)
     chosen, chosen_sound = _chosen(line, solved)

@@ -19,12 +19,20 @@ from gearwhine.case.speeds_and_torques import mesh_frequencies
 from gearwhine.output.quantity import document_of, warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.results.sound import SWEPT_LINE, parts_of_modes
-from gearwhine.solve.sound.proofs import doubts, interior_pressure, power_balance_db
+from gearwhine.solve.sound.proofs import (
+    doubts,
+    gathered,
+    interior_pressure,
+    known_source,
+    known_source_at,
+    microphone_doubts,
+    power_balance_db,
+)
 from gearwhine.sweep.resolution import RadiatedLevel
 from gearwhine.sweep.solution import PointResult
 from housing import HousingError
 from housing.acoustics.modal_radiation import POINTS, ModalRadiation
-from housing.acoustics.radiation import LEAK, POWERS_AGREE, counting
+from housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
 from housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
 
 if TYPE_CHECKING:
@@ -39,6 +47,7 @@ ComplexArray = npt.NDArray[np.complex128]
 _TWO_PI = 2.0 * np.pi
 _SURE = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 _FAINT = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
+_UNPROVED: dict[str, Any] = {"known_source_error": None, "known_source_rms": None}
 _OF_THE_HOUSING = ("housing", "material", "acoustics")
 
 
@@ -74,8 +83,8 @@ def add_sound(
     Raises
     ------
     CaseError, housing.HousingError
-        As :func:`gearwhine.solve.sound.solution.solve_sound`; where the powers of a line disagree, if they do at
-        every point. A single point is left without sound, with a warning.
+        As :func:`gearwhine.solve.sound.solution.solve_sound`; where a line fails its proofs, if one does at every
+        point. A single point is left without sound, with a warning.
     """
     from gearwhine.solve.sound.kept_radiation import kept_radiation
     from gearwhine.solve.sound.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
@@ -134,6 +143,8 @@ def add_sound(
         told += [entry for line in counted for entry in line.told]
         balances = [line.entry["power_balance_db"] for line in counted]
         leaks = [line.entry["interior_pressure"] for line in counted]
+        sources = [line.entry for line in counted if line.entry["known_source_error"] is not None]
+        worst = max(sources, key=lambda entry: float(entry["known_source_error"]), default=_UNPROVED)
         entries = sorted((line.entry for line in found), key=lambda entry: -float(entry["sound_power_db"]))
         outcome = swept[number].outcome
         assert isinstance(outcome, PointResult)
@@ -143,12 +154,13 @@ def add_sound(
             "total_db_a": sum_of_levels(entry["sound_power_db_a"] for entry in entries),
             "power_balance_db": max((one for one in balances if one is not None), key=abs, default=None),
             "interior_pressure": max((one for one in leaks if one is not None), default=None),
+            **{key: worst[key] for key in _UNPROVED},
             "loudest": document_of(SWEPT_LINE, (entries[0], housing.modes.frequencies_hz)),
             "lines": entries,
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
-    told += _beyond_warnings(keys, swept, highest_frequency(case, housing))
+    told = [*gathered(told), *_beyond_warnings(keys, swept, highest_frequency(case, housing))]
     return told, housing, partial(_radiated, radiation, table)
 
 
@@ -196,7 +208,7 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
     """Return the figures of a sound, which is not held: a sweep has thousands."""
     refused = None
     try:
-        sound.require_balance()
+        sound.require_proofs()
     except HousingError as error:
         refused = error
     heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
@@ -204,8 +216,13 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
         sound.frequency_hz, sound.power, sound.radiation_efficiency, dict(zip(positions, heard, strict=True))
     )
     entry |= {"power_balance_db": power_balance_db(sound), "interior_pressure": interior_pressure(sound)}
+    proof, off = known_source(sound), known_source_at(sound, places)
+    entry |= _UNPROVED if proof is None else {"known_source_error": proof.largest, "known_source_rms": proof.rms}
+    told = doubts(sound, "a line")
+    if off is not None:
+        told += microphone_doubts(sound.frequency_hz, dict(zip(positions, off.tolist(), strict=True)))
     entry["contributions"] = {"housing_modes": parts_of_modes(sound.by_mode, natural, sound.power)}
-    return _Line(entry, sound.power, sound.surface_power, doubts(sound, "a line"), refused)
+    return _Line(entry, sound.power, sound.surface_power, told, refused)
 
 
 def _interpolated(
@@ -220,9 +237,13 @@ def _interpolated(
     if not table.holds(hertz):
         return None
     power, surface_power, error = table.power(hertz, rates)
-    above = min(int(np.searchsorted(table.frequencies, hertz)), len(table.frequencies) - 1)
-    leak = float(table.interior_residual[max(above - 1, 0) : above + 1].max())
-    if max(error, table.pressure_error) > _SURE or abs(surface_power / power - 1.0) > POWERS_AGREE or leak > LEAK:
+    leak, off, rms, heard_off = (
+        table.around(hertz, values)
+        for values in (table.interior_residual, table.source_error, table.source_rms, table.point_source_error)
+    )
+    if max(error, table.pressure_error) > _SURE or abs(surface_power / power - 1.0) > POWERS_AGREE:
+        return None
+    if leak > LEAK or off > SOURCE_OFF or heard_off > SOURCE_HEARD:
         return None
     heard = table.pressure_at(np.array([hertz]))[0] @ rates
     efficiency = power / float(radiation.equivalent_power(rates[:, None])[0])
@@ -231,6 +252,8 @@ def _interpolated(
         "power_balance_db": float(power_level(surface_power) - power_level(power)),
         "interior_pressure": leak if radiation.method == "boundary-elements" else None,
     }
+    proved = {"known_source_error": off, "known_source_rms": rms}
+    entry |= proved if radiation.method == "boundary-elements" else _UNPROVED
     entry["contributions"] = {"housing_modes": parts_of_modes(table.by_mode(hertz, rates), natural, power)}
     return _Line(entry, power, surface_power, [], None)
 

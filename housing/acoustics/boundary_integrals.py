@@ -16,6 +16,7 @@ integrands with a singularity at a vertex", SIAM Journal on Numerical Analysis 1
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numba
@@ -42,6 +43,8 @@ def _orbits(*orbits: tuple[float, float]) -> FloatArray:
 
 
 _DEGREE_4 = _orbits((0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322))
+
+_TO_CORNERS = 12.0 * np.linalg.inv(np.ones((3, 3)) + np.eye(3))  # from moments of linear functions to their values
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
@@ -266,6 +269,23 @@ class SourcePoints:
         normals = np.repeat(surface.normals, len(_DEGREE_2), axis=0).T
         weights = np.outer(surface.areas, _DEGREE_2[:, 3]).ravel()
         return cls(np.ascontiguousarray(places), np.ascontiguousarray(normals), weights, surface.triangles)
+
+
+def linear_projection(surface: RadiatingSurface, field: Callable[[FloatArray], ComplexArray]) -> ComplexArray:
+    """L2 projection of a field on the linear functions of each triangle, shape (3 n_triangles, n).
+
+    Parameters
+    ----------
+    surface : RadiatingSurface
+    field : callable
+        Takes a point of each triangle, shape (n_triangles, 3) [m], to values, shape (n_triangles, n).
+    """
+    moments = sum(
+        weight * shares[None, :, None] * field(np.einsum("a,eaj->ej", shares, surface.corners))[:, None]
+        for *given, weight in _DEGREE_4
+        for shares in (np.array(given),)
+    )
+    return np.asarray(np.einsum("ab,ebn->ean", _TO_CORNERS, moments).reshape(3 * len(surface.triangles), -1))
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ R rises with a high power of frequency, the field is to be solved.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -25,9 +26,23 @@ from housing.storage.netcdf import LabelledArray
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-Solution = tuple[FloatArray, ComplexArray, ComplexArray, float]
-Solve = Callable[[float], Solution]
-Each = Callable[[Solve, Sequence[float]], Iterable[Solution]]
+
+
+class SolvedAt(NamedTuple):
+    """Radiation at one of the frequencies, as :class:`ModalRadiation` has it of all."""
+
+    resistance: FloatArray
+    surface_resistance: FloatArray
+    surface_reactance: FloatArray
+    pressure: ComplexArray
+    interior_residual: float
+    source_error: float
+    source_rms: float
+    source_error_at_points: FloatArray
+
+
+Solve = Callable[[float], SolvedAt]
+Each = Callable[[Solve, Sequence[float]], Iterable[SolvedAt]]
 
 _TWO_PI = 2.0 * np.pi
 POINTS = 41
@@ -38,10 +53,13 @@ ARRAYS = (
     "surface_resistance",
     "surface_reactance",
     "radiation_interior_residual",
+    "radiation_source_error",
+    "radiation_source_rms",
     "point_pressure",
     "point_delay",
+    "point_source_error",
 )
-"""Names of the labelled arrays of a table; one without points has not the last two."""
+"""Names of the labelled arrays of a table; one without points has not the last three."""
 
 _AXIS = "radiation_frequency"
 _MATRIX = (_AXIS, "coordinate", "other_coordinate")
@@ -67,6 +85,11 @@ class ModalRadiation:
         Of the air, from the middle of the housing [s].
     interior_residual : ndarray, shape (f,)
         Largest pressure inside, see :attr:`housing.acoustics.boundary_elements.SoundField.interior_residual`.
+    source_error, source_rms : ndarray, shape (f,)
+        Largest error of known sources inside and its root mean square over the vertices, see
+        :class:`housing.acoustics.known_source.SourceError`.
+    point_source_error : ndarray, shape (f, m)
+        Error of known sources at the points, relative to their amplitude there.
     """
 
     frequencies: FloatArray
@@ -76,6 +99,9 @@ class ModalRadiation:
     pressure: ComplexArray
     delays: FloatArray
     interior_residual: FloatArray
+    source_error: FloatArray
+    source_rms: FloatArray
+    point_source_error: FloatArray
 
     def __post_init__(self) -> None:
         """Refuse frequencies of which every second one does not reach both ends."""
@@ -111,32 +137,35 @@ class ModalRadiation:
         middle = radiation.elements[0].surface.points.mean(axis=0)
         delays = np.linalg.norm(places - middle, axis=1) / radiation.medium.speed_of_sound
 
-        def at(hertz: float) -> Solution:
+        def at(hertz: float) -> SolvedAt:
             sound = radiation.solve(hertz, unit)
-            pressure = np.zeros((0, len(unit)), dtype=np.complex128)
+            pressure, off = np.zeros((0, len(unit)), dtype=np.complex128), np.zeros(0)
             if len(places):
                 field = sound.fields[0]
                 assert not isinstance(field, EquivalentField)
                 delayed = field.pressure_at(places)  # type: ignore[attr-defined]
                 pressure = np.asarray(delayed * np.exp(1j * _TWO_PI * hertz * delays)[:, None])
+                off = sound.source_error_at(places)
             product = np.asarray(
                 sum(surface_product(one.surface, one.velocity, one.pressure_at_corners) for one in sound.fields)
             )
-            # Both are symmetric by reciprocity, but for the discretisation.
-            return sound.resistance, 0.5 * (product + product.T), pressure, sound.interior_residual
+            # Symmetric by reciprocity, but for the discretisation.
+            impedance = 0.5 * (product + product.T)
+            return SolvedAt(
+                sound.resistance,
+                impedance.real,
+                impedance.imag,
+                pressure,
+                sound.interior_residual,
+                sound.source_error.largest,
+                sound.source_error.rms,
+                off,
+            )
 
         frequencies = np.linspace(lowest, highest, points)
-        resistance, surface, pressure, leak = zip(*each(at, frequencies.tolist()), strict=True)
-        impedance = np.array(surface)
-        return cls(
-            frequencies,
-            np.array(resistance),
-            impedance.real.copy(),
-            impedance.imag.copy(),
-            np.array(pressure),
-            delays,
-            np.array(leak),
-        )
+        of_all = (np.array(values) for values in zip(*each(at, frequencies.tolist()), strict=True))
+        resistance, surface, reactance, pressure, *proofs = of_all
+        return cls(frequencies, resistance, surface, reactance, pressure, delays, *proofs)
 
     @cached_property
     def _powers(self) -> tuple[CubicSpline, CubicSpline, CubicSpline]:
@@ -161,6 +190,11 @@ class ModalRadiation:
         """Whether a frequency lies within the table."""
         rounding = 1e-9 * self.frequencies[-1]
         return bool(self.frequencies[0] - rounding <= frequency_hz <= self.frequencies[-1] + rounding)
+
+    def around(self, frequency_hz: float, values: FloatArray) -> float:
+        """Largest of some values of each frequency at the two that a frequency lies between."""
+        above = min(int(np.searchsorted(self.frequencies, frequency_hz)), len(self.frequencies) - 1)
+        return float(values[max(above - 1, 0) : above + 1].max(initial=0.0))
 
     def power(self, frequency_hz: float, rates: ComplexArray) -> tuple[float, float, float]:
         """Sound power of rates q̇, shape (n,): from the far field and the surface [W], and its relative error.
@@ -231,6 +265,12 @@ class ModalRadiation:
             "radiation_interior_residual": LabelledArray(
                 (_AXIS,), self.interior_residual, "1", "pressure inside relative to that on the surface"
             ),
+            "radiation_source_error": LabelledArray(
+                (_AXIS,), self.source_error, "1", "largest error of the pressure of a known source inside"
+            ),
+            "radiation_source_rms": LabelledArray(
+                (_AXIS,), self.source_rms, "1", "root mean square error of the pressure of a known source inside"
+            ),
         }
         if len(self.delays):
             named |= {
@@ -241,6 +281,9 @@ class ModalRadiation:
                     "sound pressure at the points without the delay of the air",
                 ),
                 "point_delay": LabelledArray(("point",), self.delays, "s", "delay of the air to the points"),
+                "point_source_error": LabelledArray(
+                    (_AXIS, "point"), self.point_source_error, "1", "error of a known source's pressure at the points"
+                ),
             }
         return named
 
@@ -255,10 +298,11 @@ class ModalRadiation:
         """
         resistance = arrays["radiation_resistance"].values
         pressure = np.zeros((len(resistance), 0, resistance.shape[1]), dtype=np.complex128)
-        delays = np.zeros(0)
+        delays, off = np.zeros(0), np.zeros((len(resistance), 0))
         if "point_delay" in arrays:
             parts, delays = arrays["point_pressure"].values, arrays["point_delay"].values
             pressure = parts[..., 0] + 1j * parts[..., 1]
+            off = arrays["point_source_error"].values
         return cls(
             arrays["radiation_frequency"].values,
             resistance,
@@ -267,4 +311,7 @@ class ModalRadiation:
             pressure,
             delays,
             arrays["radiation_interior_residual"].values,
+            arrays["radiation_source_error"].values,
+            arrays["radiation_source_rms"].values,
+            off,
         )

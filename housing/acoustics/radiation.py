@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from housing.acoustics.boundary_elements import BoundaryElements, SoundField, surface_product
+from housing.acoustics.known_source import NOTHING_TO_PROVE, SourceError
 from housing.acoustics.medium import AIR, HardPlane, Medium
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.skin_points import SkinPoints
@@ -36,6 +37,17 @@ POWERS_AGREE = 0.1
 
 LEAK = 0.1
 """Pressure inside, relative to that on the surface, above which a solution is doubtful."""
+
+SOURCE_OFF = 1.0
+"""Error of a known source's pressure at a vertex above which a solution is doubtful: it is as large as the pressure."""
+
+SOURCE_LOST = 5.0
+"""Error of a known source's pressure at a vertex above which a solution is refused: the equations do not hold it.
+
+No body of the study in the documentation had as much, with triangles as large as they may be."""
+
+SOURCE_HEARD = 0.1
+"""Error of a known source's pressure at a point in the air above which the sound pressure there is doubtful."""
 
 COUNTS = 1e-4
 """Part of the whole power above which a line has to prove its own, and radiation efficiency above which a mode has."""
@@ -62,6 +74,8 @@ class Field(Protocol):
     def surface_resistance(self) -> FloatArray: ...  # noqa: D102
     @property
     def interior_residual(self) -> float: ...  # noqa: D102
+    @property
+    def source_error(self) -> SourceError: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -99,6 +113,11 @@ class EquivalentField:
     def interior_residual(self) -> float:
         """0: an estimate has no inside."""
         return 0.0
+
+    @property
+    def source_error(self) -> SourceError:
+        """None: an estimate has no equations."""
+        return NOTHING_TO_PROVE
 
 
 @dataclass(frozen=True)
@@ -175,6 +194,50 @@ class RadiatedSound:
             "use smaller triangles"
         )
 
+    @property
+    def source_error(self) -> SourceError:
+        """Error of known sources inside, of the field where it is largest; infinite: no proof."""
+        return max((field.source_error for field in self.fields), key=lambda error: error.largest)
+
+    @property
+    def source_doubt(self) -> str | None:
+        """Why the pressure on the surface is doubtful, as :attr:`doubt`; None where known sources prove it.
+
+        A body without points inside has that doubt alone.
+        """
+        error = self.source_error
+        if error.largest <= SOURCE_OFF or np.isinf(self.interior_residual):
+            return None
+        if np.isinf(error.largest):
+            return "no place inside the radiating surface is far enough from its triangles for a known source"
+        return f"{_of_source(error)}; use triangles of another size, best smaller ones"
+
+    def require_proofs(self) -> None:
+        """Refuse a solution whose powers differ, or that does not hold known sources.
+
+        Raises
+        ------
+        HousingError
+            As :meth:`require_balance` and :meth:`require_source`.
+        """
+        self.require_balance()
+        self.require_source()
+
+    def require_source(self) -> None:
+        """Refuse a solution that errs by more than five times the amplitude of known sources at a vertex.
+
+        Raises
+        ------
+        HousingError
+            With the error and its place.
+        """
+        error = self.source_error
+        if np.isfinite(error.largest) and error.largest > SOURCE_LOST:
+            raise HousingError(
+                f"at {self.frequency_hz:.1f} Hz {_of_source(error)}; expected at most {100.0 * SOURCE_LOST:.0f} %: use "
+                "triangles of another size, best smaller ones"
+            )
+
     def require_balance(self) -> None:
         """Refuse a solution whose powers through the surface and into the far field differ by more than 10 %.
 
@@ -232,9 +295,33 @@ class RadiatedSound:
             Where a point is not in the air, see :func:`housing.acoustics.boundary_elements.require_in_air`, or the
             method gives no pressure: the ERP, or Rayleigh's integral of several faces.
         """
+        return np.asarray(self._only_field.pressure_at(points).sum(axis=1))
+
+    def source_error_at(self, points: FloatArray) -> FloatArray:
+        """Error of known sources at points in the air, relative to their amplitude there, shape (n_points,).
+
+        Zero for a flat face, infinite where no source can stand.
+
+        Raises
+        ------
+        HousingError
+            As :meth:`pressure_at`.
+        """
+        return self._only_field.source_error_at(points)
+
+    @property
+    def _only_field(self) -> SoundField:
         if len(self.fields) != 1 or not isinstance(field := self.fields[0], SoundField):
             raise HousingError(_NO_PRESSURE)
-        return np.asarray(field.pressure_at(points).sum(axis=1))
+        return field
+
+
+def _of_source(error: SourceError) -> str:
+    place = ", ".join(f"{1e3 * one:.4g}" for one in error.place)
+    return (
+        f"the pressure of a known source inside is off by {100.0 * error.largest:.3g} % at the vertex ({place}) mm of "
+        "the radiating surface"
+    )
 
 
 class Powers(Protocol):
@@ -255,8 +342,8 @@ def counting(sounds: Sequence[Sound]) -> list[Sound]:
     return [sound for sound in sounds if max(sound.power, sound.surface_power) > least]
 
 
-def require_balances(sounds: Sequence[RadiatedSound], *, alone: bool = False) -> list[RadiatedSound]:
-    """Require the balance of power of all sounds but those too weak to count.
+def require_proved(sounds: Sequence[RadiatedSound], *, alone: bool = False) -> list[RadiatedSound]:
+    """Require the proofs of all sounds but those too weak to count.
 
     Parameters
     ----------
@@ -275,11 +362,11 @@ def require_balances(sounds: Sequence[RadiatedSound], *, alone: bool = False) ->
     Raises
     ------
     HousingError
-        As :meth:`RadiatedSound.require_balance`.
+        As :meth:`RadiatedSound.require_proofs`.
     """
     counted = [one for one in sounds if one.radiation_efficiency > COUNTS] if alone else counting(sounds)
     for sound in counted:
-        sound.require_balance()
+        sound.require_proofs()
     return counted
 
 

@@ -19,27 +19,22 @@ an axial force acts there, and w is the overhang's weight and its moment.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from rotors.analyses.statics import TINY
-from rotors.errors import RotorError, require, require_finite
-from rotors.model.segment import Coupling, Segment
-from rotors.model.shaft import (
+from rotors.errors import RotorError, require
+from rotors.model.profile import (
     AXIAL,
     BENDING,
     STATION_TOLERANCE,
     TORSION,
     Profile,
-    Rotor,
     merged_positions,
-    restricted,
-    station_index,
-    station_inertias,
-    stiffness_profile,
 )
+from rotors.model.shaft import Rotor, station_index, station_inertias
 from rotors.transfer_matrix.discretised_shaft import ELEMENT_MARGIN
 from rotors.transfer_matrix.mode_shapes import require_positions
 from rotors.transfer_matrix.timoshenko import ShaftElements
@@ -55,8 +50,6 @@ _SIGNS = ([1.0, 1.0], [1.0, -1.0], [1.0], [1.0])
 _MASS_ROWS = [2, 9]
 # Asymmetry of a stiffness, as a part of its largest entry, above which it is not rounding.
 _ASYMMETRY = 1e-9
-
-Stiffened = Sequence[tuple[float, float, float, float]]
 
 
 @dataclass(frozen=True)
@@ -156,7 +149,7 @@ class StaticShaft:
 
 # Fields that outgrow all numbers fail the test of symmetry.
 @np.errstate(over="ignore", divide="ignore", invalid="ignore")
-def static_shaft(rotor: Rotor, stations: Sequence[float], *, stiffened: Stiffened = ()) -> StaticShaft:
+def static_shaft(rotor: Rotor, stations: Sequence[float]) -> StaticShaft:
     """Assemble the exact static stiffness and the weight of a free shaft between stations.
 
     Parameters
@@ -167,35 +160,25 @@ def static_shaft(rotor: Rotor, stations: Sequence[float], *, stiffened: Stiffene
         Positions of the nodes, m from the left end, in any order; those closer than 1e-9 of the length are one node.
         The stiffness of a short span is exact to rounding, but a solution on it for displacements loses digits: between
         nodes a micrometre apart on a shaft of 0.4 m, it keeps nine.
-    stiffened
-        Intervals (left, right, outer diameter in bending and tension, outer diameter in torsion), m, within which the
-        shaft is at least this thick against deformation, such as a pinion cut into its shaft. Of overlapping ones the
-        thickest counts. Couplings and the mass stay as they are.
 
     Raises
     ------
     RotorError
-        No stations, a station or an interval off the shaft, an interval or diameter that is not positive, or axial
-        forces so large that the stiffness between two stations has lost its digits.
+        No stations, a station off the shaft, or axial forces so large that the stiffness between two stations has lost
+        its digits.
     """
     where = f"rotor {rotor.name!r}"
     if not len(stations):
         raise RotorError(f"{where} has no stations; expected at least one")
     for at in stations:
         rotor.require_on_shaft(f"{where} station", at)
-    stiff = _stiffened_profile(rotor, [(left, right, outer) for left, right, outer, _ in stiffened])
-    twisted = _stiffened_profile(rotor, [(left, right, outer) for left, right, _, outer in stiffened])
-    edges = np.concatenate([profile.edges for profile in (rotor.profile, stiff, twisted)]).tolist()
-    nodes = _short_of_buckling(stiff, merged_positions(rotor.joints, [*edges, *(d.at for d in rotor.discs), *stations]))
+    profile = rotor.profile
+    others = [*(disc.at for disc in rotor.discs), *stations]
+    nodes = _short_of_buckling(profile, merged_positions(profile.edges, others))
     station = np.unique([station_index(nodes, at) for at in stations])
 
-    # Stiffened parts keep the mass they have; they are cylinders where cones may have been.
-    heavy = _between(rotor.profile, nodes)[:, _MASS_ROWS]
-    coefficients = np.zeros((nodes.size - 1, 10, heavy.shape[2]))
-    for profile, rows in ((stiff, BENDING), (stiff, AXIAL), (twisted, TORSION)):
-        given = _between(profile, nodes)[:, rows]
-        coefficients[:, rows, : given.shape[2]] = given
-    coefficients[:, _MASS_ROWS] = heavy * float(rotor.mass_model == "distributed")
+    coefficients = profile.between(nodes)
+    coefficients[:, _MASS_ROWS] *= float(rotor.mass_model == "distributed")
     mass = station_inertias(rotor, nodes)[:, 0]
     bending, axial = (_motion(nodes, coefficients[:, rows], mass, station) for rows in (BENDING, AXIAL))
     # No weight turns a shaft about its axis.
@@ -345,23 +328,9 @@ def _pulls(gravity: Sequence[float] | None) -> list[float]:
     return [*pull.tolist(), 0.0]
 
 
-def _spans_of(profile: Profile, nodes: FloatArray) -> IntArray:
-    """Span of a profile that holds each interval between nodes, (p,)."""
-    middles = 0.5 * (nodes[1:] + nodes[:-1])
-    return np.clip(np.searchsorted(profile.edges, middles) - 1, 0, profile.kind.size - 1)
-
-
-def _between(profile: Profile, nodes: FloatArray) -> FloatArray:
-    """Coefficients (p, 10, j) of a profile between nodes (p + 1,) that hold its edges."""
-    span = _spans_of(profile, nodes)
-    width = np.diff(profile.edges)[span]
-    start, part = (nodes[:-1] - profile.edges[span]) / width, np.diff(nodes) / width
-    return restricted(profile.coefficients[profile.kind[span]], 2.0 * start + part - 1.0, part)
-
-
 def _short_of_buckling(profile: Profile, nodes: FloatArray) -> FloatArray:
     """Add nodes until no element's axial force has a clamped field of its own (ω = 0 of `discretised_shaft`)."""
-    kind = profile.kind[_spans_of(profile, nodes)]
+    kind = profile.kind[profile.spans(nodes)]
     bending, force = profile.extremes[kind, 1], np.abs(profile.extremes[kind, 4])
     counts = np.maximum(1.0, np.ceil(ELEMENT_MARGIN * np.diff(nodes) * np.sqrt(2.0 * force / bending) / math.pi))
     if counts.max() == 1.0:
@@ -369,42 +338,3 @@ def _short_of_buckling(profile: Profile, nodes: FloatArray) -> FloatArray:
     number = np.repeat(np.arange(kind.size), counts.astype(np.intp))
     within = np.arange(number.size) - np.searchsorted(number, number)
     return np.append(nodes[number] + within * (np.diff(nodes) / counts)[number], nodes[-1])
-
-
-def _stiffened_profile(rotor: Rotor, stiffened: Sequence[tuple[float, float, float]]) -> Profile:
-    """Profile of the shaft with at least the given outer diameters within intervals."""
-    if not stiffened:
-        return rotor.profile
-    places = []
-    for left, right, outer in stiffened:
-        rotor.require_on_shaft(f"rotor {rotor.name!r} stiffened interval", left)
-        rotor.require_on_shaft(f"rotor {rotor.name!r} stiffened interval", right)
-        require(left < right, "stiffened interval", (left, right), "its left end before its right end")
-        require_finite("stiffened outer diameter", outer, positive=True)
-        places += [left, right]
-    for part, start in zip(rotor.segments, rotor.joints[:-1].tolist(), strict=True):
-        if isinstance(part, Segment):
-            (first, _), (last, _) = part.end_diameters
-            crossed = [outer for *_, outer in stiffened if min(first, last) < outer < max(first, last)]
-            places += [start + part.length * (outer - first) / (last - first) for outer in crossed]
-    joints = merged_positions(rotor.joints, places)
-    pieces: list[Segment | Coupling] = []
-    for start, end in zip(joints[:-1].tolist(), joints[1:].tolist(), strict=True):
-        middle = 0.5 * (start + end)
-        index = int(np.searchsorted(rotor.joints, middle)) - 1
-        part, origin = rotor.segments[index], float(rotor.joints[index])
-        thickest = max((outer for left, right, outer in stiffened if left < middle < right), default=0.0)
-        if isinstance(part, Segment):
-            ends = [part.section((place - origin) / part.length) for place in (start, end)]
-            thicker = thickest > 0.5 * (ends[0].outer_diameter + ends[1].outer_diameter)
-            outers = [thickest if thicker else section.outer_diameter for section in ends]
-            part = replace(
-                part,
-                length=end - start,
-                outer_diameter=outers[0],
-                right_outer_diameter=outers[1],
-                inner_diameter=ends[0].inner_diameter,
-                right_inner_diameter=ends[1].inner_diameter,
-            )
-        pieces.append(part)
-    return stiffness_profile(pieces, joints)

@@ -1,14 +1,6 @@
-"""Rotor: round shaft segments end to end with rigid discs on them, its inertias and its stiffness along the axis.
-
-Stiffness and inertia along the shaft enter the transfer matrices as piecewise polynomials. A cylinder or a coupling has
-constants. Along a cone 1/EI, 1/κGA and their like are rational functions; each is interpolated at Chebyshev points, and
-the cone halved until the last coefficients of every interpolant are rounding. The interpolants converge geometrically,
-at a rate set by how far beyond its interval the nearest pole lies (the apex of a cone, or the place where a bore would
-meet the surface), so this takes an interval for every change of a diameter by about a third.
-"""
+"""Rotor: round shaft segments end to end with rigid discs on them, and its inertias."""
 
 import math
-from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,172 +11,13 @@ import numpy.typing as npt
 
 from rotors.errors import RotorError, require, require_finite
 from rotors.model.material import ShaftMaterial
+from rotors.model.profile import STATION_TOLERANCE, Profile, StiffnessDiameter, merged_positions, shaft_profile
 from rotors.model.segment import Coupling, Segment
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-DEGREE = 16
-TAIL = 2e-15
-ROUNDING = 2e-15
-MOST_HALVINGS = 40
-
-_ANGLES = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
-_FRACTIONS = 0.5 * (1.0 + np.cos(_ANGLES))
-# Values at the Chebyshev points to coefficients of T_0, T_1, ...; and from these to those of 1, s, s², ...
-_TO_CHEBYSHEV = 2.0 / (DEGREE + 1) * np.cos(np.outer(np.arange(DEGREE + 1), _ANGLES))
-_TO_CHEBYSHEV[0] *= 0.5
-_TO_POWERS = np.zeros((DEGREE + 1, DEGREE + 1))
-for _row in range(DEGREE + 1):
-    _TO_POWERS[_row, : _row + 1] = np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[_row, : _row + 1])
-
-# Rows of a table of coefficients: six of bending, two of torsion, two of the axial rod.
-BENDING, TORSION, AXIAL = slice(0, 6), slice(6, 8), slice(8, 10)
-
-
-@dataclass(frozen=True)
-class Profile:
-    """A shaft as spans of uniform or mildly tapering section; equal spans share one kind.
-
-    Attributes
-    ----------
-    edges
-        (s + 1,): ends of the spans, m from the left end; all joints are among them.
-    lengths
-        (s,): m, of whole segments exactly as given, so that equal segments are equal here.
-    kind
-        (s,): index of each span's kind.
-    coefficients
-        (k, 10, j): of every kind, SI, the coefficients of 1, s, s², ... with s from −1 to 1 along the span: in
-        bending 1/(κGA + P), 1/EI, ρA, ρI, g, g P (`rotors.transfer_matrix.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
-    extremes
-        (k, 5): least κGA and EI, largest ρA and ρI, axial force P.
-    uniform
-        (k,).
-    """
-
-    edges: FloatArray
-    lengths: FloatArray
-    kind: IntArray
-    coefficients: FloatArray
-    extremes: FloatArray
-    uniform: npt.NDArray[np.bool_]
-
-    @cached_property
-    def mean_bending_stiffness(self) -> float:
-        """Geometric mean of the spans' least EI, N·m²."""
-        return float(np.exp(np.log(self.extremes[self.kind, 1]).mean()))
-
-
-def stiffness_profile(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:
-    """Profile of segments and couplings between the given joints (parts + 1,), m."""
-    kinds: dict[tuple[object, ...], int] = {}
-    tables: list[tuple[FloatArray, FloatArray]] = []
-    edges, lengths, kind = [float(joints[0])], [], []
-    for part, left, right in zip(parts, joints[:-1].tolist(), joints[1:].tolist(), strict=True):
-        if isinstance(part, Segment) and part.is_conical:
-            pieces = _taper(part, 0.0, 1.0, 0)
-        else:
-            key = _identity(part)
-            if key not in kinds:
-                kinds[key] = len(tables)
-                values = _coupling_values(part) if isinstance(part, Coupling) else _segment_values(part, 0.5)
-                tables.append((values[0][:, None], values[1]))
-            edges.append(right)
-            lengths.append(part.length)
-            kind.append(kinds[key])
-            continue
-        for start, end, powers, extremes in pieces:
-            kind.append(len(tables))
-            tables.append((powers, extremes))
-            edges.append(left + end * (right - left) if end < 1.0 else right)
-            lengths.append((end - start) * part.length)
-    order = max(powers.shape[1] for powers, _ in tables)
-    coefficients = np.zeros((len(tables), 10, order))
-    for row, (powers, _) in enumerate(tables):
-        coefficients[row, :, : powers.shape[1]] = powers
-    return Profile(
-        edges=np.array(edges),
-        lengths=np.array(lengths),
-        kind=np.array(kind, dtype=np.intp),
-        coefficients=coefficients,
-        extremes=np.array([extremes for _, extremes in tables]),
-        uniform=np.array([powers.shape[1] == 1 for powers, _ in tables]),
-    )
-
-
-def restricted(coefficients: FloatArray, centre: FloatArray, half: FloatArray) -> FloatArray:
-    """Polynomials over parts of their spans: p(centre + half · s), for (e, f, j) and (e,) each."""
-    order = coefficients.shape[2]
-    if order == 1:
-        return coefficients
-    # Horner's rule on polynomials: the result grows by one factor (centre + half s) at a time.
-    result = np.zeros_like(coefficients)
-    middle, reach = centre[:, None, None], half[:, None, None]
-    for k in range(order - 1, -1, -1):
-        raised = middle * result
-        raised[:, :, 1:] += reach * result[:, :, :-1]
-        raised[:, :, 0] += coefficients[:, :, k]
-        result = raised
-    return result
-
-
-def _identity(part: Segment | Coupling) -> tuple[object, ...]:
-    """Key that two uniform parts of one section share, whatever their lengths."""
-    if isinstance(part, Coupling):
-        stiffnesses = (part.lateral_stiffness, part.tilt_stiffness, part.torsional_stiffness, part.axial_stiffness)
-        return (part.length, *stiffnesses)
-    return (part.outer_diameter, part.inner_diameter, part.material, part.shear_coefficient, part.axial_force)
-
-
-def _segment_values(part: Segment, fraction: float) -> tuple[FloatArray, FloatArray]:
-    """Return the ten coefficients of a cross-section, and its κGA, EI, ρA, ρI and axial force."""
-    section, force = part.section(fraction), part.axial_force
-    shear, bending = section.shear_stiffness, section.bending_stiffness
-    mass, polar = section.mass_per_length, section.polar_inertia_per_length
-    expected = f"a compression below half of its shear stiffness, {0.5 * shear:g} N"
-    require(-2.0 * force < shear, "segment axial_force", force, expected)
-    share = shear / (shear + force)
-    bent = [1.0 / (shear + force), 1.0 / bending, mass, 0.5 * polar, share, share * force]
-    rods = [1.0 / section.torsional_stiffness, polar, 1.0 / section.axial_stiffness, mass]
-    return np.array(bent + rods), np.array([shear, bending, mass, 0.5 * polar, force])
-
-
-def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
-    """Return the values of `_segment_values` for a coupling: massless, its compliances spread over its length."""
-    shear, bending = part.lateral_stiffness * part.length, part.tilt_stiffness * part.length
-    twist, stretch = part.torsional_stiffness * part.length, part.axial_stiffness * part.length
-    values = [1.0 / shear, 1.0 / bending, 0.0, 0.0, 1.0, 0.0, 1.0 / twist, 0.0, 1.0 / stretch, 0.0]
-    return np.array(values), np.array([shear, bending, 0.0, 0.0, 0.0])
-
-
-def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
-    """Start and end (fractions of the cone), coefficients and extremes of intervals short enough to interpolate."""
-    fractions = [start + fraction * (end - start) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
-    samples = [_segment_values(part, fraction) for fraction in fractions]
-    values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
-    chebyshev = _TO_CHEBYSHEV @ values
-    # Towards a tip or a thin wall, the diameters themselves are rounded to a part of the largest.
-    walls = [part.section(fraction) for fraction in (start, end)]
-    thinnest = min(section.outer_diameter - section.inner_diameter for section in walls)
-    largest = max(outer for outer, _ in part.end_diameters)
-    tolerance = max(TAIL, ROUNDING * largest / thinnest) * np.abs(chebyshev).max(axis=0)
-    if not bool((np.abs(chebyshev[-2:]) <= tolerance).all()):
-        if halvings == MOST_HALVINGS:
-            raise RotorError(f"segment {part!r} tapers too sharply; expected diameters further from zero")
-        middle = 0.5 * (start + end)
-        return _taper(part, start, middle, halvings + 1) + _taper(part, middle, end, halvings + 1)
-    # Coefficients of the size of rounding are zero.
-    chebyshev[np.abs(chebyshev) < 0.1 * tolerance] = 0.0
-    extremes = np.array([*rows[:, :2].min(axis=0), *rows[:, 2:4].max(axis=0), part.axial_force])
-    return [(start, end, (chebyshev.T @ _TO_POWERS), extremes)]
-
-
 MassModel = Literal["distributed", "lumped"]
-
-# Two positions closer than this fraction of the rotor's length are one station: sums of printed segment lengths differ
-# from printed positions by rounding alone.
-STATION_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -237,22 +70,26 @@ class Rotor:
     mass_model
         ``"distributed"``: every segment is an exact Timoshenko beam and rod with its own mass.
         ``"lumped"``: every segment is massless and its inertias go to its two ends (`station_inertias`).
+    stiffness_diameters
+        Lengths over which other bodies stiffen the shaft.
 
     Raises
     ------
     RotorError
-        No segments, a disc beyond the shaft, an unknown mass model, or a rotor without mass.
+        No segments, a disc or a stiffness diameter beyond the shaft, an unknown mass model, or a rotor without mass.
     """
 
     name: str
     segments: Sequence[Segment | Coupling]
     discs: Sequence[Disc] = ()
     mass_model: MassModel = "distributed"
+    stiffness_diameters: Sequence[StiffnessDiameter] = ()
 
     def __post_init__(self) -> None:
-        """Check for segments, the mass model, discs on the shaft and a positive mass; keep tuples."""
+        """Check for segments, the mass model, discs and stiffness diameters on the shaft and a mass; keep tuples."""
         object.__setattr__(self, "segments", tuple(self.segments))
         object.__setattr__(self, "discs", tuple(self.discs))
+        object.__setattr__(self, "stiffness_diameters", tuple(self.stiffness_diameters))
         where = f"rotor {self.name!r}"
         if not self.segments:
             raise RotorError(f"{where} has no segments; expected at least one")
@@ -260,6 +97,9 @@ class Rotor:
         require(known, f"{where} mass_model", self.mass_model, "'distributed' or 'lumped'")
         for disc in self.discs:
             self.require_on_shaft(f"{where} disc", disc.at)
+        for one in self.stiffness_diameters:
+            for end in (one.left, one.right):
+                self.require_on_shaft(f"{where} stiffness diameter", end)
         require(self.mass > 0.0, f"{where} mass", self.mass, "a positive mass, of segments or of discs")
 
     def require_on_shaft(self, what: str, at: float) -> None:
@@ -278,7 +118,7 @@ class Rotor:
     @cached_property
     def profile(self) -> Profile:
         """Stiffness and inertia along the shaft, as its transfer matrices take them."""
-        return stiffness_profile(self.segments, self.joints)
+        return shaft_profile(self.segments, self.joints, self.stiffness_diameters)
 
     @cached_property
     def spans(self) -> "ShaftSpans":
@@ -289,6 +129,16 @@ class Rotor:
     def length(self) -> float:
         """Length of the shaft, m."""
         return float(self.joints[-1])
+
+    def outer_diameter(self, at: float, towards: float) -> float:
+        """Outer diameter of the segment that begins at a place and lies towards another one, m; 0 of a coupling."""
+        inward = math.copysign(STATION_TOLERANCE * self.length, towards - at)
+        number = int(np.clip(np.searchsorted(self.joints, at + inward) - 1, 0, len(self.segments) - 1))
+        part = self.segments[number]
+        if isinstance(part, Coupling):
+            return 0.0
+        fraction = (at - float(self.joints[number])) / part.length
+        return part.section(min(max(fraction, 0.0), 1.0)).outer_diameter
 
     @property
     def stations(self) -> FloatArray:
@@ -338,27 +188,6 @@ class ShaftSpans:
     end: FloatArray
     lengths: FloatArray
     inertias: FloatArray
-
-
-def merged_positions(joints: FloatArray, others: Sequence[float]) -> FloatArray:
-    """Joints and other positions, ascending; one that lies on a joint or another position is that one.
-
-    Parameters
-    ----------
-    joints
-        Ascending positions that stay exactly as they are, (n,), m.
-    others
-        Further positions on the shaft, m.
-    """
-    known = joints.tolist()
-    slack = STATION_TOLERANCE * known[-1]
-    kept: list[float] = []
-    for place in sorted(float(other) for other in others):
-        right = min(max(bisect_left(known, place), 1), len(known) - 1)
-        near = min(abs(place - known[right - 1]), abs(place - known[right])) <= slack
-        if not near and (not kept or place - kept[-1] > slack):
-            kept.append(place)
-    return np.sort(np.concatenate([joints, kept])) if kept else joints
 
 
 def station_index(stations: FloatArray, at: float) -> int:

@@ -13,8 +13,9 @@ import tomli_w
 from rotors.errors import require, require_finite
 from rotors.model.bearing import Bearing, Pedestal
 from rotors.model.material import ElasticMaterial
+from rotors.model.profile import STATION_TOLERANCE, merged_positions
 from rotors.model.segment import Coupling, Segment
-from rotors.model.shaft import STATION_TOLERANCE, Disc, Rotor, merged_positions, station_index
+from rotors.model.shaft import Disc, Rotor, station_index
 from rotors.ross.reading import PLACES
 from rotors.ross.shafts import ross_formula
 from rotors.ross.tables import Remarks
@@ -73,6 +74,12 @@ def write_ross(
     for bearing in bearings:
         rotor.require_on_shaft(f"bearing {bearing.name!r}", bearing.at)
     remarks = Remarks()
+    if rotor.stiffness_diameters:
+        text = (
+            f"{len(rotor.stiffness_diameters)} stiffness diameters, of gears for example, are left out: in ROSS one "
+            "diameter has mass and stiffness, so that its shaft is softer there"
+        )
+        remarks.add(f"rotor {rotor.name!r}", text)
     nodes, owners = _nodes(rotor, bearings, longest)
     document: Table = {"ross_version": ROSS_VERSION, "parameters": {}}
     tables = _shaft(rotor, nodes, owners, remarks)

@@ -25,8 +25,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rotors.errors import RotorError
+from rotors.model.profile import merged_positions, restricted
 from rotors.model.segment import gauss_rule
-from rotors.model.shaft import merged_positions, restricted, station_index
+from rotors.model.shaft import station_index
 from rotors.transfer_matrix.timoshenko import NumberArray, ShaftElements
 
 FloatArray = npt.NDArray[np.float64]

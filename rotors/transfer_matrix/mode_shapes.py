@@ -23,7 +23,7 @@ from scipy import linalg
 
 from rotors.certificate import ModeCertificate, certify
 from rotors.errors import IncompleteModesError, RotorError, require, require_count, require_finite
-from rotors.model.shaft import STATION_TOLERANCE
+from rotors.model.profile import STATION_TOLERANCE
 from rotors.transfer_matrix.discretised_shaft import GAUSS_FRACTIONS, ContinuousShaft, DiscretisedShaft
 from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, shaft_arrays, wittrick_williams_count
 

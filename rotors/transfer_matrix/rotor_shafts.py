@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rotors.model.bearing import AxisSpring, RadialSupport
-from rotors.model.shaft import AXIAL, BENDING, TORSION, Rotor
+from rotors.model.profile import AXIAL, BENDING, TORSION
+from rotors.model.shaft import Rotor
 from rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft
 
 FloatArray = npt.NDArray[np.float64]

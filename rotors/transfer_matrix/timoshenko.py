@@ -28,7 +28,7 @@ the static state (ω = 0) and negative ω² (a shifted, positive definite proble
 They are used on elements short enough (`rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5, where
 thirteen terms are exact to rounding and no hyperbolic function can overflow.
 
-**A tapering element** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.shaft`
+**A tapering element** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.profile`
 makes them, exact to rounding). Its solution is an entire function, whose power series about the middle is
 summed, y(s) = Φ(s) y(0); then T = Φ(1) Φ(−1)⁻¹. Both equations are Hamiltonian (reciprocity), hence Φ
 symplectic, and its inverse is a transposition: T is symplectic to rounding too.

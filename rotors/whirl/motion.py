@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rotors.model.bearing import Bearing
-from rotors.model.shaft import merged_positions
+from rotors.model.profile import merged_positions
 from rotors.transfer_matrix.discretised_shaft import (
     GAUSS_FRACTIONS,
     GAUSS_WEIGHTS,

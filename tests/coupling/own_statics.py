@@ -168,17 +168,49 @@ class OwnStatics:
         return 0.5 * self.width(pair) * np.cos(np.pi * np.arange(STATIONS)[::-1] / (STATIONS - 1))
 
     def bodies(self, shaft: str) -> list[tuple[float, float, float, float]]:
-        """Ends of the gears' bodies and of their teeth on a shaft, and diameters in bending and torsion."""
+        """Ends of the gears' bodies and of their teeth on a shaft, and diameters in bending and torsion, or zeros.
+
+        At each end of the face b the shaft of diameter d stays bare until its stress has spread into the root circle D:
+        α g d (1 − exp(−b / 2 α g d)), g = 1 − (d/D)³.
+        """
         found = []
         for one in self.machine.gears:
             if one.shaft == shaft:
-                gear, half = one.gear, 0.5 * one.gear.face_width
-                root = gear.module * gear.teeth / math.cos(gear.helix_angle) - 2.5 * gear.module
-                found.append((one.at - half, one.at + half, root, root))
-                teeth = toothed_section(gear)
-                half -= teeth.end_length
-                found.append((one.at - half, one.at + half, teeth.bending_diameter, teeth.torsion_diameter))
+                teeth = toothed_section(one.gear)
+                for spread, toothed, motion in (
+                    (0.243, teeth.bending_diameter, np.array([1.0, 0.0])),
+                    (0.158, teeth.torsion_diameter, np.array([0.0, 1.0])),
+                ):
+                    left, right = self._core(one, spread)
+                    for shorter, outer in ((0.0, self._root(one.gear)), (teeth.end_length, toothed)):
+                        low, high = left + shorter, right - shorter
+                        if low < high:
+                            found.append((low, high, *(outer * motion).tolist()))
         return found
+
+    @staticmethod
+    def _root(gear: Gear) -> float:
+        return gear.module * gear.teeth / math.cos(gear.helix_angle) - 2.5 * gear.module
+
+    def _core(self, one: ShaftGear, spread: float) -> tuple[float, float]:
+        ends = []
+        for side in (-1.0, 1.0):
+            end = one.at + side * 0.5 * one.gear.face_width
+            d = self._part(one.shaft, end - side * 1e-9).outer_diameter
+            reach = spread * d * (1.0 - (d / self._root(one.gear)) ** 3)
+            bare = reach * (1.0 - math.exp(-0.5 * one.gear.face_width / reach)) if reach > 0.0 else 0.0
+            ends.append(end - side * bare)
+        return ends[0], ends[1]
+
+    def carriers(self, one: ShaftGear, pair: GearPair) -> FloatArray:
+        """Sections that carry the stations: the body is rigid beyond the length that bends with it."""
+        return np.clip(one.at + self.stations(pair), *self._core(one, 0.243))
+
+    def _part(self, shaft: str, at: float) -> Segment:
+        rotor = self.machine.shaft(shaft).rotor
+        part = rotor.segments[int(np.searchsorted(np.cumsum([one.length for one in rotor.segments]), at))]
+        assert isinstance(part, Segment)
+        return part
 
     def _nodes(self, shaft: str) -> FloatArray:
         rotor = self.machine.shaft(shaft).rotor
@@ -190,16 +222,14 @@ class OwnStatics:
         for pair in self.machine.gear_pairs:
             for name in (pair.driver, pair.driven):
                 if self.gears[name].shaft == shaft:
-                    places += [self.gears[name].at, *(self.gears[name].at + self.stations(pair))]
+                    places += [self.gears[name].at, *self.carriers(self.gears[name], pair)]
         return np.unique(np.round(places, 12))
 
     def _elements(self, shaft: str) -> list[tuple[int, Segment, tuple[float, float], float]]:
-        rotor, nodes, found = self.machine.shaft(shaft).rotor, self.nodes[shaft], []
-        joints = np.cumsum([part.length for part in rotor.segments])
+        nodes, found = self.nodes[shaft], []
         for at, (left, right) in enumerate(pairwise(nodes)):
             middle = 0.5 * (left + right)
-            part = rotor.segments[int(np.searchsorted(joints, middle))]
-            assert isinstance(part, Segment)
+            part = self._part(shaft, middle)
             thick = [diameters for low, high, *diameters in self.bodies(shaft) if low < middle < high]
             bending, torsion = (max([part.outer_diameter, *(one[n] for one in thick)]) for n in (0, 1))
             found.append((at, part, (bending, torsion), float(right - left)))
@@ -293,9 +323,11 @@ class OwnStatics:
             middle = self.section(gear.shaft, gear.at)
             along = middle[2] + to_pitch_point[1] * middle[3] - to_pitch_point[0] * middle[4]
             tilt += side * (push[0] * middle[4] - push[1] * middle[3])
-            for row, place in zip(at_stations, stations, strict=True):
-                here = self.section(gear.shaft, gear.at + place)
-                row += side * (push @ here[:2] + h * along) + sense * bases[name] * here[5]
+            for row, place, carrier in zip(at_stations, stations, self.carriers(gear, pair), strict=True):
+                here = self.section(gear.shaft, carrier)
+                arm = gear.at + place - carrier
+                moved = here[:2] + arm * np.array([here[4], -here[3]])
+                row += side * (push @ moved + h * along) + sense * bases[name] * here[5]
         powers = np.vander(stations / stations[-1], increasing=True)
         over = np.vander(z / stations[-1], stations.size, increasing=True) @ np.linalg.inv(powers)
         return over @ at_stations, tilt

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
 from coupling.gears import ConstantStiffness, Gear, GearError, SquareStiffness
+from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
@@ -387,16 +388,30 @@ def test_material_damping_of_a_shaft_is_that_of_its_free_twist() -> None:
     assert modes.damping_ratios[twist] == pytest.approx(0.03, rel=1e-9)
 
 
-def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar() -> None:
-    """1/k of the bearing and a/(E A) of the shaft between it and the gear, however few modes are kept."""
+@pytest.mark.parametrize("stiffens", [False, True])
+def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar(*, stiffens: bool) -> None:
+    """1/k of the bearing and ∫ dz/EA of the shaft between it and the gear, however few modes are kept.
+
+    A gear in one piece thickens half of its face from where stress has spread into it: to the root circle, and 1.9
+    modules on to the section with teeth.
+    """
     at, axial = 0.1, 5e7
     stiffness = np.diag([1e8, 1e8, axial, 0.0, 0.0])
     held = [MountedBearing(Bearing("front", 0.0, stiffness, np.zeros((5, 5))), "fast", None)]
     held.append(MountedBearing(Bearing("back", LENGTH, 1e8 * np.eye(2), np.zeros((2, 2))), "fast", None))
-    helical = ShaftGear(gear("a", 20, helix_angle=0.3), "fast", at)
+    helical = ShaftGear(gear("a", 20, helix_angle=0.3), "fast", at, stiffens_shaft=stiffens)
     machine = Machine([replace(shaft("fast", 0.0), mode_count=1)], held, [helical], speed=10.0)
     (component,) = machine.rotor_components()
     along = component.motions(at)[2]
     whole = machine.assemble(components=[component]).system.mean_stiffness
     moved = along @ np.linalg.lstsq(whole, along, rcond=1e-12)[0]
-    assert moved == pytest.approx(1.0 / axial + at / (211e9 * math.pi / 4.0 * 0.03**2), rel=1e-3)
+    body, half = helical.gear, 0.5 * helical.gear.face_width
+    root = 2.0 * body.root_circle_radius
+    bare = bare_lengths(0.03, root, body.face_width)[0]
+    toothless = min(1.9 * body.module, half - bare)
+    lengths = [at - half + bare, toothless, half - bare - toothless]
+    diameters = [0.03, root, toothed_section(body).bending_diameter]
+    if not stiffens:
+        diameters = [0.03] * 3
+    stretch = sum(length / (211e9 * math.pi / 4.0 * outer**2) for length, outer in zip(lengths, diameters, strict=True))
+    assert moved == pytest.approx(1.0 / axial + stretch, rel=1e-6)

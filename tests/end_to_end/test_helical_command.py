@@ -95,7 +95,7 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
     with xr.open_dataset(results / "results.nc") as data:
         helical = data["mesh_force"].isel(contact=0).values
     swings = [np.ptp(force) / np.mean(force) for force in (helical, spur)]
-    assert swings[0] < 0.5 * swings[1]
+    assert swings[0] < 0.7 * swings[1]
 
 
 def test_the_axial_force_on_the_bearings_is_the_thrust_of_the_teeth() -> None:

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -23,6 +24,8 @@ TEETH, BASE_RADIUS, TORQUE = 28, 0.5 * 28 * 3.175e-3 * math.cos(math.radians(20.
 SPEEDS = (3000.0, 3600.0, 4200.0)
 # A bearing that pushes its shaft around: the motion grows without bound.
 UNSTABLE = "bearing.input-back.stiffness.xy=0,1e10 N/m"
+# Teeth may be pressed flat before or after the motion itself is out of bounds.
+DIVERGED = "pressed together by|motion diverged"
 ROTORS = (
     *("sweep", "spur-pair", "-o", "out", "--json"),
     *("--over", "operation.speed=3000 rpm:4200 rpm:3", "--over", UNSTABLE),
@@ -130,7 +133,7 @@ def test_every_point_is_there_and_the_failed_ones_say_why(interrupted_and_hurt: 
         assert point["status"] == ("done" if stable else "failed")
         assert (folder / point["file"]).is_file()
         if not stable:
-            assert "pressed together by" in point["failure"]
+            assert re.search(DIVERGED, point["failure"])
             assert "traceback" not in point
     assert json.loads((folder / "summary.json").read_text(encoding="utf-8"))["points"] == document["points"]
     assert set(document["files"]) | {"points"} == {path.name for path in folder.iterdir()}
@@ -154,7 +157,7 @@ def test_the_gathered_file_is_labelled_and_holds_the_closed_forms(interrupted_an
         failed = data.isel(bearing_input_back_stiffness_xy=1)
         assert not failed.done.any()
         assert failed.mesh_force_mean.isnull().all()
-        assert all("pressed together by" in str(text) for text in failed.failure.values)
+        assert all(re.search(DIVERGED, str(text)) for text in failed.failure.values)
 
 
 @contextmanager

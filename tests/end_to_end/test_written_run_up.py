@@ -46,10 +46,11 @@ def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
     numbers = dict(zip(data.named_order.values.tolist(), data.run_order_number.values.tolist(), strict=True))
     for name, order in orders.items():
         assert numbers[name] == pytest.approx(order)
-    # Each mesh's own force swings most at its own orders, and its line goes up with the speed.
+    # Each mesh's own force swings most at its own orders, and its line goes up with the speed; speeds are away from
+    # those where a free vibration outweighs it.
     for signal, own in (("a -> b", 23.0), ("c -> d", 21.0 * ratio)):
         row = data.run_spectrum.sel(run_signal=signal)
-        for number in (3, -3):
+        for number in (3, -1):
             hertz = own * float(data.run_speed[number]) / 60.0
             spectrum = row.isel(run_speed=number)
             near = spectrum.sel(run_frequency=slice(0.85 * hertz, 1.15 * hertz))

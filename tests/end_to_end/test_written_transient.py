@@ -355,7 +355,7 @@ def test_energies_balance_as_they_are_told(written: Written) -> None:
     """What the loads and the teeth's nominal rotation give is lost or kept."""
     energy = written.summary["energy_j"]
     given = energy["loads"] + energy["teeth"]
-    assert energy["change"] == pytest.approx(given - energy["lost"], abs=3e-4 * energy["lost"])
+    assert energy["change"] == pytest.approx(given - energy["lost"], abs=6e-4 * energy["lost"])
     assert energy["lost"] > 0.0
 
 

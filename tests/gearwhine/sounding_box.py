@@ -48,6 +48,7 @@ def sound_of_lines() -> SolvedSound:
         rates[: len(natural)] = gains[:, None] * generator.standard_normal((len(natural), 2))
         rates[len(natural) :] = 1e-6
         sound = solved.radiation.solve(hertz, rates)
-        heard = sound.pressure_at(np.array(list(solved.microphones.values())))
-        lines.append(SoundLine(hertz, name, hertz / 92.0, sound, heard))
+        places = np.array(list(solved.microphones.values()))
+        heard, off = sound.pressure_at(places), sound.source_error_at(places)
+        lines.append(SoundLine(hertz, name, hertz / 92.0, sound, heard, off))
     return replace(solved, lines=tuple(lines), bearings=("front bore", "back bore"), covered=0.97)

@@ -29,7 +29,11 @@ def transfer(machine: CoupledMachine) -> ModalRadiation:
     values[:, 1, :3] = [15.0, 10.0j, 5.0]
     nothing = np.zeros((5, machine.housing.size, machine.housing.size))
     delays = np.array([1.0, 2.0]) / 343.2
-    return ModalRadiation(np.linspace(20.0, 3000.0, 5), nothing, nothing, nothing, values, delays, np.zeros(5))
+    zeros = np.zeros(5)
+    return ModalRadiation(
+        *(np.linspace(20.0, 3000.0, 5), nothing, nothing, nothing, values, delays),
+        *(zeros, zeros, zeros, np.zeros((5, len(delays)))),
+    )
 
 
 def forces_of(machine: CoupledMachine, signal: FloatArray) -> dict[str, FloatArray]:

@@ -1,6 +1,7 @@
 """Sound of a case: parts that add up, two motions that sound alike, measurement by ISO 3744, and refusals."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -87,6 +88,23 @@ def test_transient_sounds_as_the_steady_state(study, sound, run):
     loudest = max(steady, key=lambda order: steady[order])
     assert lines[loudest] == pytest.approx(steady[loudest], abs=0.3)
     assert run.document["sound"]["lines"]
+
+
+def test_known_sources_at_microphones_count_over_time_too(run, monkeypatch):
+    """The record has lines to 2.6 kHz, its sound over time the frequencies to 3 kHz, where a known source is worse."""
+    solved = run.solved.sound
+    of_lines = np.max([line.microphone_errors for line in solved.lines], axis=0)
+    over_time = solved.histories.source_errors
+    assert np.all(over_time > 0.0)
+    assert over_time.max() > of_lines.max()
+    assert solved.histories.source_frequency_hz > max(line.frequency_hz for line in solved.lines)
+    told = [one["known_source_error"] for one in run.document["sound"]["microphones"]]
+    assert told == pytest.approx(np.maximum(of_lines, over_time))
+    assert "microphone_known_source" not in [one["name"] for one in solved.warnings()]
+    monkeypatch.setattr("gearwhine.solve.sound.proofs.SOURCE_HEARD", 0.99 * over_time.max())
+    (doubt,) = [one for one in solved.warnings() if one["name"] == "microphone_known_source"]
+    assert (doubt["relative"], doubt["frequency_hz"]) == (over_time.max(), solved.histories.source_frequency_hz)
+    assert list(solved.microphones)[int(over_time.argmax())] in doubt["message"]
 
 
 def test_a_tones_level_in_the_sound_file_is_that_of_its_line(run, tmp_path):
@@ -230,6 +248,9 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
         assert one["power_balance_db"] == pytest.approx(other["power_balance_db"], abs=0.1)
         assert one["microphones_db"]["ear"] == pytest.approx(other["microphones_db"]["ear"], abs=0.05)
         assert one["radiation_efficiency"] == pytest.approx(other["radiation_efficiency"], rel=0.01)
+        # Of the table the larger error of the frequencies beside, which grows with them.
+        assert 0.9 < one["known_source_error"] / other["known_source_error"] < 1.6
+        assert 0.9 < one["known_source_rms"] / other["known_source_rms"] < 1.6
         shares = [
             {part["name"]: part["share"] for part in line["contributions"]["housing_modes"]} for line in (one, other)
         ]
@@ -239,6 +260,13 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
     again = solve_housing(study.case, folder=tmp_path / "out")
     monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.ModalRadiation.solve", None)  # needs no solution
     assert heard(5, again)[0] == interpolated
+    # A file of a version without known sources, whose key is another one, too: its radiation is solved anew.
+    sources = [name for name in again.record.extras if "source" in name]
+    assert sources == ["radiation_source_error", "radiation_source_rms", "point_source_error"]
+    earlier = {name: array for name, array in again.record.extras.items() if name not in sources}
+    record = replace(again.record, extras=earlier, notes={**again.record.notes, "radiation": "of an earlier version"})
+    with pytest.raises(TypeError):
+        heard(5, replace(again, record=record))
     deaf = gw.load("small-gearbox", low).case
     monkeypatch.undo()
     monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 5)

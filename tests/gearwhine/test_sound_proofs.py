@@ -11,12 +11,20 @@ from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing
 import gearwhine as gw
 from gearwhine.case import Case, swept_keys
 from gearwhine.solve.sound.motion_lines import MotionLines
-from gearwhine.solve.sound.proofs import interior_pressure, power_balance_db
+from gearwhine.solve.sound.proofs import (
+    doubts,
+    gathered,
+    interior_pressure,
+    known_source,
+    known_source_at,
+    microphone_doubts,
+    power_balance_db,
+)
 from gearwhine.solve.sound.solution import build_radiation, solve_sound
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing import HousingError
-from housing.acoustics import radiation
+from housing.acoustics import boundary_elements, radiation
 from housing.acoustics.radiation import counting
 
 
@@ -38,6 +46,9 @@ def test_an_estimate_has_no_proof_and_a_face_no_inside() -> None:
         rates[4] = 1.0
         one = solved.solve(2524.0, rates)
         assert interior_pressure(one) is None
+        assert known_source(one) is None
+        assert known_source_at(one, np.array([[0.1, 1.2, 0.2]])) is None
+        assert doubts(one, "a line") == []
         balance = power_balance_db(one)
         assert (balance is not None) is known
         if balance is not None:
@@ -56,6 +67,65 @@ def test_every_mode_that_radiates_is_held_against_the_pressure_inside(monkeypatc
     monkeypatch.setattr(radiation, "POWERS_AGREE", 1e-6)
     with pytest.raises(HousingError, match="through the surface"):
         gw.load("steel-box", COARSE).sound()
+
+
+def test_every_mode_that_radiates_is_held_against_known_sources(monkeypatch: pytest.MonkeyPatch) -> None:
+    document = gw.load("steel-box", COARSE).sound().document
+    modes = [mode for mode in document["modes"] if mode["radiation_efficiency"] > 1e-4]
+    worst = max(modes, key=lambda mode: float(mode["known_source_error"]))
+    assert [one for one in document["warnings"] if one["name"] == "known_source"] == []
+    monkeypatch.setattr(radiation, "SOURCE_OFF", 0.0)
+    (told,) = [
+        one for one in gw.load("steel-box", COARSE).sound().document["warnings"] if one["name"] == "known_source"
+    ]
+    assert (told["frequency_hz"], told["relative"], told["count"]) == (
+        worst["frequency_hz"],
+        worst["known_source_error"],
+        len(modes),
+    )
+    assert told["message"].startswith(f"the sound of housing mode {worst['number']} at")
+    assert told["message"].endswith(f"({len(modes) - 1} more are doubtful, too)")
+    monkeypatch.setattr(radiation, "SOURCE_LOST", 0.5 * worst["known_source_error"])
+    with pytest.raises(HousingError, match=r"of a known source inside is off by .* at the vertex"):
+        gw.load("steel-box", COARSE).sound()
+
+
+def test_a_vertex_that_is_lost_on_the_default_triangles_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The fault that a user heard as 5 dB at a microphone: the correction for a bent pressure without its bound."""
+    case = sounding_gearbox({"acoustics.highest_frequency": "3 kHz"}).case
+    housing = sounding_housing()
+
+    def solved() -> Any:
+        wrapped = build_radiation(case, housing)
+        rates = np.zeros((wrapped.modal[0].shape[1], 1))
+        rates[4] = 1.0
+        return wrapped.solve(2500.0, rates)
+
+    sound = solved()
+    sound.require_proofs()
+    assert doubts(sound, "a line") == []
+    monkeypatch.setattr(boundary_elements, "_MOST_BENT", np.inf)
+    lost = solved()
+    lost.require_balance()
+    assert interior_pressure(lost) == pytest.approx(interior_pressure(sound), rel=0.3)
+    assert lost.source_error.largest > 20.0 * sound.source_error.largest
+    with pytest.raises(HousingError, match=r"at 2500\.0 Hz the pressure of a known source inside is off by .* mm of"):
+        lost.require_proofs()
+
+
+def test_the_worst_of_the_microphones_is_told() -> None:
+    assert microphone_doubts(700.0, {"ear": 0.08, "wall": 0.09}) == []
+    assert microphone_doubts(700.0, {"ear": np.inf}) == []  # without a source that is told already
+    (first,) = microphone_doubts(700.0, {"ear": 0.11, "wall": 0.126})
+    (second,) = microphone_doubts(900.0, {"ear": 0.31, "wall": 0.2})
+    assert (first["relative"], second["relative"]) == (0.126, 0.31)
+    assert "microphone 'wall' at 700.0 Hz is doubtful" in first["message"]
+    assert "off by 13 % there" in first["message"]
+    other = {"name": "sound_left_out", "message": "left out"}
+    (kept, worst) = gathered([first, other, second])
+    assert kept == other
+    assert worst["message"] == second["message"] + " (1 more is doubtful, too)"
+    assert gathered([first]) == [first | {"count": 1}]
 
 
 def test_every_line_that_counts_is_held_against_its_powers(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -99,6 +169,7 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
     assert len(balances) == 2
     assert found["power_balance_db"] == max(balances, key=abs)
     assert found["interior_pressure"] is None
+    assert (found["known_source_error"], found["known_source_rms"]) == (None, None)
     assert {line["name"]: (line["kind"], line["order"]) for line in found["lines"]} == {
         "10× input": ("other", pytest.approx(900.0 * 60.0 / 5500.0)),
         "1× pinion -> wheel": ("mesh", pytest.approx(2400.0 * 60.0 / 5500.0)),

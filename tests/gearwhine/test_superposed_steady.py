@@ -89,7 +89,7 @@ def test_what_is_neglected_is_the_difference_of_the_forces(
         total += force[:, :2] - superposed.mean_force[:2]
     total += superposed.mean_force[:2]
     different = np.sqrt(np.mean((record.force[:, :2] - total) ** 2, axis=0))
-    assert np.all(different < 2.0 * superposed.neglected_force[:2].max())
+    assert np.all(different < 3.0 * superposed.neglected_force[:2].max())
     assert different.max() > 0.3 * superposed.neglected_force[:2].max()
 
 

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from rotors import Bearing, Coupling, Disc, Rotor, RotorError, Segment, ShaftMaterial, static_deflection
@@ -277,157 +275,6 @@ def test_a_cone_stretches_twists_and_bends_as_its_compliance_integrates() -> Non
     assert tip[0] == pytest.approx(bent[1] + bent[2] + integral("shear_stiffness", 0), rel=1e-11)
 
 
-def test_a_stiffened_interval_is_the_shaft_written_out_by_hand() -> None:
-    stations, discs = [0.05, 0.3, 0.5, 0.7], [Disc(0.41, 2.0)]
-    intervals = [(0.3, 0.45, 0.045, 0.045), (0.35, 0.5, 0.042, 0.042), (0.6, 0.65, 0.02, 0.02)]
-    shaft = static_shaft(Rotor("shaft", STEPS, discs), stations, stiffened=intervals)
-
-    def piece(part: Segment, length: float, outer: float) -> Segment:
-        thick = replace(part, length=length, outer_diameter=outer)
-        # Lighter, so that its weight is that of the thinner part.
-        density = part.material.density * part.section(0.0).area / thick.section(0.0).area
-        return replace(thick, material=replace(part.material, density=density))
-
-    by_hand = [replace(UNIFORM, length=0.3), piece(UNIFORM, 0.1, 0.045), STEPS[1], STEPS[2]]
-    expected = static_shaft(Rotor("shaft", by_hand, discs), stations)
-    assert_alike(shaft.stiffness, expected.stiffness, 1e-12)
-    assert_alike(shaft.weight(GRAVITY), expected.weight(GRAVITY), 1e-12)
-    moved, z = np.linspace(-1e-5, 1e-5, 24), np.linspace(0.0, 0.72, 30)
-    np.testing.assert_allclose(shaft.motions(moved, z, GRAVITY), expected.motions(moved, z, GRAVITY), atol=1e-15)
-
-
-def test_a_stiffened_interval_twists_with_a_diameter_of_its_own() -> None:
-    """Torsion is that of one thickness, all other motions are those of the other."""
-    stations, rotor = [0.05, 0.3, 0.5, 0.7], Rotor("shaft", STEPS, [Disc(0.41, 2.0)])
-    both = static_shaft(rotor, stations, stiffened=[(0.3, 0.5, 0.045, 0.041)])
-    bent, twisted = (static_shaft(rotor, stations, stiffened=[(0.3, 0.5, outer, outer)]) for outer in (0.045, 0.041))
-    torsion = np.arange(24) % 6 == 5
-    for among, expected in ((torsion, twisted), (~torsion, bent)):
-        own, wanted = both.stiffness[np.ix_(among, among)], expected.stiffness[np.ix_(among, among)]
-        np.testing.assert_allclose(own, wanted, rtol=1e-11, atol=1e-11 * np.abs(wanted).max())
-    assert not both.stiffness[np.ix_(torsion, ~torsion)].any()
-    assert np.abs(bent.stiffness - twisted.stiffness)[np.ix_(torsion, torsion)].max() > 1.0
-    assert_alike(both.weight(GRAVITY), bent.weight(GRAVITY), 1e-12)
-
-
-def test_a_cone_is_stiffened_up_to_the_given_diameter_and_keeps_its_mass() -> None:
-    # From 30 to 60 mm: it is 40 mm thick at a third, 45 mm at the half.
-    rotor, L = Rotor("shaft", [JAW, CONE]), CONE.length
-    ends = [JAW.length, JAW.length + L]
-    shaft = static_shaft(rotor, ends, stiffened=[(0.02, 0.2, 0.04, 0.04), (JAW.length + L / 6, 0.2, 0.045, 0.045)])
-    bores = [CONE.section(fraction).inner_diameter for fraction in (0.0, 1 / 6, 1 / 2)]
-    by_hand = [
-        JAW,
-        replace(CONE, length=L / 6, outer_diameter=0.04, right_outer_diameter=0.04, right_inner_diameter=bores[1]),
-        replace(CONE, length=L / 3, outer_diameter=0.045, right_outer_diameter=0.045, inner_diameter=bores[1],
-                right_inner_diameter=bores[2]),
-        replace(CONE, length=L / 2, outer_diameter=0.045, inner_diameter=bores[2]),
-    ]  # fmt: skip
-    expected = static_shaft(Rotor("shaft", by_hand), ends)
-    assert_alike(shaft.stiffness, expected.stiffness, 1e-12)
-    total = shaft.weight([1.0, 0.0, 0.0]) @ rigid_motions(shaft.places)[[0, 4]].T
-    np.testing.assert_allclose(total, rotor.mass * np.array([1.0, rotor.centre_of_mass]), rtol=1e-12)
-
-    # Clamped at its left end, the tip sinks by the double integral of the moment of the cone's own weight.
-    thick = [part for part in by_hand if isinstance(part, Segment)]
-    tip = solve(shaft.stiffness, shaft.weight([1.0, 0.0, 0.0]), range(6))[6]
-    rule, weights = np.polynomial.legendre.leggauss(40)
-
-    def carried(z: float, arm: int) -> float:
-        at = z + (L - z) * (rule + 1) / 2
-        line = [CONE.section(place / L).mass_per_length * (place - z) ** arm for place in at]
-        return float((L - z) / 2 * weights @ np.array(line))
-
-    sunk, start = 0.0, 0.0
-    for part in thick:
-        for node, weight in zip(rule, weights, strict=True):
-            fraction = (node + 1) / 2
-            section, z = part.section(fraction), start + fraction * part.length
-            share = carried(z, 1) * (L - z) / section.bending_stiffness + carried(z, 0) / section.shear_stiffness
-            sunk += weight * part.length / 2 * share
-        start += part.length
-    assert tip == pytest.approx(sunk, rel=1e-10)
-
-
-segments = st.builds(
-    lambda length, outer, bore, right, material: Segment(
-        length, outer, bore * min(outer, right or outer), material, "cowper", right_outer_diameter=right
-    ),
-    st.floats(0.005, 0.3),
-    st.floats(0.01, 0.1),
-    st.floats(0.0, 0.8),
-    st.none() | st.floats(0.01, 0.1),
-    st.sampled_from([STEEL, BRASS]),
-)
-
-
-@given(
-    parts=st.lists(segments | st.just(JAW), min_size=1, max_size=6).filter(lambda parts: any(p != JAW for p in parts)),
-    fractions=st.lists(st.floats(0.0, 1.0), min_size=2, max_size=6),
-    disc=st.floats(0.0, 1.0),
-)
-def test_any_shaft_resists_all_but_rigid_motions_and_keeps_its_weight(
-    parts: list[Segment | Coupling], fractions: list[float], disc: float
-) -> None:
-    length = sum(part.length for part in parts)
-    rotor = Rotor("shaft", parts, [Disc(disc * length, 3.0)])
-    shaft = static_shaft(rotor, [fraction * rotor.length for fraction in fractions])
-    rigid = rigid_motions(shaft.places)
-    np.testing.assert_array_equal(shaft.stiffness, shaft.stiffness.T)
-    scale = np.sqrt(np.maximum(np.diag(shaft.stiffness), 1e-300))
-    assert np.abs((shaft.stiffness @ rigid.T) / scale[:, None]).max() <= 1e-11 * scale.max()
-    if shaft.places.size > 1:
-        values = np.linalg.eigvalsh(shaft.stiffness / np.outer(scale, scale))
-        assert values[0] > -1e-11
-    total, centre = rotor.mass, rotor.centre_of_mass * rotor.mass
-    along = rigid @ shaft.weight(GRAVITY)
-    gx, gy, gz = GRAVITY
-    expected = [total * gx, total * gy, total * gz, -centre * gy, centre * gx, 0.0]
-    np.testing.assert_allclose(along, expected, rtol=1e-10, atol=1e-10 * total)
-    # Fewer stations are the same shaft with the others free.
-    if shaft.places.size > 2 and np.diff(shaft.places).min() > 1e-3:
-        fewer = static_shaft(rotor, shaft.places[[0, -1]].tolist())
-        ends = np.r_[0:6, shaft.stiffness.shape[0] - 6 : shaft.stiffness.shape[0]]
-        moved = solve(shaft.stiffness, -shaft.stiffness[ends] + 0.0, ends)
-        left = shaft.stiffness[np.ix_(ends, ends)] + moved @ shaft.stiffness[:, ends]
-        assert_alike(left, fewer.stiffness, 1e-8)
-
-
-def test_axial_forces_leave_only_the_tilt_stiff() -> None:
-    tension = Rotor("shaft", [replace(UNIFORM, axial_force=5e4), replace(UNIFORM, axial_force=5e4)])
-    shaft = static_shaft(tension, [0.0, 0.8])
-    rigid = rigid_motions(shaft.places)
-    work = rigid @ shaft.stiffness @ rigid.T
-    # A tilt φ takes the moment P L φ of the ends' forces, which stay along z: it is the rigid body's work P L φ² / 2.
-    np.testing.assert_allclose(work, np.diag([0.0, 0.0, 0.0, 4e4, 4e4, 0.0]), atol=1e-5)
-
-
-def test_a_tight_wire_is_refused_between_far_stations_and_taken_between_near_ones() -> None:
-    wire = Rotor("wire", [Segment(1.0, 1e-3, 0.0, STEEL, 1e6, axial_force=500.0)])
-    rope = Rotor("wire", [Segment(9.0, 1e-3, 0.0, STEEL, axial_force=500.0)])
-    for rotor in (wire, rope):
-        with pytest.raises(RotorError, match=r"rotor 'wire': its axial forces leave .* more stations"):
-            static_shaft(rotor, [0.0, rotor.length])
-    shaft = static_shaft(wire, np.linspace(0.0, 1.0, 101).tolist())
-    assert central_sag(shaft) == pytest.approx(central_sag_of_a_tie(wire), rel=1e-6)
-
-
-def test_a_tie_between_far_stations_keeps_its_digits() -> None:
-    # Its field grows by e⁹ from one station to the next.
-    tie = Rotor("tie", [Segment(1.0, 0.01, 0.0, STEEL, 1e6, axial_force=324 * 2.1e11 * math.pi / 64 * 1e-8)])
-    shaft = static_shaft(tie, [0.0, 0.5, 1.0])
-    assert central_sag(shaft) == pytest.approx(central_sag_of_a_tie(tie), rel=1e-8)
-
-
-def central_sag(shaft: StaticShaft) -> float:
-    """Deflection of the middle node under a newton, the end nodes being simply supported."""
-    size = shaft.stiffness.shape[0]
-    unit = np.zeros(size)
-    middle = 6 * shaft.node(0.5)
-    unit[middle] = 1.0
-    return float(solve(shaft.stiffness, unit, [0, 1, 2, 5, size - 6, size - 5])[middle])
-
-
 def central_sag_of_a_tie(rotor: Rotor) -> float:
     """L / 4P − tanh(k L / 2) / 2Pk, k² = P / EI, of a tie-rod without shear (Timoshenko, Strength of Materials II)."""
     (part,) = rotor.segments
@@ -437,21 +284,16 @@ def central_sag_of_a_tie(rotor: Rotor) -> float:
 
 
 @pytest.mark.parametrize(
-    ("stations", "stiffened", "message"),
+    ("stations", "message"),
     [
-        ([], [], "no stations"),
-        ([0.1, 0.8], [], r"station position is 0\.8; expected a place on the shaft"),
-        ([math.nan], [], "station position is nan"),
-        ([0.1], [(0.3, 0.9, 0.05, 0.05)], r"stiffened interval position is 0\.9"),
-        ([0.1], [(0.3, 0.2, 0.05, 0.05)], "left end before its right end"),
-        ([0.1], [(0.2, 0.3, -0.05, 0.05)], "stiffened outer diameter is -0.05; expected a positive number"),
+        ([], "no stations"),
+        ([0.1, 0.8], r"station position is 0\.8; expected a place on the shaft"),
+        ([math.nan], "station position is nan"),
     ],
 )
-def test_bad_input_is_refused(
-    stations: list[float], stiffened: list[tuple[float, float, float, float]], message: str
-) -> None:
+def test_bad_input_is_refused(stations: list[float], message: str) -> None:
     with pytest.raises(RotorError, match=message):
-        static_shaft(Rotor("shaft", STEPS), stations, stiffened=stiffened)
+        static_shaft(Rotor("shaft", STEPS), stations)
 
 
 def test_a_place_that_is_no_node_and_a_wrong_gravity_are_refused() -> None:

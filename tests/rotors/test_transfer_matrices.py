@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from rotors.model.material import ShaftMaterial
+from rotors.model.profile import BENDING, restricted, shaft_profile
 from rotors.model.segment import Segment
-from rotors.model.shaft import BENDING, restricted, stiffness_profile
 from rotors.transfer_matrix.timoshenko import ShaftElements
 
 # 1/κGA, 1/EI, ρA, ρI of a short fat steel bar in units of its own length and stiffness.
@@ -105,7 +105,7 @@ def cone_coefficients(cone: Segment, fraction: float) -> np.ndarray:
 
 @pytest.mark.parametrize("cone", CONES)
 def test_cone_is_the_integral_of_its_equation(cone: Segment) -> None:
-    profile = stiffness_profile([cone], np.array([0.0, cone.length]))
+    profile = shaft_profile([cone], np.array([0.0, cone.length]))
     # Units in which the states are of one size: EI and length of the cone's left end.
     force = 207e9 * cone.section(0.0).second_moment / cone.length**2
     units = np.array([force, force * cone.length**2, cone.length**2 / force, 1 / force, 1.0, 1 / force])
@@ -128,7 +128,7 @@ def test_cone_is_the_integral_of_its_equation(cone: Segment) -> None:
 
 @pytest.mark.parametrize("cone", CONES)
 def test_profile_of_a_cone_is_its_sections(cone: Segment) -> None:
-    profile = stiffness_profile([cone], np.array([0.0, cone.length]))
+    profile = shaft_profile([cone], np.array([0.0, cone.length]))
     for span, (left, right) in enumerate(zip(profile.edges[:-1], profile.edges[1:], strict=True)):
         for fraction in (0.0, 0.21, 0.5, 0.93, 1.0):
             found = np.polynomial.polynomial.polyval(2 * fraction - 1, profile.coefficients[profile.kind[span]].T)
@@ -144,7 +144,7 @@ def test_profile_of_a_cone_is_its_sections(cone: Segment) -> None:
 
 def test_transfer_to_a_fraction_of_a_piece_leads_on_to_its_end() -> None:
     # T(1) = T of the rest · T(f), the rest being a piece of its own.
-    cone = stiffness_profile([CONES[0]], np.array([0.0, CONES[0].length]))
+    cone = shaft_profile([CONES[0]], np.array([0.0, CONES[0].length]))
     given = cone.coefficients[:1, BENDING]
     table = ShaftElements(np.ones(1), given)
     rest = ShaftElements(np.array([0.6]), restricted(given, np.array([0.4]), np.array([0.6])))

@@ -328,7 +328,8 @@ def test_the_wind_up_of_a_pinion(monkeypatch: pytest.MonkeyPatch, torque_at: flo
     The torque q r_b (b/2 -+ z) twists it along a parabola; by least squares the line through r_b theta over the face
     has its slope in the middle, F r_b² / 2 G J. The end where the torque leaves the shaft lags.
     """
-    monkeypatch.setattr("coupling.gears.geometry.toothed_section._END_LENGTH", 0.0)
+    for length in ("_END_LENGTH", "_SPREAD_BENDING", "_SPREAD_TORSION"):
+        monkeypatch.setattr(f"coupling.gears.geometry.toothed_section.{length}", 0.0)
     width = 40e-3
     machine = overhung(width, torque_at)
     beside = [

@@ -105,8 +105,9 @@ def test_a_slender_pinion_between_its_bearings(published: Published, remark: Rem
 
 @pytest.fixture
 def endless(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Teeth that are as stiff at the ends of the face as within, as the closed forms have them."""
-    monkeypatch.setattr("coupling.gears.geometry.toothed_section._END_LENGTH", 0.0)
+    """Gears that are as stiff at the ends of the face as within, as the closed forms have them."""
+    for length in ("_END_LENGTH", "_SPREAD_BENDING", "_SPREAD_TORSION"):
+        monkeypatch.setattr(f"coupling.gears.geometry.toothed_section.{length}", 0.0)
 
 
 def twisted(stiffness: float) -> tuple[PairLoad, float]:

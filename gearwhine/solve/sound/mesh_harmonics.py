@@ -87,7 +87,7 @@ def loudest_lines(
     Raises
     ------
     housing.HousingError
-        Where the powers of a line through the surface and in the far field differ by more than 10 %.
+        Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     responses = [one for one in model.responses(limit) if one.frequency >= _TWO_PI * AUDIBLE]
     if chosen is None:
@@ -102,7 +102,7 @@ def loudest_lines(
             found.append(HarmonicSound(model.line(output, one), power))
     found.sort(key=lambda one: -one.weighting * one.line.value)
     for loud in found[:LINES]:
-        loud.sound.require_balance()
+        loud.sound.require_proofs()
     return tuple(found[:LINES])
 
 

@@ -48,11 +48,18 @@ class MicrophoneHistories:
         [Pa].
     error : float
         Of the transfer's interpolation, see :attr:`housing.acoustics.modal_radiation.ModalRadiation.pressure_error`.
+    source_errors : ndarray, shape (n_microphones,)
+        Largest error of known sources over the transfer's frequencies, see
+        :attr:`housing.acoustics.modal_radiation.ModalRadiation.point_source_error`.
+    source_frequency_hz : float
+        Of the largest of them all.
     """
 
     times: FloatArray
     pressure: FloatArray
     error: float
+    source_errors: FloatArray
+    source_frequency_hz: float
 
 
 def microphone_histories(
@@ -97,7 +104,13 @@ def microphone_histories(
         rates = paths.acceleration.sum(axis=1) / (1j * omega[:, None])
         sound[some] = (transfer.pressure_at(lines[some]) @ rates[..., None])[..., 0]
     pressure = np.fft.irfft(sound, length, axis=0)[: len(times)] * weights[:, None]
-    return MicrophoneHistories(np.asarray(times), np.ascontiguousarray(pressure.T), transfer.pressure_error)
+    return MicrophoneHistories(
+        np.asarray(times),
+        np.ascontiguousarray(pressure.T),
+        transfer.pressure_error,
+        transfer.point_source_error.max(axis=0),
+        float(transfer.frequencies[transfer.point_source_error.max(axis=1).argmax()]),
+    )
 
 
 def fading_weights(count: int, interval: float) -> FloatArray:

@@ -1,14 +1,20 @@
-"""Proofs of a sound as they are told: power through the surface over that in the far field, and the pressure inside."""
+"""Proofs of a sound as they are told: power by two ways, the pressure inside, and the error of known sources inside."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from gearwhine.output.quantity import warning
 from housing.acoustics.boundary_elements import SoundField
-from housing.acoustics.radiation import EquivalentField, RadiatedSound, require_balances
+from housing.acoustics.known_source import SourceError
+from housing.acoustics.radiation import SOURCE_HEARD, EquivalentField, RadiatedSound, require_proved
 from housing.acoustics.sound_levels import power_level
+
+FloatArray = npt.NDArray[np.float64]
+
+_GATHERED = ("known_source", "microphone_known_source")
 
 
 def power_balance_db(sound: RadiatedSound) -> float | None:
@@ -20,22 +26,80 @@ def power_balance_db(sound: RadiatedSound) -> float | None:
 
 def interior_pressure(sound: RadiatedSound) -> float | None:
     """Pressure inside relative to that on the surface, where zero is exact; None where there is no such proof."""
-    closed = any(isinstance(one, SoundField) and not one.baffled for one in sound.fields)
-    return sound.interior_residual if closed and np.isfinite(sound.interior_residual) else None
+    return sound.interior_residual if _is_closed(sound) and np.isfinite(sound.interior_residual) else None
+
+
+def known_source(sound: RadiatedSound) -> SourceError | None:
+    """Error of the pressure of known sources inside, at the vertices; None where there is no such proof."""
+    return sound.source_error if _is_closed(sound) and np.isfinite(sound.source_error.largest) else None
+
+
+def known_source_at(sound: RadiatedSound, places: FloatArray) -> FloatArray | None:
+    """Error of known sources at microphones, shape (m,); None without microphones, or where there is no such proof.
+
+    Parameters
+    ----------
+    sound : RadiatedSound
+    places : ndarray, shape (m, 3)
+        [m]
+    """
+    return None if not len(places) or known_source(sound) is None else sound.source_error_at(places)
+
+
+def _is_closed(sound: RadiatedSound) -> bool:
+    return any(isinstance(one, SoundField) and not one.baffled for one in sound.fields)
 
 
 def doubts(sound: RadiatedSound, what: str) -> list[dict[str, Any]]:
-    """Return a warning where the pressure inside does not prove the sound of a line or a mode."""
-    if sound.doubt is None:
+    """Return warnings where the pressure inside or known sources do not prove the sound of a line or a mode."""
+    found = []
+    error = known_source(sound)
+    for name, doubt, figures in (
+        ("interior_pressure", sound.doubt, {"relative": interior_pressure(sound)}),
+        ("known_source", sound.source_doubt, {"relative": None if error is None else error.largest}),
+    ):
+        if doubt is not None:
+            message = f"the sound of {what} at {sound.frequency_hz:.1f} Hz is doubtful: {doubt}"
+            found.append(warning(name, message, frequency_hz=sound.frequency_hz, **figures))
+    return found
+
+
+def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[dict[str, Any]]:
+    """Return a warning where the pressure at a microphone is doubtful, since that of a known source is.
+
+    Parameters
+    ----------
+    frequency_hz : float
+    errors : mapping of str to float
+        Relative error of known sources at each microphone; of several the largest is told.
+    """
+    name = max(errors, key=lambda one: errors[one], default=None)
+    if name is None or not SOURCE_HEARD < errors[name] < np.inf:
         return []
-    return [
-        warning(
-            "interior_pressure",
-            f"the sound of {what} at {sound.frequency_hz:.1f} Hz is doubtful: {sound.doubt}",
-            frequency_hz=sound.frequency_hz,
-            relative=interior_pressure(sound),
-        )
-    ]
+    message = (
+        f"the sound pressure at microphone {name!r} at {frequency_hz:.1f} Hz is doubtful: that of a known source "
+        f"inside the radiating surface is off by {100.0 * errors[name]:.2g} % there; use smaller triangles"
+    )
+    return [warning("microphone_known_source", message, frequency_hz=frequency_hz, relative=errors[name])]
+
+
+def gathered(told: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Keep the worst of the warnings of known sources, with the number of the others: they belong to frequencies alone.
+
+    Parameters
+    ----------
+    told : sequence of dict
+        Warnings of any kind, of which the others stay as they are.
+    """
+    found = [one for one in told if one["name"] not in _GATHERED]
+    for name in _GATHERED:
+        alike = [one for one in told if one["name"] == name]
+        if alike:
+            worst = max(alike, key=lambda one: np.inf if one["relative"] is None else float(one["relative"]))
+            others = len(alike) - 1
+            more = f" ({others} more {'is' if others == 1 else 'are'} doubtful, too)" if others else ""
+            found.append(worst | {"message": worst["message"] + more, "count": len(alike)})
+    return found
 
 
 def require_proofs(
@@ -49,7 +113,7 @@ def require_proofs(
     what : str
         Makes the sound, in words.
     alone : bool
-        As in :func:`housing.acoustics.radiation.require_balances`.
+        As in :func:`housing.acoustics.radiation.require_proved`.
 
     Returns
     -------
@@ -59,6 +123,6 @@ def require_proofs(
     Raises
     ------
     housing.HousingError
-        As :func:`housing.acoustics.radiation.require_balances`.
+        As :func:`housing.acoustics.radiation.require_proved`.
     """
-    return [told for sound in require_balances(sounds, alone=alone) for told in doubts(sound, what)]
+    return [told for sound in require_proved(sounds, alone=alone) for told in doubts(sound, what)]

@@ -28,7 +28,15 @@ from gearwhine.solve.sound.motion_lines import (
     loud_lines,
     pulsating_efficiency,
 )
-from gearwhine.solve.sound.proofs import interior_pressure, power_balance_db, require_proofs
+from gearwhine.solve.sound.proofs import (
+    gathered,
+    interior_pressure,
+    known_source,
+    known_source_at,
+    microphone_doubts,
+    power_balance_db,
+    require_proofs,
+)
 from gearwhine.solve.sound.radiating_surface import (
     acoustics_warnings,
     flat_face,
@@ -39,6 +47,7 @@ from gearwhine.solve.sound.radiating_surface import (
 )
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
+from housing.acoustics.known_source import SourceError
 from housing.acoustics.medium import Medium
 from housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
 from housing.acoustics.sound_levels import (
@@ -71,6 +80,8 @@ class SoundLine:
     sound : RadiatedSound
     microphones : ndarray of complex, shape (n_microphones,)
         Sound pressure [Pa].
+    microphone_errors : ndarray or None, shape (n_microphones,)
+        Error of known sources there, see :func:`gearwhine.solve.sound.proofs.known_source_at`.
     """
 
     frequency_hz: float
@@ -78,6 +89,7 @@ class SoundLine:
     order: float
     sound: RadiatedSound
     microphones: ComplexArray
+    microphone_errors: FloatArray | None = None
 
     @property
     def level_db(self) -> float:
@@ -105,6 +117,11 @@ class SoundLine:
         """Proof, see :func:`gearwhine.solve.sound.proofs.interior_pressure`."""
         return interior_pressure(self.sound)
 
+    @property
+    def known_source(self) -> SourceError | None:
+        """Proof, see :func:`gearwhine.solve.sound.proofs.known_source`."""
+        return known_source(self.sound)
+
 
 @dataclass(frozen=True)
 class ModeSound:
@@ -121,6 +138,8 @@ class ModeSound:
         Part of each face in the power.
     power_balance_db, interior_pressure : float or None
         Proofs, see :func:`power_balance_db` and :func:`interior_pressure`.
+    known_source : SourceError or None
+        Proof, see :func:`known_source`.
     """
 
     number: int
@@ -129,6 +148,7 @@ class ModeSound:
     by_face: dict[str, float]
     power_balance_db: float | None = None
     interior_pressure: float | None = None
+    known_source: SourceError | None = None
 
 
 @dataclass(frozen=True)
@@ -233,6 +253,24 @@ class SolvedSound:
         return max(found, default=None)
 
     @property
+    def known_source(self) -> SourceError | None:
+        """Error of known sources, of the line or mode where it is largest, of those that count; None without one."""
+        found = [one.known_source for one in self._counted if one.known_source is not None]
+        return max(found, key=lambda error: error.largest, default=None)
+
+    @property
+    def microphone_errors(self) -> dict[str, float]:
+        """Error of known sources at each microphone, the largest of all lines and of the sound over time.
+
+        Empty where there is no such proof.
+        """
+        found = [line.microphone_errors for line in self.lines if line.microphone_errors is not None]
+        if self.histories is not None and self.radiation.method == "boundary-elements":
+            found.append(self.histories.source_errors)
+        worst = np.max(found, axis=0).tolist() if found else []
+        return {name: error for name, error in zip(self.microphones, worst, strict=bool(found)) if np.isfinite(error)}
+
+    @property
     def _counted(self) -> "list[SoundLine | ModeSound]":
         counted = {id(sound) for sound in counting([line.sound for line in self.lines])}
         lines = [line for line in self.lines if id(line.sound) in counted]
@@ -250,7 +288,20 @@ class SolvedSound:
                     relative=self.histories.error,
                 )
             )
-        return found
+        return gathered([*found, *self._microphone_doubts()])
+
+    def _microphone_doubts(self) -> list[dict[str, Any]]:
+        """Warnings of microphones at which known sources are off, of lines that count and of the sound over time."""
+        counted = {id(sound) for sound in counting([line.sound for line in self.lines])}
+        told: list[dict[str, Any]] = []
+        for line in self.lines:
+            if line.microphone_errors is not None and id(line.sound) in counted:
+                errors = dict(zip(self.microphones, line.microphone_errors.tolist(), strict=True))
+                told += microphone_doubts(line.frequency_hz, errors)
+        if self.histories is not None and self.radiation.method == "boundary-elements":
+            errors = dict(zip(self.microphones, self.histories.source_errors.tolist(), strict=True))
+            told += microphone_doubts(self.histories.source_frequency_hz, errors)
+        return told
 
 
 def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = silent) -> HousingRadiation:
@@ -327,7 +378,7 @@ def solve_sound(
     CaseError
         Where the radiating surface cannot be made, or a microphone is inside it or under the floor.
     housing.HousingError
-        Where a solution's powers through the surface and in the far field differ by more than 10 %.
+        Where a solution fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     assert case.acoustics is not None
     radiation = build_radiation(case, housing, progress)
@@ -346,7 +397,7 @@ def solve_sound(
         sound = radiation.solve(hertz, rates)
         power = sound.power
         shares = {face: part / power for face, part in sound.by_face.items()} if power > 0.0 else {}
-        proofs = power_balance_db(sound), interior_pressure(sound)
+        proofs = power_balance_db(sound), interior_pressure(sound), known_source(sound)
         return ModeSound(number + 1, hertz, sound.radiation_efficiency, shares, *proofs), sound
 
     numbers = [n for n, hz in enumerate(housing.modes.frequencies_hz) if 1.0 < hz <= limit]
@@ -372,7 +423,7 @@ def solve_sound(
         number, hertz = chosen[place], float(motion.frequencies[chosen[place]])
         sound = radiation.solve(hertz, rates[number].T)
         heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
-        return SoundLine(hertz, names[place].name, names[place].order, sound, heard)
+        return SoundLine(hertz, names[place].name, names[place].order, sound, heard, known_source_at(sound, places))
 
     lines = in_order(of_line, range(len(chosen)), "sound of the lines", progress)
     told += require_proofs([line.sound for line in lines])

@@ -1,6 +1,6 @@
 """Radiation of modes over frequency: interpolated power and pressure against solutions, and against a sphere's."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -92,19 +92,36 @@ def test_a_weak_radiator_has_a_large_estimate(table):
 
 
 def test_arrays_hold_the_table_bit_for_bit(table):
-    for given in (table, replace(table, pressure=table.pressure[:, :0], delays=table.delays[:0])):
+    nowhere = {"pressure": table.pressure[:, :0], "delays": table.delays[:0]}
+    nowhere["point_source_error"] = table.point_source_error[:, :0]
+    for given in (table, replace(table, **nowhere)):
         again = ModalRadiation.of_arrays(given.arrays())
-        assert tuple(given.arrays()) == ARRAYS[: 7 if len(given.delays) else 5]
-        for name in (
-            "frequencies",
-            "resistance",
-            "surface_resistance",
-            "surface_reactance",
-            "pressure",
-            "delays",
-            "interior_residual",
-        ):
-            np.testing.assert_array_equal(getattr(again, name), getattr(given, name))
+        assert tuple(given.arrays()) == ARRAYS[: 10 if len(given.delays) else 7]
+        for one in fields(ModalRadiation):
+            np.testing.assert_array_equal(getattr(again, one.name), getattr(given, one.name))
+    # A table of an earlier version lacks the error of known sources.
+    earlier = table.arrays()
+    del earlier["radiation_source_error"]
+    with pytest.raises(KeyError, match="radiation_source_error"):
+        ModalRadiation.of_arrays(earlier)
+
+
+def test_a_table_holds_the_error_of_known_sources_of_each_solution(radiation, table):
+    rates = np.array([1.0, 0.0, 0.0])
+    for place in (0, 8, 16):
+        hertz = float(table.frequencies[place])
+        solved = radiation.solve(hertz, rates)
+        error = solved.source_error
+        assert (table.source_error[place], table.source_rms[place]) == pytest.approx((error.largest, error.rms))
+        assert table.point_source_error[place] == pytest.approx(solved.source_error_at(PLACES), rel=1e-6)
+    falling = np.arange(len(table.frequencies), 0.0, -1.0)
+    middle = 0.5 * (table.frequencies[3] + table.frequencies[4])
+    assert (table.around(middle, falling), table.around(middle, falling[::-1])) == (falling[3], falling[::-1][4])
+    assert (table.around(LOWEST, falling), table.around(HIGHEST, falling[::-1])) == (falling[0], falling[0])
+    assert table.around(middle, np.zeros((len(falling), 0))) == 0.0  # without points
+    # With the frequency on the same triangles: from the linear functions' own error to that of short waves.
+    assert 0.0 < table.source_error[0] < 0.5 * table.source_error[-1] < 0.3
+    assert 0.0 < table.point_source_error.max() < 0.05
 
 
 def test_what_the_table_does_not_hold_is_refused(radiation, table):

@@ -10,9 +10,10 @@ from scipy.special import j1
 
 from housing.acoustics import boundary_elements
 from housing.acoustics.boundary_elements import BoundaryElements
+from housing.acoustics.known_source import NO_SOURCE, NOTHING_TO_PROVE, SourceError
 from housing.acoustics.medium import HardPlane, Medium
 from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.radiation import HousingRadiation, RadiatedSound, require_balances
+from housing.acoustics.radiation import HousingRadiation, RadiatedSound, require_proved
 from housing.errors import HousingError, TriangleSizeError
 from meshes import Mesh
 from tests.housing.acoustics.surfaces import at_corners, box, disc, rectangle
@@ -120,6 +121,7 @@ class Powers:
     through: float
     far: float
     interior_residual: float = 0.0
+    source_error: SourceError = NOTHING_TO_PROVE
 
     @property
     def surface(self) -> Any:
@@ -138,26 +140,27 @@ class Powers:
         return np.full((1, 1), 2.0 * self.through)
 
 
-def sound(through: float, far: float, leak: float = 0.0) -> RadiatedSound:
-    return RadiatedSound(100.0, UNIT, (Powers(through, far, leak),), (), np.ones((1, 1)), ())  # type: ignore[arg-type]
+def sound(through: float, far: float, leak: float = 0.0, source: SourceError = NOTHING_TO_PROVE) -> RadiatedSound:
+    field: Any = Powers(through, far, leak, source)
+    return RadiatedSound(100.0, UNIT, (field,), (), np.ones((1, 1)), ())
 
 
 def test_sounds_that_count_have_to_balance():
     loud, faint = sound(1.05, 1.0), sound(3e-5, 1e-5)
     assert sound(1.0, 1.0).radiation_efficiency == pytest.approx(0.5)
-    assert require_balances([loud, faint]) == [loud]
-    assert require_balances([loud, faint], alone=True) == [loud]
+    assert require_proved([loud, faint]) == [loud]
+    assert require_proved([loud, faint], alone=True) == [loud]
     with pytest.raises(
         HousingError, match=r"at 100\.0 Hz the sound power is 0\.0011 W through the surface and 0\.001 W"
     ):
-        require_balances([loud, sound(0.0011001, 0.001)])
+        require_proved([loud, sound(0.0011001, 0.001)])
     # A line whose far field hides what its surface claims.
     with pytest.raises(HousingError, match="expected a difference of at most 10 %"):
-        require_balances([loud, sound(0.1, 1e-6)])
+        require_proved([loud, sound(0.1, 1e-6)])
     weak = sound(0.0004, 0.0003)  # an efficiency of 1.5e-4
     with pytest.raises(HousingError, match=r"0\.0003 W in the far field"):
-        require_balances([weak], alone=True)
-    assert len(require_balances([sound(9.0, 9.0), weak])) == 1  # 4e-5 of the whole power
+        require_proved([weak], alone=True)
+    assert len(require_proved([sound(9.0, 9.0), weak])) == 1  # 4e-5 of the whole power
 
 
 def test_a_pressure_inside_is_doubted():
@@ -166,6 +169,32 @@ def test_a_pressure_inside_is_doubted():
         "the pressure inside the radiating surface is 23 % of that on it, where zero is exact; use smaller triangles"
     )
     assert sound(1.0, 1.0, np.inf).interior_residual == np.inf
+
+
+def off(error: float) -> SourceError:
+    return SourceError(error, 0.1 * error, (0.1, -0.02, 0.25))
+
+
+def test_a_known_source_that_is_off_is_doubted_and_one_that_is_lost_refused():
+    assert sound(1.0, 1.0).source_doubt is None
+    assert sound(1.0, 1.0, source=off(0.99)).source_doubt is None
+    doubted = sound(1.0, 1.0, source=off(1.02))
+    assert doubted.source_doubt == (
+        "the pressure of a known source inside is off by 102 % at the vertex (100, -20, 250) mm of the radiating "
+        "surface; use triangles of another size, best smaller ones"
+    )
+    assert require_proved([doubted]) == [doubted]
+    lost = sound(1.0, 1.0, source=off(5.1))
+    with pytest.raises(HousingError, match=r"at 100\.0 Hz the pressure of .* off by 510 % .*; expected at most 500 %"):
+        require_proved([lost])
+    loud = sound(1e6, 1e6)
+    assert require_proved([loud, lost]) == [loud]  # the lost one is too weak to count
+    unproved = sound(1.0, 1.0, source=NO_SOURCE)
+    assert unproved.source_doubt == (
+        "no place inside the radiating surface is far enough from its triangles for a known source"
+    )
+    assert require_proved([unproved]) == [unproved]
+    assert sound(1.0, 1.0, np.inf, NO_SOURCE).source_doubt is None  # the missing points inside are told
 
 
 def test_residual_modes_need_not_be_carried(block: Callable[..., Mesh]):

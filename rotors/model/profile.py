@@ -1,0 +1,313 @@
+"""Profile of a shaft: its stiffness and inertia along the axis.
+
+Stiffness and inertia along the shaft enter the transfer matrices as piecewise polynomials. A cylinder or a coupling has
+constants. Along a cone 1/EI, 1/κGA and their like are rational functions; each is interpolated at Chebyshev points, and
+the cone halved until the last coefficients of every interpolant are rounding. The interpolants converge geometrically,
+at a rate set by how far beyond its interval the nearest pole lies (the apex of a cone, or the place where a bore would
+meet the surface), so this takes an interval for every change of a diameter by about a third.
+
+Rotor dynamics tells apart the diameter that has the mass of a section and the one that has its stiffness (API 684,
+*mass diameter* and *stiffness diameter*): a gear in one piece with its shaft stiffens it, while a disc has its mass.
+"""
+
+from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from rotors.errors import RotorError, require, require_finite
+from rotors.model.segment import Coupling, Segment
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+DEGREE = 16
+TAIL = 2e-15
+ROUNDING = 2e-15
+MOST_HALVINGS = 40
+
+_ANGLES = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
+_FRACTIONS = 0.5 * (1.0 + np.cos(_ANGLES))
+# Values at the Chebyshev points to coefficients of T_0, T_1, ...; and from these to those of 1, s, s², ...
+_TO_CHEBYSHEV = 2.0 / (DEGREE + 1) * np.cos(np.outer(np.arange(DEGREE + 1), _ANGLES))
+_TO_CHEBYSHEV[0] *= 0.5
+_TO_POWERS = np.zeros((DEGREE + 1, DEGREE + 1))
+for _row in range(DEGREE + 1):
+    _TO_POWERS[_row, : _row + 1] = np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[_row, : _row + 1])
+
+# Two positions closer than this fraction of the rotor's length are one station: sums of printed segment lengths differ
+# from printed positions by rounding alone.
+STATION_TOLERANCE = 1e-9
+
+# Rows of a table of coefficients: six of bending, two of torsion, two of the axial rod.
+BENDING, TORSION, AXIAL = slice(0, 6), slice(6, 8), slice(8, 10)
+# Of these, the inertias: ρA and ρI of bending, ρJ, ρA of the rod.
+INERTIAS = [2, 3, 7, 9]
+
+
+@dataclass(frozen=True)
+class StiffnessDiameter:
+    """A length of shaft that is at least this thick against deformation, while its mass is that of its segments.
+
+    It stands for a body in one piece with the shaft whose mass is elsewhere, such as a pinion given as a disc. Where
+    several lie over each other, the thickest counts; one thinner than its segment, or over a coupling, has no effect.
+
+    Parameters
+    ----------
+    left, right
+        Ends, m from the rotor's left end.
+    bending, torsion
+        Outer diameter in bending, shear and tension, and in torsion, m; 0 leaves the shaft as it is.
+    """
+
+    left: float
+    right: float
+    bending: float
+    torsion: float
+
+    def __post_init__(self) -> None:
+        """Check the order of the ends and the diameters."""
+        require(self.left < self.right, "stiffness diameter", (self.left, self.right), "its left end before its right")
+        require_finite("stiffness diameter in bending", self.bending, minimum=0.0)
+        require_finite("stiffness diameter in torsion", self.torsion, minimum=0.0)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A shaft as spans of uniform or mildly tapering section; equal spans share one kind.
+
+    Attributes
+    ----------
+    edges
+        (s + 1,): ends of the spans, m from the left end; all joints are among them.
+    lengths
+        (s,): m, of whole segments exactly as given, so that equal segments are equal here.
+    kind
+        (s,): index of each span's kind.
+    coefficients
+        (k, 10, j): of every kind, SI, the coefficients of 1, s, s², ... with s from −1 to 1 along the span: in
+        bending 1/(κGA + P), 1/EI, ρA, ρI, g, g P (`rotors.transfer_matrix.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
+    extremes
+        (k, 5): least κGA and EI, largest ρA and ρI, axial force P.
+    uniform
+        (k,).
+    """
+
+    edges: FloatArray
+    lengths: FloatArray
+    kind: IntArray
+    coefficients: FloatArray
+    extremes: FloatArray
+    uniform: npt.NDArray[np.bool_]
+
+    @cached_property
+    def mean_bending_stiffness(self) -> float:
+        """Geometric mean of the spans' least EI, N·m²."""
+        return float(np.exp(np.log(self.extremes[self.kind, 1]).mean()))
+
+    def spans(self, nodes: FloatArray) -> IntArray:
+        """Span that holds each interval between nodes (p + 1,), which hold the edges; (p,)."""
+        middles = 0.5 * (nodes[1:] + nodes[:-1])
+        return np.clip(np.searchsorted(self.edges, middles) - 1, 0, self.kind.size - 1)
+
+    def between(self, nodes: FloatArray) -> FloatArray:
+        """Coefficients (p, 10, j) of the intervals between nodes (p + 1,), which hold the edges."""
+        span = self.spans(nodes)
+        width = np.diff(self.edges)[span]
+        start, part = (nodes[:-1] - self.edges[span]) / width, np.diff(nodes) / width
+        return restricted(self.coefficients[self.kind[span]], 2.0 * start + part - 1.0, part)
+
+
+def shaft_profile(
+    parts: Sequence[Segment | Coupling], joints: FloatArray, stiff: Sequence[StiffnessDiameter] = ()
+) -> Profile:
+    """Profile of segments and couplings between joints (parts + 1,), m, with stiffness diameters."""
+    own = _profile_of(parts, joints)
+    if not stiff:
+        return own
+    bent = _profile_of(*_thickened(parts, joints, [(one.left, one.right, one.bending) for one in stiff]))
+    twisted = _profile_of(*_thickened(parts, joints, [(one.left, one.right, one.torsion) for one in stiff]))
+
+    edges = merged_positions(own.edges, [*bent.edges.tolist(), *twisted.edges.tolist()])
+    spans = np.column_stack([profile.spans(edges) for profile in (own, bent, twisted)])
+    kinds = np.column_stack([profile.kind[span] for profile, span in zip((own, bent, twisted), spans.T, strict=True)])
+    uniform = own.uniform[kinds[:, 0]] & bent.uniform[kinds[:, 1]] & twisted.uniform[kinds[:, 2]]
+    # A tapering interval is a kind of its own.
+    keys = np.column_stack([kinds, np.where(uniform, -1, np.arange(uniform.size))])
+    _, first, kind = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+
+    coefficients = np.zeros((edges.size - 1, 10, max(one.coefficients.shape[2] for one in (own, bent, twisted))))
+    for profile, rows in ((bent, BENDING), (bent, AXIAL), (twisted, TORSION), (own, INERTIAS)):
+        given = profile.between(edges)[:, rows]
+        coefficients[:, rows, : given.shape[2]] = given
+        coefficients[:, rows, given.shape[2] :] = 0.0
+    extremes = np.column_stack([bent.extremes[kinds[:, 1], :2], own.extremes[kinds[:, 0], 2:]])
+    whole = (edges[:-1] == own.edges[spans[:, 0]]) & (edges[1:] == own.edges[spans[:, 0] + 1])
+    return Profile(
+        edges=edges,
+        lengths=np.where(whole, own.lengths[spans[:, 0]], np.diff(edges)),
+        kind=kind.reshape(-1).astype(np.intp),
+        coefficients=coefficients[first],
+        extremes=extremes[first],
+        uniform=uniform[first],
+    )
+
+
+def _thickened(
+    parts: Sequence[Segment | Coupling], joints: FloatArray, stiff: Sequence[tuple[float, float, float]]
+) -> tuple[list[Segment | Coupling], FloatArray]:
+    """Parts and joints of the shaft with at least the outer diameters given over intervals (left, right, outer)."""
+    places = [end for left, right, _ in stiff for end in (left, right)]
+    for part, start in zip(parts, joints[:-1].tolist(), strict=True):
+        if isinstance(part, Segment):
+            (first, _), (last, _) = part.end_diameters
+            crossed = [outer for *_, outer in stiff if min(first, last) < outer < max(first, last)]
+            places += [start + part.length * (outer - first) / (last - first) for outer in crossed]
+    ends = merged_positions(joints, places)
+    pieces: list[Segment | Coupling] = []
+    for start, end in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True):
+        middle = 0.5 * (start + end)
+        index = int(np.searchsorted(joints, middle)) - 1
+        part, origin = parts[index], float(joints[index])
+        thickest = max((outer for left, right, outer in stiff if left < middle < right), default=0.0)
+        if isinstance(part, Segment):
+            sections = [part.section((place - origin) / part.length) for place in (start, end)]
+            thicker = thickest > 0.5 * (sections[0].outer_diameter + sections[1].outer_diameter)
+            outers = [thickest if thicker else section.outer_diameter for section in sections]
+            part = replace(
+                part,
+                length=end - start,
+                outer_diameter=outers[0],
+                right_outer_diameter=outers[1],
+                inner_diameter=sections[0].inner_diameter,
+                right_inner_diameter=sections[1].inner_diameter,
+            )
+        pieces.append(part)
+    return pieces, ends
+
+
+def _profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:
+    kinds: dict[tuple[object, ...], int] = {}
+    tables: list[tuple[FloatArray, FloatArray]] = []
+    edges, lengths, kind = [float(joints[0])], [], []
+    for part, left, right in zip(parts, joints[:-1].tolist(), joints[1:].tolist(), strict=True):
+        if isinstance(part, Segment) and part.is_conical:
+            pieces = _taper(part, 0.0, 1.0, 0)
+        else:
+            key = _identity(part)
+            if key not in kinds:
+                kinds[key] = len(tables)
+                values = _coupling_values(part) if isinstance(part, Coupling) else _segment_values(part, 0.5)
+                tables.append((values[0][:, None], values[1]))
+            edges.append(right)
+            lengths.append(part.length)
+            kind.append(kinds[key])
+            continue
+        for start, end, powers, extremes in pieces:
+            kind.append(len(tables))
+            tables.append((powers, extremes))
+            edges.append(left + end * (right - left) if end < 1.0 else right)
+            lengths.append((end - start) * part.length)
+    order = max(powers.shape[1] for powers, _ in tables)
+    coefficients = np.zeros((len(tables), 10, order))
+    for row, (powers, _) in enumerate(tables):
+        coefficients[row, :, : powers.shape[1]] = powers
+    return Profile(
+        edges=np.array(edges),
+        lengths=np.array(lengths),
+        kind=np.array(kind, dtype=np.intp),
+        coefficients=coefficients,
+        extremes=np.array([extremes for _, extremes in tables]),
+        uniform=np.array([powers.shape[1] == 1 for powers, _ in tables]),
+    )
+
+
+def restricted(coefficients: FloatArray, centre: FloatArray, half: FloatArray) -> FloatArray:
+    """Polynomials over parts of their spans: p(centre + half · s), for (e, f, j) and (e,) each."""
+    order = coefficients.shape[2]
+    if order == 1:
+        return coefficients
+    # Horner's rule on polynomials: the result grows by one factor (centre + half s) at a time.
+    result = np.zeros_like(coefficients)
+    middle, reach = centre[:, None, None], half[:, None, None]
+    for k in range(order - 1, -1, -1):
+        raised = middle * result
+        raised[:, :, 1:] += reach * result[:, :, :-1]
+        raised[:, :, 0] += coefficients[:, :, k]
+        result = raised
+    return result
+
+
+def _identity(part: Segment | Coupling) -> tuple[object, ...]:
+    """Key that two uniform parts of one section share, whatever their lengths."""
+    if isinstance(part, Coupling):
+        stiffnesses = (part.lateral_stiffness, part.tilt_stiffness, part.torsional_stiffness, part.axial_stiffness)
+        return (part.length, *stiffnesses)
+    return (part.outer_diameter, part.inner_diameter, part.material, part.shear_coefficient, part.axial_force)
+
+
+def _segment_values(part: Segment, fraction: float) -> tuple[FloatArray, FloatArray]:
+    """Return the ten coefficients of a cross-section, and its κGA, EI, ρA, ρI and axial force."""
+    section, force = part.section(fraction), part.axial_force
+    shear, bending = section.shear_stiffness, section.bending_stiffness
+    mass, polar = section.mass_per_length, section.polar_inertia_per_length
+    expected = f"a compression below half of its shear stiffness, {0.5 * shear:g} N"
+    require(-2.0 * force < shear, "segment axial_force", force, expected)
+    share = shear / (shear + force)
+    bent = [1.0 / (shear + force), 1.0 / bending, mass, 0.5 * polar, share, share * force]
+    rods = [1.0 / section.torsional_stiffness, polar, 1.0 / section.axial_stiffness, mass]
+    return np.array(bent + rods), np.array([shear, bending, mass, 0.5 * polar, force])
+
+
+def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
+    """Return the values of `_segment_values` for a coupling: massless, its compliances spread over its length."""
+    shear, bending = part.lateral_stiffness * part.length, part.tilt_stiffness * part.length
+    twist, stretch = part.torsional_stiffness * part.length, part.axial_stiffness * part.length
+    values = [1.0 / shear, 1.0 / bending, 0.0, 0.0, 1.0, 0.0, 1.0 / twist, 0.0, 1.0 / stretch, 0.0]
+    return np.array(values), np.array([shear, bending, 0.0, 0.0, 0.0])
+
+
+def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
+    """Start and end (fractions of the cone), coefficients and extremes of intervals short enough to interpolate."""
+    fractions = [start + fraction * (end - start) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
+    samples = [_segment_values(part, fraction) for fraction in fractions]
+    values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
+    chebyshev = _TO_CHEBYSHEV @ values
+    # Towards a tip or a thin wall, the diameters themselves are rounded to a part of the largest.
+    walls = [part.section(fraction) for fraction in (start, end)]
+    thinnest = min(section.outer_diameter - section.inner_diameter for section in walls)
+    largest = max(outer for outer, _ in part.end_diameters)
+    tolerance = max(TAIL, ROUNDING * largest / thinnest) * np.abs(chebyshev).max(axis=0)
+    if not bool((np.abs(chebyshev[-2:]) <= tolerance).all()):
+        if halvings == MOST_HALVINGS:
+            raise RotorError(f"segment {part!r} tapers too sharply; expected diameters further from zero")
+        middle = 0.5 * (start + end)
+        return _taper(part, start, middle, halvings + 1) + _taper(part, middle, end, halvings + 1)
+    # Coefficients of the size of rounding are zero.
+    chebyshev[np.abs(chebyshev) < 0.1 * tolerance] = 0.0
+    extremes = np.array([*rows[:, :2].min(axis=0), *rows[:, 2:4].max(axis=0), part.axial_force])
+    return [(start, end, (chebyshev.T @ _TO_POWERS), extremes)]
+
+
+def merged_positions(joints: FloatArray, others: Sequence[float]) -> FloatArray:
+    """Joints and other positions, ascending; one that lies on a joint or another position is that one.
+
+    Parameters
+    ----------
+    joints
+        Ascending positions that stay exactly as they are, (n,), m.
+    others
+        Further positions on the shaft, m.
+    """
+    known = joints.tolist()
+    slack = STATION_TOLERANCE * known[-1]
+    kept: list[float] = []
+    for place in sorted(float(other) for other in others):
+        right = min(max(bisect_left(known, place), 1), len(known) - 1)
+        near = min(abs(place - known[right - 1]), abs(place - known[right])) <= slack
+        if not near and (not kept or place - kept[-1] > slack):
+            kept.append(place)
+    return np.sort(np.concatenate([joints, kept])) if kept else joints
