@@ -48,6 +48,7 @@ _UNFOLDINGS = 20
 _MENDINGS = 3  # rounds of mending badly shaped triangles
 _POOR = 0.55  # shape below which a triangle is mended: 1 of an equilateral one
 _SHORT = 0.6  # cells below which an edge may collapse
+_LONG = 1.7  # cells above which an edge is halved in the end
 _FLAT = 0.1  # cells that mending may move the surface; shape below which a triangle has no plane
 
 
@@ -302,7 +303,7 @@ def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[Flo
         points, triangles = _mended(points, triangles, skin.cell)
         for _ in range(3):
             points = _moved(points, triangles, skin, _REACH * skin.cell)
-    return _mended(_unfolded(points, triangles), triangles, skin.cell)
+    return _divided(*_mended(_unfolded(points, triangles), triangles, skin.cell), _LONG * skin.cell)
 
 
 def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) -> FloatArray:
@@ -395,6 +396,35 @@ def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[Float
     kept = np.array(corners)[alive]
     used, renumbered = np.unique(kept, return_inverse=True)
     return points[used], renumbered.reshape(-1, 3)
+
+
+def _divided(points: FloatArray, triangles: IntArray, longest: float) -> tuple[FloatArray, IntArray]:
+    """Halve edges that are longer than a length [m], longest first, without moving the surface.
+
+    The faces of ribs and plates that are a cell or two thick span them with one triangle however wide they are.
+    """
+    while True:
+        ends = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        edges, inverse = np.unique(ends, axis=0, return_inverse=True)
+        lengths = np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
+        if lengths.max() <= longest:
+            return points, triangles
+        sides = inverse.reshape(-1, 3)  # edge i of a triangle goes from its corner i to the next
+        # Of each triangle the longest edge, the first of equal ones; an edge that is it on both sides is halved.
+        order = np.lexsort((np.arange(len(edges)), -lengths))
+        rank = np.empty(len(edges), dtype=np.int64)
+        rank[order] = np.arange(len(edges))
+        best = rank[sides].argmin(axis=1)
+        chosen = sides[np.arange(len(sides)), best]
+        halved = (np.bincount(chosen, minlength=len(edges)) == 2) & (lengths > longest)
+        new = np.full(len(edges), -1, dtype=np.int64)
+        new[halved] = len(points) + np.arange(int(halved.sum()))
+        points = np.vstack([points, points[edges[halved]].mean(axis=1)])
+        cut = halved[chosen]
+        turned = np.take_along_axis(triangles[cut], (best[cut, None] + np.arange(3)) % 3, axis=1)
+        first, second, third, middle = *turned.T, new[chosen[cut]]
+        halves = [np.column_stack([first, middle, third]), np.column_stack([middle, second, third])]
+        triangles = np.vstack([triangles[~cut], *halves])
 
 
 def _flip(

@@ -1,6 +1,7 @@
 """Wrapping of meshes in closed radiating surfaces."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from solids import cubes, hollow_box, spherical_shell
 
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.surface_velocity import surface_velocity
-from housing.acoustics.wrapping import least_angles, wrap
+from housing.acoustics.wrapping import _divided, least_angles, wrap
 from housing.errors import HousingError
 from meshes import Mesh
 
@@ -106,3 +107,35 @@ def test_a_thin_plate_keeps_its_rim() -> None:
     surface = wrap(cubes(np.ones((10, 8, 1), dtype=bool), (0.03, 0.03, 0.004)), 0.02, 0.0)
     assert surface.volume == pytest.approx(0.3 * 0.24 * 0.004, rel=1e-6)
     assert surface.area == pytest.approx(2 * (0.3 * 0.24 + 0.54 * 0.004), rel=1e-6)
+
+
+def test_long_edges_are_halved_where_they_lie() -> None:
+    """A tetrahedron with a long edge: the surface stays, closed and with outward normals, in shorter edges."""
+    points = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.3, 1.0]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    given = RadiatingSurface(points, faces)
+    for longest in (3.0, 1.1, 0.5):
+        halved = RadiatingSurface(*_divided(points, faces, longest))
+        halved.require_closed()
+        assert _edges(halved).max() <= longest
+        assert halved.area == pytest.approx(given.area, rel=1e-13)
+        assert halved.volume == pytest.approx(given.volume, rel=1e-13)
+        # Every triangle lies in one of the four faces, and looks the same way.
+        alike = np.einsum("tj,fj->tf", halved.normals, given.normals).max(axis=1)
+        assert alike == pytest.approx(1.0)
+        again = _divided(halved.points, halved.triangles, longest)
+        assert len(again[1]) == len(halved.triangles)
+    # Halves of the longest edge of a triangle are at least half as sharp as it.
+    assert _least_angle(halved) > 0.5 * _least_angle(given)
+
+
+def test_a_tapered_rib_is_spanned_by_triangles_of_its_height() -> None:
+    """A plate with a gusset: an edge along its slope was 2.1 cells long, and six of the mean edge are a wavelength."""
+    cells = np.zeros((12, 5, 8), dtype=bool)
+    cells[:, 0] = cells[5] = True
+    mesh = cubes(cells, (0.02, 0.02, 0.02))
+    x, y, z = mesh.points.T
+    sloped = np.where(y > 0.02, 0.02 + (y - 0.02) * (1.0 - z / 0.16), y)
+    surface = wrap(replace(mesh, points=np.column_stack([x, sloped, z])), 0.04, 0.03)
+    assert _edges(surface).max() <= 1.7 * 0.04 / 1.05 + 1e-12
+    assert surface.volume == pytest.approx(0.24 * 0.02 * 0.16 + 0.5 * 0.02 * 0.08 * 0.16, rel=0.06)
