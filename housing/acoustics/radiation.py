@@ -41,7 +41,7 @@ LEAK = 0.1
 SOURCE_OFF = 1.0
 """Error of a known source's pressure at a vertex above which a solution is doubtful: it is as large as the pressure."""
 
-SOURCE_LOST = 5.0
+SOURCE_LOST = 10.0
 """Error of a known source's pressure at a vertex above which a solution is refused: the equations do not hold it.
 
 No body of the study in the documentation had as much, with triangles as large as they may be."""
