@@ -317,10 +317,10 @@ class RadiatedSound:
 
 
 def _of_source(error: SourceError) -> str:
-    place = ", ".join(f"{1e3 * one:.4g}" for one in error.place)
+    place, percent = ", ".join(f"{1e3 * one:.4g}" for one in error.place), 100.0 * error.largest
+    told = f"{percent:.3g}" if percent < 999.5 else f"{percent:.0f}"
     return (
-        f"the pressure of a known source inside is off by {100.0 * error.largest:.3g} % at the vertex ({place}) mm of "
-        "the radiating surface"
+        f"the pressure of a known source inside is off by {told} % at the vertex ({place}) mm of the radiating surface"
     )
 
 
