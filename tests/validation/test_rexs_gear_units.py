@@ -460,7 +460,7 @@ def test_fva_shafts_are_in_balance(number: int) -> None:
 def test_fva_bearings_by_hand(published: Published, remark: Callable[[str, str], None], number: int) -> None:
     remark(
         HAND,
-        "By hand the teeth bear in mid-face and no bearing resists tilt. In the machine the load stands 1.7 and 5.9 mm "
+        "By hand the teeth bear in mid-face and no bearing resists tilt. In the machine the load stands 1.9 and 5.5 mm "
         "off the middle, and the 6210 takes 31 N m of load case 1; with both counted, sums of forces and moments of "
         "every shaft vanish. The induced thrust F_r / 2Y of a catalogue assumes half the circle loaded; less of a row "
         "that external thrust relieves is.",
