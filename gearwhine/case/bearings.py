@@ -651,7 +651,7 @@ class Bearing(Table):
     rotor: Name
     """Name of the rotor."""
     at: LengthFromZero
-    """Station from the rotor's left end."""
+    """Middle of the bearing from the rotor's left end, whatever its contact angles."""
     seat: Name = "ground"
     """Name of a seat of the housing, or "ground", which is warned of beside bearings in seats."""
     speeds: tuple[SpeedFromZero, ...] | None = Field(default=None, min_length=2, max_length=MOST_ENTRIES)

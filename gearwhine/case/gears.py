@@ -110,7 +110,7 @@ class ProfileErrors(Table):
 
 
 class HelixErrors(Table):
-    """Deviations across the face [m], positive where there is too much material."""
+    """Deviations and modifications across the face [m], positive where there is too much material."""
 
     slope: Deviation = 0.0
     """Slope deviation from the end of smaller z to the other."""
@@ -135,7 +135,7 @@ class HelixErrors(Table):
 
 
 class GearErrors(Table):
-    """Manufacturing errors."""
+    """Manufacturing errors, and modifications of the flanks across the face."""
 
     eccentricity: LengthFromZero = 0.0
     """Offset of the teeth from the shaft. One of this and `runout`."""
@@ -151,7 +151,7 @@ class GearErrors(Table):
     profile: ProfileErrors | None = None
     """Deviations along the profile of all flanks."""
     helix: HelixErrors | None = None
-    """Deviations across the face of all flanks."""
+    """Deviations across the face of all flanks: errors, and helix modifications such as crowning and end relief."""
 
     @model_validator(mode="after")
     def _said_once(self) -> GearErrors:
@@ -315,14 +315,16 @@ class Gear(Table):
     allow_undercut: StrictBool = False
     """Accept undercut teeth, with the remaining flank; else they are an error."""
     bore: LengthFromZero = 0.0
-    """Diameter of the bore; 0 is a gear in one piece with its shaft."""
+    """Diameter of the bore, at which the body of the teeth is held; 0 is a gear made from its shaft. A wheel on a shaft
+    has one: its mesh is softer. See `stiffens_shaft` for how firmly it sits."""
     rim: PositiveLength | None = None
     """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
     """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
     stiffens_shaft: StrictBool = True
-    """Whether the shaft bends and twists under the gear as in one piece with it. `false`, and any `rim`: the gear is a
-    disc on one section of its shaft, as in many published models, or gripped loosely."""
+    """Whether the shaft bends and twists under the gear as in one piece with it: cut into it, or pressed or keyed on
+    firmly. `false`, and any `rim`: the gear is a disc on one section of its shaft, as in many published models, or
+    gripped loosely."""
     tip_relief: Relief | None = None
     """Tip relief."""
     root_relief: Relief | None = None
@@ -336,7 +338,7 @@ class Gear(Table):
     diametral_inertia: Inertia | None = None
     """Moment of inertia across the axis. Default: from the geometry."""
     errors: GearErrors = GearErrors()
-    """Manufacturing errors."""
+    """Manufacturing errors, and helix modifications (`errors.helix`)."""
     fault: Annotated[tuple[Fault, ...], Field(max_length=100)] = ()
     """Damaged teeth: one table, or a list."""
 

@@ -103,6 +103,18 @@ def _expected(detail: ErrorDetails, context: dict[str, Any]) -> str:
     return _PLAIN_WORDS.get(kind, detail["msg"].removeprefix("Input should be "))
 
 
+_FIELD_WORDS = {
+    "crowning": "errors.helix.crowning",
+    "end_relief": "errors.helix.end_relief",
+    "helix": "errors.helix",
+    "helix_crowning": "errors.helix.crowning",
+    "helix_modification": "errors.helix",
+    "lead_crowning": "errors.helix.crowning",
+    "lead_modification": "errors.helix",
+}
+"""Words of the field for keys that stand in a table of this one."""
+
+
 def _unknown_key(key: str, tables: tuple[type[Table], ...]) -> str:
     """Say what could stand instead of a key that is not known."""
     if any(key in table.later for table in tables):
@@ -110,6 +122,8 @@ def _unknown_key(key: str, tables: tuple[type[Table], ...]) -> str:
     known = sorted({info.alias or name for table in tables for name, info in table.model_fields.items()})
     if key in known:  # of another of the forms that this table may have
         return "no such key beside those here: it belongs to another form of this table"
+    if (elsewhere := _FIELD_WORDS.get(key)) is not None and elsewhere.split(".")[0] in known:
+        return f"no such key; did you mean {elsewhere!r}?"
     return "no such key" + (did_you_mean(key, known) or f" (known here: {', '.join(known)})")
 
 

@@ -505,7 +505,8 @@ _PICTURES = {
     "path": "Share of the load, contact pressure and sliding along the path of contact.",
     "pattern": "Contact pattern over the face and the path of contact.",
     "flanks": "Flanks against the perfect involute, from the form circle to the tip, and errors of pitch by tooth.",
-    "harris-map": "Harris map: transmission error over a mesh period by torque: least where the pair is quiet.",
+    "harris-map": "Harris map: transmission error over a mesh period by torque: least where the pair is quiet. Flanks "
+    "are out of line as at the torque of operation; load --over-torque has the equilibrium of each torque.",
 }
 """Captions of a pair's figures, by the last part of their names."""
 

@@ -96,4 +96,6 @@ def _line(line: Document) -> str:
     """Return a sensor's line, such as ``733 (0.58)``, with its modal truncation error where that is large."""
     error = line.get("uncertainty", 0.0)
     beside = "" if error <= _TOLD else f" ± {100.0 * error:.0f} %" if error < 1.0 else ", unsure"
-    return f"{line['frequency_hz']:.0f} ({line['amplitude_m_per_s2']:.2g}{beside})"
+    # Two digits, without an exponent where there are more before the point.
+    amplitude = float(f"{line['amplitude_m_per_s2']:.2g}")
+    return f"{line['frequency_hz']:.0f} ({amplitude:g}{beside})"

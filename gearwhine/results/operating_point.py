@@ -700,10 +700,11 @@ def load_part(solved: "SolvedLoad") -> dict[str, Any]:
 def brief(load: Document) -> Iterator[str]:
     """Yield the operating point in sentences, for the terminal of another analysis."""
     forces = ", ".join(
-        f"{one['name']} {math.hypot(*one['force_n']):.4g} N" for one in load["bearings"][:_MOST_BEARINGS]
+        f"{one['name']} {math.hypot(*one['force_n'][:2]):.4g} N" for one in load["bearings"][:_MOST_BEARINGS]
     )
     more = len(load["bearings"]) - _MOST_BEARINGS
-    yield f"Operating point {_seats(load)}: loads of {forces}" + (f" and of {more} more bearings" if more > 0 else "")
+    others = f" and of {more} more bearings" if more > 0 else ""
+    yield f"Operating point {_seats(load)}: radial loads of {forces}{others}"
     yield from _taken(load)
 
 
@@ -899,7 +900,9 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_BEARING_COLUMNS, document["bearings"], caption)
     rolling = [row for row in document["bearings"] if row["peak_pressure_pa"] is not None]
     yield from table_of(_ROLLING_COLUMNS, rolling, "Rolling bearings: elements, life, tangent stiffness along x, y, z")
-    yield from table_of(_PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period")
+    yield from table_of(
+        _PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period; misaligned as unmodified flanks"
+    )
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
     yield from _taken(document)
     rows = [

@@ -18,6 +18,7 @@ ONE_WRONG = {
     "bore of a gear": ("gear.0.bore", "84 mm", "gear[0].bore", "smaller than the base circle"),
     # keys, forms and choices
     "misspelt key": ("gear.0.facewidth", "6 mm", "gear[0].facewidth", "did you mean 'face_width'?"),
+    "word of the field": ("gear.0.crowning", "4 um", "gear[0].crowning", "did you mean 'errors.helix.crowning'?"),
     "unknown table": ("gaer", [], "gaer", "did you mean 'gear'?"),
     "fault without its kind": ("gear.0.fault", {"tooth": 1}, "gear[0].fault[0].kind", "missing-tooth"),
     "fault on no tooth": (

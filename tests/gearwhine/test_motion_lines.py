@@ -11,6 +11,7 @@ from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sound
 import gearwhine as gw
 from coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.case import CaseError, swept_keys
+from gearwhine.results.motion import _line as motion_words
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
 from gearwhine.solve.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
 from gearwhine.solve.sound.radiating_surface import microphones_of
@@ -242,3 +243,8 @@ def test_titles_of_operating_shapes_have_arrows() -> None:
     titles = [operating_shape_of_line(line, sounding_housing().modes, surface).title for line in lines]
     assert "Operating shape at 2520.0 Hz   1× pinion → wheel" in titles
     assert not any("->" in title for title in titles)
+
+
+@pytest.mark.parametrize(("amplitude", "shown"), [(147.0, "150"), (0.0583, "0.058"), (3.0, "3"), (12345.0, "12000")])
+def test_two_digits_of_a_line_have_no_exponent(amplitude: float, shown: str) -> None:
+    assert motion_words({"frequency_hz": 733.3, "amplitude_m_per_s2": amplitude}) == f"733 ({shown})"
