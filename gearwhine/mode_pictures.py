@@ -37,6 +37,7 @@ _DECADES = 1.0 / np.log(10.0)  # decades of a relative change
 _LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least part of the loudest one's power
 _MOST_MODES = 5000
 _DOMINANT = 8
+_OPPOSITE = {"iso": "iso-opposite"}  # the other side of a view, for what both sides have
 _MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
 _BYTES, _BYTES_OF_TRIANGLE = 4e6, 20.0  # of all their models, compressed and in base64
 _TRIANGLES = 1500, 10000  # of each, at least and at most
@@ -226,7 +227,7 @@ def draw_load_pictures(
 def draw_deflection(
     housing: SolvedHousing, coordinates: FloatArray, view: str, place: Path, progress: Progress
 ) -> list[str]:
-    """Draw the housing under a static load as ``load-housing.png``.
+    """Draw the housing under a static load as ``load-housing.png``, from two opposite sides.
 
     Parameters
     ----------
@@ -255,7 +256,7 @@ def draw_deflection(
     title = "Housing under the mean load"
     note = f"largest {largest:.3g} µm, drawn {float(f'{factor:.2g}'):.0f} times as large"
     shape = DrawnShape("load-housing", title, note, motion, "Displacement [µm]", largest)
-    return draw_in_process(surface, [shape], place, "png", view, progress)
+    return draw_in_process(surface, [shape], place, "png", view, progress, beside=_OPPOSITE.get(view))
 
 
 def draw_sensitivity(
@@ -263,7 +264,8 @@ def draw_sensitivity(
 ) -> list[str]:
     """Draw where material on the housing changes the misalignment of each pair, a sensor's line and the sound power.
 
-    They are ``load-sensitivity-PAIR.png``, ``load-sensitivity-line.png`` and ``load-sensitivity-sound.png``.
+    They are ``load-sensitivity-PAIR.png``, ``load-sensitivity-line.png`` and ``load-sensitivity-sound.png``, each from
+    two opposite sides.
 
     Parameters
     ----------
@@ -308,7 +310,11 @@ def draw_sensitivity(
         shapes.append(DrawnShape(stem, title, note, motion, quantity, largest, values))
     # The shapes of one call have one scale and one quantity.
     groups = [group for group in (shapes, *_line_shapes(solved.sensitivity, surface.nodes)) if group]
-    return [name for group in groups for name in draw_in_process(surface, group, place, "png", view, progress)]
+    return [
+        name
+        for group in groups
+        for name in draw_in_process(surface, group, place, "png", view, progress, beside=_OPPOSITE.get(view))
+    ]
 
 
 def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -> "Iterator[list[DrawnShape]]":
@@ -380,7 +386,7 @@ def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) 
         if shapes:
             surface = _radiating_surface(solved)
             # Flat faces radiate to one side; another surface is closed, and the first view shows half of it.
-            beside = None if solved.radiation.method == "rayleigh" else "iso-opposite"
+            beside = None if solved.radiation.method == "rayleigh" else _OPPOSITE["iso"]
             draw_in_process(surface, shapes, place, "png", "iso", progress, beside=beside)
     except RendererUnavailableError as error:
         return [warning("pictures", f"no picture of the radiating surface: {error}")]
