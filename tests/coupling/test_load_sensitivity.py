@@ -96,15 +96,19 @@ def difference(machine: Machine, number: int, change: Callable[..., OperatingPoi
 
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_bearings(machine: Machine) -> None:
-    """Stiffness and position to 1e-7 of the largest derivative of each outcome."""
+    """Stiffness and position to 1e-7 of the largest derivative of each outcome.
+
+    To 1e-5 where bearings have elements: some touch or part within the steps of the differences.
+    """
     point = machine.operating_point(GRAVITY)
+    tolerance = 1e-5 if any(one.elements is not None for one in machine.bearings) else 1e-7
     (pair,) = pair_adjoints(point)
     assert tuple(pair) == OUTCOMES
     adjoints = [*pair.values(), tilt_adjoint(point, machine.bearings[0].bearing.name)]
     # One of each shaft.
     numbers = (0, len(machine.bearings) - 1)
     names = [machine.bearings[number].bearing.name for number in numbers]
-    for change, step, tolerance in ((scaled, 2e-3, 1e-7), (moved, 2e-4, 1e-7)):
+    for change, step in ((scaled, 2e-3), (moved, 2e-4)):
         by = Adjoint.by_bearing_stiffness if change is scaled else Adjoint.by_bearing_position
         own = np.array([[by(one, name) for one in adjoints] for name in names])
         expected = np.array([difference(machine, number, change, step) for number in numbers])

@@ -92,7 +92,7 @@ def test_without_torque_the_equilibrium_is_that_of_the_preload() -> None:
         assert 0.9 * rigid < one["preload_n"] < rigid
         # Z c/n Σ δ^(10/9) sin α along its axis: the tangent is that of the power law at the force.
         slope = (row.axial_force(5.001e-6) - row.axial_force(4.999e-6)) / 2e-9
-        assert one["stiffness"][2][2] == pytest.approx(slope * (one["preload_n"] / rigid) ** 0.1, rel=1e-3)
+        assert one["stiffness"][2][2] == pytest.approx(slope * (one["preload_n"] / rigid) ** 0.1, rel=2e-3)
     assert document["gear_pairs"] == []
     assert "loaded_pair" not in result.dataset.dims
     assert result.dataset["bearing_preload"].attrs["units"] == "N"

@@ -46,12 +46,12 @@ def test_shafts_show_their_forces_and_deflection(loaded: Result[SolvedLoad], fig
         (line,) = [line for line in axes.lines if line.get_label() == "deflection"]
         drawn = np.asarray(line.get_ydata())
         factor = drawn[np.abs(drawn).argmax()] / (1e3 * shaft.motion[plane][np.abs(drawn).argmax()])
-        assert factor == pytest.approx(500.0)
-        assert drawn == pytest.approx(500e3 * shaft.motion[plane])
+        assert factor == pytest.approx(200.0)
+        assert drawn == pytest.approx(200e3 * shaft.motion[plane])
         # Both directions have one scale.
         box, (low, high), (left, right) = axes.get_window_extent(), axes.get_ylim(), axes.get_xlim()
         assert box.height / (high - low) == pytest.approx(box.width / (right - left), rel=1e-9)
-    assert "deflections 500 times as large as lengths" in figure.texts[1].get_text()
+    assert "deflections 200 times as large as lengths" in figure.texts[1].get_text()
 
 
 def test_rows_below_a_shaft_show_thrust_and_moments(loaded: Result[SolvedLoad], figures: dict[str, Figure]) -> None:
