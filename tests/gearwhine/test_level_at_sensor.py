@@ -28,10 +28,10 @@ GIVEN = TipRelief(10e-6, length=1.5e-3)
 HELD = np.diag([1.0, 1.0, 1.0, 0.0, 0.0])
 
 
-def helical_case(relief: TipRelief | None) -> Case:
+def helical_case(relief: TipRelief | None, *more: str) -> Case:
     """The small gearbox at 1500 rpm with helical gears that have a relief, out of the middle of their shafts."""
     overrides = ["housing.box.mesh_size=60 mm", "rotor.input.unbalance=", "operation.speed=1500 rpm"]
-    document = case_document(load_case("small-gearbox", [*overrides, "gear.*.at=80 mm"]).case)
+    document = case_document(load_case("small-gearbox", [*overrides, "gear.*.at=80 mm", *more]).case)
     for gear, hand in zip(document["gear"], (1.0, -1.0), strict=True):
         # Normal module at the same centre distance.
         gear["module"] = f"{3.175 * np.cos(np.radians(HELIX))} mm"
@@ -73,8 +73,8 @@ def housing() -> SolvedHousing:
     return solve_housing(helical_case(GIVEN))
 
 
-def gearbox(housing: SolvedHousing, relief: TipRelief | None) -> Gearbox:
-    case = helical_case(relief)
+def gearbox(housing: SolvedHousing, relief: TipRelief | None, *more: str) -> Gearbox:
+    case = helical_case(relief, *more)
     pairs = solve_gears(case)
     point = describe_machine(case, full_housing_component(case, housing)).operating_point()
     return Gearbox(case, housing, pairs, LineModel(build_machine(case, housing, pairs), point, pairs, (False,)))
@@ -104,6 +104,38 @@ def test_the_level_of_the_given_flanks_is_that_of_their_lines(given: Gearbox, ai
     assert set(found) == set(lines) == {1, 2, 3, 4}
     np.testing.assert_allclose([found[n] for n in lines], list(lines.values()), rtol=1e-6)
     assert level(aim, pair) == pytest.approx(given.level(), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "other_way",
+    [("operation.speed=-1500 rpm",), ("operation.torque=-71.77 N*m",)],
+    ids=["backward", "braking"],
+)
+def test_the_level_is_that_of_the_lines_whichever_way_the_gears_turn_or_carry(
+    housing: SolvedHousing, other_way: tuple[str, ...]
+) -> None:
+    other = gearbox(housing, GIVEN, *other_way)
+    (aim,) = relief_aims(other.case, other.pairs)
+    assert isinstance(aim, SensorLevel)
+    assert level(aim, other.pairs[0]) == pytest.approx(other.level(), rel=1e-4)
+
+
+def test_the_parts_of_a_line_are_its_causes_alone(given: Gearbox) -> None:
+    """Together they are the line; that by the error is the transmissibility by the spring of the mesh alone."""
+    model, machine = given.model, given.model.machine
+    parts = model.parts(2.0 * np.pi * given.housing.trusted_limit_hz)
+    row, lines = machine.sensor_rows[SENSOR], given.lines()
+    assert len(parts) == len(lines)
+    contact = given.pairs[0].contact
+    mesh = loaded_transmission_error(contact, given.pairs[0].static.force, mesh_period_phases(contact, 200))
+    errors = model.transmission_error(0, mesh, hunting_period=1)
+    for n, one in enumerate(parts, start=1):
+        assert one.causes == ((0, n),)
+        assert one.frequency**2 * abs(row @ (one.by_error + one.by_shuttling)) == pytest.approx(lines[n], rel=1e-6)
+        through = mesh_error_response(machine, np.array([one.frequency])).sensor_acceleration[SENSOR][0]
+        spring = 1.0 + 1j * one.frequency * model.contact.damping[0] / model.contact.stiffness[0]
+        by_error = -(one.frequency**2) * (row @ one.by_error)
+        assert by_error == pytest.approx(through / spring * errors[n - 1], rel=1e-6)
 
 
 def test_transmission_error_alone_is_not_that_level(given: Gearbox, aim: SensorLevel) -> None:
