@@ -52,18 +52,10 @@ from coupling.errors import CouplingError
 from coupling.gears import ToothContact
 from coupling.gears.contact.face_slices import FACE_STATIONS, face_stations, lagrange
 from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.gears.loaded.transmission_error import (
-    LoadedMesh,
-    hunting_period_mesh,
-    loaded_transmission_error,
-    mesh_period_phases,
-    transmission_error_phasors,
-)
 from coupling.linear.housing_rates import HousingRates
 from coupling.linear.line_outputs import LineOutput, SensorAmplitude
-from coupling.machine.assembly import CoupledMachine
+from coupling.linear.mesh_excitation import HARMONICS, MeshHarmonicModel, Response
 from coupling.machine.connectors import LinearConnector
-from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from coupling.statics.operating_point import BearingLoad, OperatingPoint
 from coupling.statics.sensitivity import deflection_slope
 from rotors.rolling_bearings import rolling_state
@@ -71,33 +63,11 @@ from rotors.rolling_bearings import rolling_state
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_HARMONICS = 12  # of a mesh, at most
-_POINTS = 200  # phases of a mesh period, as in the mean mesh
-_SAME = 1e-9  # relative difference of frequencies that are one
 _GAP_STEP = 1e-6  # of the flanks' compression, in the differences of transmission error and shuttling
 _STIFFNESS_STEP = 0.01  # likewise in those of k, which has a step where a slice comes into touch at one of the phases
 _STIFFNESS_POINTS = 2000  # phases of a mesh period in those of k
 _BEARING_STEP = 1e-4  # of a bearing's deflection, in the differences of its tangent
 _SHAFT_STEP = 1e-5  # of the shaft's length, in the differences of its motions
-
-
-@dataclass(frozen=True, eq=False)
-class Response:
-    """Motion of the machine at a mesh harmonic.
-
-    Attributes
-    ----------
-    frequency : float
-        ω [rad/s].
-    causes : tuple of (int, int)
-        Number of the contact in the system, and harmonic of its mesh frequency, of each mesh that drives it.
-    motion : ndarray of complex, shape (n,)
-        q by the coordinates of the system.
-    """
-
-    frequency: float
-    causes: tuple[tuple[int, int], ...]
-    motion: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +108,7 @@ class _GapRates:
 
 
 @dataclass(frozen=True, eq=False)
-class LineModel:
+class LineModel(MeshHarmonicModel):
     """A machine linear about its operating point, driven by its loaded meshes.
 
     Attributes
@@ -152,22 +122,9 @@ class LineModel:
         Whether the gap of each pair's flanks is that of the operating point.
     """
 
-    machine: CoupledMachine
     point: OperatingPoint
     pairs: tuple[LoadedGearPair, ...]
     found: tuple[bool, ...]
-
-    @cached_property
-    def contact(self) -> ContactState:
-        """Contacts about their mean forces."""
-        return mean_contact(self.machine.system)
-
-    @cached_property
-    def loaded(self) -> tuple[int, ...]:
-        """Numbers of the contacts that carry a mean force and turn."""
-        force = self.contact.force
-        contacts = self.machine.system.contacts
-        return tuple(n for n, one in enumerate(contacts) if force is not None and force[n] > 0.0 and one.rate != 0.0)
 
     def lines(self, limit: float, count: int) -> tuple[Line, ...]:
         """Return the highest lines of each sensor, the highest of all first.
@@ -194,13 +151,6 @@ class LineModel:
             heard.sort(key=lambda pair: -pair[0])
             found += [self.line(output, one) for value, one in heard[:count] if value > 0.0]
         return tuple(sorted(found, key=lambda one: -one.value))
-
-    def responses(self, limit: float) -> tuple[Response, ...]:
-        """Solve the motions at the mesh harmonics up to a limit [rad/s], ascending."""
-        return tuple(
-            Response(w, causes, linalg.solve(self._dynamic(w), self._load(w, causes)))
-            for w, causes in self._harmonics(limit)
-        )
 
     def line(self, output: LineOutput, response: Response) -> Line:
         """Take an output of a motion, and solve its adjoint state."""
@@ -321,72 +271,12 @@ class LineModel:
         return (output or line.output).value(line.frequency, motion) - line.value
 
     @cached_property
-    def _matrices(self) -> tuple[FloatArray, FloatArray]:
-        return linear_matrices(self.machine.system, self.contact)
-
-    @cached_property
     def housing(self) -> slice:
         """Place of the housing among the coordinates."""
         components = self.machine.system.components
         place = next(n for n, part in enumerate(components) if part is self.machine.housing)
         first = sum(part.size for part in components[:place])
         return slice(first, first + components[place].size)
-
-    def _dynamic(self, w: float) -> ComplexArray:
-        """Z at a frequency [rad/s], shape (n, n)."""
-        stiffness, damping = self._matrices
-        return np.asarray(stiffness + 1j * w * damping - w**2 * np.eye(len(stiffness)))
-
-    def _harmonics(self, limit: float) -> list[tuple[float, tuple[tuple[int, int], ...]]]:
-        """Frequencies of the mesh harmonics up to a limit [rad/s], ascending, and the meshes that drive each."""
-        found: list[tuple[float, tuple[tuple[int, int], ...]]] = []
-        every = [
-            (2.0 * np.pi * h * abs(self.machine.system.contacts[n].rate), (n, h))
-            for n in self.loaded
-            for h in range(1, _HARMONICS + 1)
-        ]
-        for w, cause in sorted(every):
-            if w > limit * (1.0 + _SAME):
-                break
-            if found and w <= found[-1][0] * (1.0 + _SAME):
-                found[-1] = (found[-1][0], (*found[-1][1], cause))
-            else:
-                found.append((w, (cause,)))
-        return found
-
-    def _load(self, w: float, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
-        """Return f at a frequency, shape (n,)."""
-        system = self.machine.system
-        total = np.zeros(system.size, dtype=np.complex128)
-        for load in system.harmonic_loads:
-            if abs(load.frequency - w) <= _SAME * w:
-                total += load.amplitude
-        for number, harmonic in causes:
-            direction = system.contacts[number].direction
-            total += self.contact.stiffness[number] * self._errors[number][harmonic - 1] * direction
-        return total
-
-    @cached_property
-    def _errors(self) -> dict[int, ComplexArray]:
-        """Return e of every loaded contact by harmonic."""
-        contacts = self.machine.system.contacts
-        return {n: self._error(n, self._mesh(n, contacts[n].contact)) for n in self.loaded}
-
-    def _mesh(self, number: int, law: ToothContact, points: int = _POINTS) -> LoadedMesh:
-        """Mesh of a contact by some law under its mean force."""
-        assert self.contact.force is not None
-        force = float(self.contact.force[number])
-        if law.hunting_period > 1:
-            return hunting_period_mesh(law, force)
-        return loaded_transmission_error(law, force, mesh_period_phases(law, points))
-
-    def _error(self, number: int, mesh: LoadedMesh) -> ComplexArray:
-        """Harmonics of the transmission error of a contact at t = 0 [m], shape (harmonics,)."""
-        contact = self.machine.system.contacts[number]
-        found = transmission_error_phasors(mesh, _HARMONICS, contact.contact.hunting_period)
-        found = found.conj() if contact.rate < 0.0 else found
-        orders = np.arange(1, _HARMONICS + 1)
-        return np.asarray(found * np.exp(2j * np.pi * np.sign(contact.rate) * orders * contact.phase))
 
     @cached_property
     def _gap_rates(self) -> dict[int, _GapRates]:
@@ -408,8 +298,8 @@ class LineModel:
         compression = force / float(self.contact.stiffness[number])
         over = lagrange(face_stations(faces.face_width), faces.z)
         stiffness = np.zeros(FACE_STATIONS)
-        error = np.zeros((FACE_STATIONS, _HARMONICS), dtype=np.complex128)
-        shuttling = np.zeros((FACE_STATIONS, _HARMONICS, system.size), dtype=np.complex128)
+        error = np.zeros((FACE_STATIONS, HARMONICS), dtype=np.complex128)
+        shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
 
         def moved(station: int, step: float) -> ToothContact:
             found = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
@@ -425,7 +315,7 @@ class LineModel:
                 error[station] += self._error(number, self._mesh(number, near)) / (2.0 * step)
                 for load in self.machine.shuttling(number, near, force)[1]:
                     order = round(load.frequency / (2.0 * np.pi * rate))
-                    if order <= _HARMONICS:
+                    if order <= HARMONICS:
                         shuttling[station, order - 1] += load.amplitude / (2.0 * step)
         return _GapRates(stiffness, error, shuttling)
 

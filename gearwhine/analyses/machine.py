@@ -98,8 +98,9 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
 
     Raises
     ------
-    CaseError, coupling.gears.GearError
-        Where the case has no gear pairs, or one cannot be solved as it stands.
+    CaseError, coupling.gears.GearError, coupling.CouplingError
+        Where the case has no gear pairs, or one cannot be solved as it stands, or in the machine where a tip relief
+        aims at a sensor.
     """
     require(case, "gear_pair", command="gears")
     point = point_of_pairs(case, None, progress)

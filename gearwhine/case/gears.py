@@ -476,10 +476,11 @@ class ReliefAim(Table):
 
     harmonics: Annotated[dict[str, HarmonicWeight], Field(default_factory=dict, max_length=32)]
     """Weights w of the transmission error's amplitudes e by the multiple of the mesh frequency, √(Σ (w e)²), such as `{
-    1 = 1, 2 = 0.5 }`."""
+    1 = 1, 2 = 0.5 }`; load shuttling is left out. With `sensor`: weights of the amplitudes of its acceleration."""
     sensor: Name | None = None
-    """Sensor whose level is the objective, by the transmissibility: root mean square over the first eight multiples
-    below the housing's limit, or over those that `harmonics` weighs."""
+    """Sensor whose level is the objective, by the linear response to transmission error and load shuttling together, as
+    in `gearwhine load --sensitivity`: root mean square over the first eight multiples of the mesh frequency below the
+    housing's limit, or over those that `harmonics` weighs."""
 
     @model_validator(mode="after")
     def _has_an_aim(self) -> ReliefAim:

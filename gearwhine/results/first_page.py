@@ -76,7 +76,10 @@ _PICTURES = (
     Picture("sweep-rms", "Level of each sensor over the sweep: peaks are resonances of the machine."),
     Picture("load-misalignment", "Misalignment of the flanks by its causes, which may cancel; black: their sum."),
     Picture("modes", "Modes side by side, each to a scale of its own; grey lines: at rest."),
-    Picture("transmissibility", "Response to 1 µm of transmission error at any frequency."),
+    Picture(
+        "transmissibility",
+        "Response to 1 µm of transmission error alone at any frequency; load shuttling excites beside it.",
+    ),
     Picture("comparison", "Frequencies of the model over measured ones, and their errors."),
 )
 """The one picture that says most: the first of these that there is."""

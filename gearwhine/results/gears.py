@@ -476,6 +476,7 @@ def _warnings(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
 
 
 _HARMONICS = 4  # of the transmission error, named
+_ALONE = "of transmission error alone: load shuttling excites too, which the aim at a sensor counts"
 _WORTH_IT = 0.9  # a relief with less than this part of the given one's error is worth naming as better
 OVERVIEW = (
     *columns_of(PAIR),
@@ -659,6 +660,8 @@ def _best_relief(pair: Document) -> list[str]:
     if aim["kind"] != "peak-to-peak":
         without_relief, with_best = _value(aim, "without_relief"), _value(aim, "best")
         lines.append(f"Aim, the {_aim_in_words(aim)}: {without_relief} without relief, {with_best} with the best")
+        if aim["kind"] == "harmonics":
+            lines.append(f"  {_ALONE}")
         return [*lines, f"Best {best['shape']} relief: {text} peak to peak"]
     close = least > _WORTH_IT * given
     return [*lines, f"Hardly better would be {text}" if close else f"Best {best['shape']} relief: {text}"]
@@ -669,7 +672,7 @@ def _aim_in_words(aim: Document) -> str:
     if aim["kind"] == "peak-to-peak":
         return "peak-to-peak transmission error"
     if aim["kind"] == "sensor":
-        return f"level at {aim['sensor']}, rms over the multiples of the mesh frequency"
+        return f"level at {aim['sensor']} by transmission error and load shuttling, rms over the mesh harmonics"
     weights = ", ".join(f"{weight:.4g} at {n}" for n, weight in aim["weights"].items())
     return f"weighted harmonics of the mesh frequency ({weights})"
 

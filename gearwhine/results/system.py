@@ -233,6 +233,46 @@ TRANSMISSIBILITY = (
 )
 """Of the response to the error of one mesh, and its frequencies [Hz]."""
 
+_PARTS = (
+    ("by_transmission_error", "by_error", "by transmission error alone"),
+    ("by_load_shuttling", "by_shuttling", "by load shuttling alone"),
+    ("together", "motion", "by transmission error and load shuttling together"),
+)
+
+
+def _line_part(name: str, attribute: str, what: str) -> Quantity:
+    """Amplitudes of the sensors by a part of a line's motion."""
+
+    def of(row: Any) -> dict[str, float]:
+        solved, line = row
+        motion = line.frequency**2 * getattr(line, attribute)
+        return {sensor: abs(seen @ motion) for sensor, seen in solved.machine.sensor_rows.items()}
+
+    told = f"amplitude of the sensor's acceleration at a mesh harmonic, {what}"
+    return Quantity(name, of, f"system_line_{name}", ("system_line_sensor",), "m s-2", told)
+
+
+def _line_cause(row: Any) -> str:
+    """Return the mesh harmonics that drive a line, in words."""
+    solved, line = row
+    contacts = solved.machine.system.contacts
+    return " and ".join(f"{harmonic}× {contacts[number].name}" for number, harmonic in line.causes)
+
+
+LINE = (
+    Quantity(
+        "frequency_hz",
+        lambda row: row[1].frequency / HERTZ,
+        "system_line_frequency",
+        (),
+        "Hz",
+        "frequency of a mesh harmonic at operation",
+    ),
+    Quantity("cause", _line_cause, "system_line_cause", (), "", "mesh harmonics that drive the line"),
+    Part("sensor_acceleration_m_per_s2", lambda row: row, tuple(_line_part(*part) for part in _PARTS)),
+)
+"""Of the solved system and its response at one mesh harmonic of operation."""
+
 UNBALANCE = (
     Quantity("", lambda row: row[0].excitation, "unbalance_of"),
     *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
@@ -350,6 +390,12 @@ SYSTEM = (
         TRANSMISSIBILITY,
         "mesh_error",
     ),
+    Rows(
+        "mesh_lines",
+        lambda solved: [(solved, line) for line in solved.lines] if solved.lines else ABSENT,
+        LINE,
+        "system_line",
+    ),
     Quantity("superposition_error", lambda solved: solved.superposition_error),
     Quantity(
         "trusted_below_hz",
@@ -410,8 +456,9 @@ _PICTURES = (
     ),
     Picture(
         "transmissibility",
-        "Response to 1 µm of transmission error at any frequency: mesh force, bearing forces and sensors; dashed: mesh "
-        "frequencies at operation. A peak at a dashed line is a loud mesh.",
+        "Response to 1 µm of transmission error alone at any frequency: mesh force, bearing forces and sensors; "
+        "dashed: mesh frequencies at operation. A peak at a dashed line is a loud mesh. Load shuttling of helical, "
+        "crowned or misaligned teeth excites beside it and may lead: see the lines of the sensors.",
     ),
     Picture("system", "Coupled modes of the machine."),
 )
@@ -419,9 +466,9 @@ _CURVES = (
     Curves(
         "transmissibility_sensor_acceleration",
         ("response_frequency",),
-        "Acceleration of the sensors by transmission error.",
+        "Acceleration of the sensors by transmission error alone.",
     ),
-    Curves("transmissibility_mesh_force", ("response_frequency",), "Dynamic mesh force by transmission error."),
+    Curves("transmissibility_mesh_force", ("response_frequency",), "Dynamic mesh force by transmission error alone."),
 )
 
 
@@ -457,6 +504,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield f"{counted(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz."
     for response in document.get("transmissibility", ()):
         yield from _peaks(response)
+    if document.get("transmissibility"):
+        yield from _lines(document.get("mesh_lines", []))
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
     yield from kept_sentence(document, SYSTEM_OPTIONS, "modes")
@@ -541,6 +590,39 @@ def _peaks(response: Document) -> Iterator[str | Table]:
     yield f"Response to the {response['excitation']}, 1 µm at any frequency:"
     yield from table_of(columns, rows)
 
+
+_LINES = 3  # of each sensor, the highest
+
+
+def _lines(lines: list[Document]) -> Iterator[str | Table]:
+    """Yield what excites beside transmission error, and the highest lines of each sensor by either and by both."""
+    yield (
+        "These are by transmission error alone. Load shuttling, the moments of a load that moves along the face, "
+        "excites at the same frequencies and may lead in helical, crowned or misaligned teeth: `load --sensitivity` "
+        "has the lines by both and what changes them, `steady` the motion."
+    )
+    rows: list[dict[str, Any]] = []
+    for sensor in lines[0]["sensor_acceleration_m_per_s2"]["together"] if lines else ():
+        own = [
+            {"sensor": sensor, "frequency_hz": line["frequency_hz"], "cause": line["cause"]}
+            | {name: line["sensor_acceleration_m_per_s2"][name][sensor] for name, _, _ in _PARTS}
+            for line in lines
+        ]
+        rows += sorted(own, key=lambda row: -row["together"])[:_LINES]
+    if rows:
+        yield "Highest lines of the sensors at operation, linear response about the mean load [m/s²]:"
+        yield from table_of(_LINE_COLUMNS, rows)
+        yield "Together: the sum with phase, above or below either part."
+
+
+_LINE_COLUMNS = (
+    Column("sensor", "sensor"),
+    Column("frequency [Hz]", "frequency_hz", ".1f"),
+    Column("harmonic", "cause"),
+    Column("by transmission error", "by_transmission_error", ".3g"),
+    Column("by load shuttling", "by_load_shuttling", ".3g"),
+    Column("together", "together", ".3g"),
+)
 
 _CROSSING_COLUMNS = (
     Column("speed [rpm]", lambda row: f"{abs(row['speed_rpm']):.1f}"),

@@ -16,6 +16,7 @@ from coupling.linear.frequency_response import (
     resonance_grid,
     unbalance_response,
 )
+from coupling.linear.mesh_excitation import MeshHarmonicModel, ResponseParts
 from coupling.signals.excitation import excitation_lines
 from coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require, rotor_speeds, table_range
@@ -62,6 +63,9 @@ class SolvedSystem:
         To the unbalances of each rotor that has any, over the speeds of the diagram.
     unbalance_speeds : ndarray, shape (u,)
         Of the leading rotor [rad/s].
+    lines : tuple of ResponseParts
+        Motions at the mesh harmonics of operation by transmission error and load shuttling, with a housing that has
+        sensors, about the mean contact.
     """
 
     machine: CoupledMachine
@@ -76,6 +80,7 @@ class SolvedSystem:
     campbell: SystemCampbell | None = None
     unbalance: tuple[FrequencyResponse, ...] = ()
     unbalance_speeds: FloatArray | None = None
+    lines: tuple[ResponseParts, ...] = ()
 
     @property
     def unloaded(self) -> ContactState:
@@ -122,8 +127,9 @@ def solve_system(
     responses, error = _mesh_responses(case, machine, housing, modes, contact)
     assert case.operation is not None
     speed = case.operation.speed
+    lines = _sensor_lines(machine, housing) if mesh_phase is None else ()
     solved = SolvedSystem(
-        machine, speed, housing, mesh_phase, contact, modes, coupled_stability(modes), responses, error
+        machine, speed, housing, mesh_phase, contact, modes, coupled_stability(modes), responses, error, lines=lines
     )
     return _over_speed(case, solved, housing, progress, sidebands) if over_speed else solved
 
@@ -196,6 +202,13 @@ def _mesh_responses(
         difference = np.abs(by_modes.coordinates[chosen] - direct.coordinates)
         worst = max(worst, float(difference.max() / np.abs(direct.coordinates).max()))
     return tuple(found), worst
+
+
+def _sensor_lines(machine: CoupledMachine, housing: SolvedHousing | None) -> tuple[ResponseParts, ...]:
+    """Motions at the mesh harmonics below the housing's limit; none without a sensor, a load or a speed."""
+    if housing is None or not housing.sensors:
+        return ()
+    return MeshHarmonicModel(machine).parts(_TWO_PI * housing.trusted_limit_hz)
 
 
 def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:

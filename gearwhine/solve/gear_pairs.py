@@ -4,7 +4,6 @@ Over a range of torques these give Harris maps and the optimal tip relief, whose
 harmonics, or the level at a sensor.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -35,7 +34,8 @@ from coupling.gears.loaded.optimal_relief import (
     WeightedHarmonics,
     transmission_error_harmonics,
 )
-from coupling.linear.frequency_response import mesh_error_response
+from coupling.linear.mesh_excitation import MeshHarmonicModel
+from coupling.linear.sensor_level import SensorLevel
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case import GearPair as GivenPair
@@ -354,25 +354,31 @@ def relief_aims(
     """Objective of the tip-relief search for each pair.
 
     The aim at a sensor is the root mean square of its acceleration over the multiples n of the mesh frequency,
-    √(½ Σ (w_n |H_n| e_n)²), with H_n the transmissibility about the mesh as the case has it under its load. The
-    housing is solved for it.
+    √(½ Σ (w_n a_n)²), with a_n the linear response to transmission error and load shuttling together about the case's
+    mean load, see :class:`coupling.linear.sensor_level.SensorLevel`. The housing is solved for it.
 
     Raises
     ------
     CaseError
         Where a sensor is aimed at and the pair does not turn, or no multiple lies below the model's limit.
+    CouplingError
+        Where the machine's loads cannot balance, so that a pair has no mean force in it.
     """
     aims = [given.relief_aim for given in case.gear_pair]
     if all(aim is None or aim.sensor is None for aim in aims):
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = solve_housing(case, progress, folder=folder)
-    machine = build_machine(case, housing, pairs, progress)
+    model = MeshHarmonicModel(build_machine(case, housing, pairs, progress))
     limit = housing.trusted_limit_hz
     found = []
     for number, (pair, aim) in enumerate(zip(pairs, aims, strict=True)):
         if aim is None or aim.sensor is None:
             found.append(_without_sensor(aim))
+            continue
+        if pair.static.force == 0.0:
+            # Of a pair without load no relief is sought.
+            found.append(PeakToPeak())
             continue
         key = f"gear_pair[{number}].relief_aim"
         if not pair.mesh_frequency:
@@ -382,10 +388,8 @@ def relief_aims(
         if not weights:
             expected = f"multiples of the mesh frequency of {pair.mesh_frequency:.5g} Hz below {limit:.5g} Hz"
             raise CaseError([Problem(f"{key}.harmonics", list(given), f"{expected}, up to which the modes are known")])
-        frequencies = 2.0 * np.pi * pair.mesh_frequency * np.array(list(weights))
-        response = mesh_error_response(machine, frequencies, mesh=number)
-        levels = np.abs(response.sensor_acceleration[aim.sensor]) / math.sqrt(2.0)
-        found.append(WeightedHarmonics({n: weights[n] * float(h) for n, h in zip(weights, levels, strict=True)}))
+        follows = pair.pair.damping is None
+        found.append(SensorLevel(model, number, aim.sensor, weights, damping_follows=follows))
     return tuple(found)
 
 

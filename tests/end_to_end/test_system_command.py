@@ -59,6 +59,64 @@ def test_over_speed_with_files(gearwhine: Any, tmp_path: Path) -> None:
         assert max(one["amplitude"] for one in peaks["y"]) == pytest.approx(found)
 
 
+HELD = "{{matrix=[[{0},0,0,0,0],[0,{0},0,0,0],[0,0,{0},0,0],[0,0,0,0,0],[0,0,0,0,0]]}}"
+HELICAL = (
+    *(*COARSE, "--set", "operation.speed='1500 rpm'", "--set", "gear.*.at='80 mm'"),
+    *("--set", "gear.*.face_width='30 mm'", "--set", "gear.*.module='3.0668 mm'"),
+    *("--set", "gear.0.helix_angle='15 deg'", "--set", "gear.1.helix_angle='-15 deg'"),
+    *("--set", "gear.*.tip_relief={amount='10 um', length='1.5 mm'}"),
+    *("--set", f"bearing.0.stiffness={HELD.format(1.2e8)}", "--set", f"bearing.0.damping={HELD.format(500.0)}"),
+    *("--set", f"bearing.2.stiffness={HELD.format(1.2e8)}", "--set", f"bearing.2.damping={HELD.format(500.0)}"),
+)
+"""The small gearbox with helical gears out of the middle of their shafts, whose back bearings carry the thrust."""
+
+
+def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Path) -> None:
+    """Helical gears out of the middle: shuttling leads at the mesh frequency, which the transmissibility does not have.
+
+    The lines are those of `load --sensitivity`, which has more modes at the sensors.
+    """
+    outcome = gearwhine("system", "small-gearbox", *HELICAL, "-o", "out", "-q", "--json")
+    assert outcome.code == 0, outcome.err
+    lines = outcome.document["mesh_lines"]
+    first = 28 * 1500.0 / 60.0
+    assert [line["frequency_hz"] for line in lines] == pytest.approx([first, 2.0 * first])
+    assert [line["cause"] for line in lines] == ["1× pinion -> wheel", "2× pinion -> wheel"]
+    for line in lines:
+        acceleration = line["sensor_acceleration_m_per_s2"]
+        for sensor in ("top", "right wall"):
+            error, shuttling, both = (
+                acceleration[name][sensor] for name in ("by_transmission_error", "by_load_shuttling", "together")
+            )
+            assert abs(error - shuttling) <= both <= error + shuttling
+    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+        found = data["system_line_by_load_shuttling"].sel(system_line_sensor="top").isel(system_line=0)
+        assert found.attrs["units"] == "m s-2"
+        at_top = lines[0]["sensor_acceleration_m_per_s2"]
+        assert found.item() == pytest.approx(at_top["by_load_shuttling"]["top"])
+        assert at_top["by_load_shuttling"]["top"] > 2.0 * at_top["by_transmission_error"]["top"]
+    load = gearwhine("load", "small-gearbox", *HELICAL, "--sensitivity", "--json", "-q").document
+    by_load = {(one["sensor"], round(one["frequency_hz"])): one["amplitude_m_per_s2"] for one in load["sensor_lines"]}
+    for line in lines:
+        for sensor, together in line["sensor_acceleration_m_per_s2"]["together"].items():
+            assert together == pytest.approx(by_load[sensor, round(line["frequency_hz"])], rel=0.05)
+
+
+def test_the_terminal_says_what_excites_beside_transmission_error(gearwhine: Any) -> None:
+    told = gearwhine("system", "small-gearbox", *HELICAL, "-q").out
+    assert "by transmission error alone" in told
+    assert "by load shuttling" in told
+    assert "load --sensitivity" in told
+    rows = [line.split() for line in told.splitlines() if "× pinion" in line]
+    for sensor in ("top", "right"):
+        together = [float(row[-1]) for row in rows if row[0] == sensor]
+        assert len(together) == 2
+        assert together == sorted(together, reverse=True)
+    at_an_instant = gearwhine("system", "spur-pair", "--mesh-phase", "0.2", "-q").out
+    assert "by transmission error alone" in at_an_instant
+    assert "Highest lines" not in at_an_instant
+
+
 def test_contact_of_an_instant(gearwhine: Any) -> None:
     """One pair in contact at most phases of a spur pair, two at the others: softer and stiffer mesh modes."""
     meshes = []

@@ -113,17 +113,17 @@ _DEEPEST = 3.0
 
 
 class ReliefAim(Protocol):
-    """Objective of a relief: a value of the loaded transmission error over one mesh period."""
+    """Objective of a relief: a value of the loaded mesh over one mesh period."""
 
-    def of(self, mesh: LoadedMesh) -> float:
-        """Value of the objective for a loaded mesh, at least 0."""
+    def of(self, mesh: LoadedMesh, contact: ToothContact) -> float:
+        """Value of the objective for a loaded mesh and its flanks, at least 0."""
 
 
 @dataclass(frozen=True)
 class PeakToPeak:
     """Aim at the peak-to-peak transmission error [m]."""
 
-    def of(self, mesh: LoadedMesh) -> float:
+    def of(self, mesh: LoadedMesh, contact: ToothContact) -> float:
         """Peak-to-peak transmission error [m]."""
         return mesh.peak_to_peak_transmission_error
 
@@ -131,9 +131,6 @@ class PeakToPeak:
 @dataclass(frozen=True)
 class WeightedHarmonics:
     """Aim at √(Σ (w_n e_n)²), e_n the amplitude of the transmission error at the n-th multiple of the mesh frequency.
-
-    With weights |H_n| / √2, H_n the transmissibility from the transmission error to a sensor, it is the root mean
-    square there.
 
     Attributes
     ----------
@@ -157,7 +154,7 @@ class WeightedHarmonics:
         if not any(self.weights.values()):
             raise GearError("relief aim: at least one multiple of the mesh frequency must have a weight above 0")
 
-    def of(self, mesh: LoadedMesh) -> float:
+    def of(self, mesh: LoadedMesh, contact: ToothContact) -> float:
         """Weighted root of the sum of squares, in metres times the weights' unit."""
         amplitudes = transmission_error_harmonics(mesh, max(self.weights))
         return math.sqrt(sum((weight * amplitudes[n - 1]) ** 2 for n, weight in self.weights.items()))
@@ -280,7 +277,7 @@ def optimal_tip_relief(
         if not inside:
             return float("inf")
         _, contact = contact_of(TipRelief(amount, length=length, shape=shape), coarse)
-        return max(target.of(mesh) for mesh in meshes(contact))
+        return max(target.of(mesh, contact) for mesh in meshes(contact))
 
     coarse = faces if searched_faces is None else searched_faces
     bare, plain = contact_of(None)
@@ -302,7 +299,9 @@ def optimal_tip_relief(
     pair, contact = contact_of(relief)
     # The comparison uses all slices of the face; the search may use fewer.
     with_it, without = meshes(contact), meshes(plain)
-    value, value_without = (np.array([target.of(mesh) for mesh in each]) for each in (with_it, without))
+    value, value_without = (
+        np.array([target.of(mesh, flanks) for mesh in each]) for each, flanks in ((with_it, contact), (without, plain))
+    )
     if not value.max() < value_without.max():
         relief, pair, with_it, value = None, bare, without, value_without
     swings, swings_without = (

@@ -180,7 +180,7 @@ def draw_transmissibility(
     ]
     shown = [(what, curves) for what, curves in panels if curves]
     names = [legend_height(min(len(curves), _NAMED), _COLUMNS) for _, curves in shown]
-    note = "peak amplitudes by a harmonic error of 1 µm at any frequency"
+    note = "peak amplitudes by a harmonic error of 1 µm alone at any frequency, without load shuttling"
     if len(mesh_frequencies):
         note += "; dashed: mesh frequencies at operation, and multiples"
     figure = sheet(HEAD + len(shown) * (_RESPONSE_HEIGHT + _RESPONSE_GAP) + sum(names) + FOOT, title, note)

@@ -158,7 +158,7 @@ def test_weights_are_of_the_amplitudes() -> None:
     contact = tooth_contact(PLAIN, SquareStiffness(1e8))
     mesh = loaded_transmission_error(contact, 2000.0)
     first, _, third = transmission_error_harmonics(mesh, 3)
-    assert WeightedHarmonics({1: 2.0, 3: 0.5}).of(mesh) == pytest.approx(math.hypot(2.0 * first, 0.5 * third))
+    assert WeightedHarmonics({1: 2.0, 3: 0.5}).of(mesh, contact) == pytest.approx(math.hypot(2.0 * first, 0.5 * third))
 
 
 @pytest.mark.parametrize("weights", [{}, {1: 0.0}, {0: 1.0}, {1: -1.0}, {33: 1.0}, {1: math.nan}])

@@ -1,0 +1,121 @@
+r"""Level at a sensor by the flanks of one gear pair: aim of a tip relief.
+
+About the mean load the motion at the n-th harmonic of a mesh is that of :mod:`coupling.linear.mesh_excitation`,
+
+    Z q = f_n,      f_n = k e_n d + m_n,
+
+e_n the transmission error and m_n the moments of load shuttling of its flanks. Other flanks have other e_n, m_n and k,
+and with k another Z: of one contact, the update of rank one Z + κ d dᵀ, κ = Δk + iω Δc, whose inverse is that of
+Sherman and Morrison,
+
+    sᵀ q = p·f - κ (p·d) (u·f) / (1 + κ u·d),      Zᵀ p = s,      Zᵀ u = d,
+
+s the sensor. So Z is factored once for each harmonic, and a candidate takes no solution of the machine. With a damping
+ratio c follows √k. The operating point stays: mean force, tangents of bearings and the gap over the face.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from coupling.errors import CouplingError
+from coupling.gears import LoadedMesh, ToothContact, loaded_transmission_error
+from coupling.linear.mesh_excitation import MeshHarmonicModel
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class SensorLevel:
+    """Aim at the root mean square of a sensor's acceleration over harmonics of a mesh, √(½ Σ (w_n a_n)²) [m/s²].
+
+    Attributes
+    ----------
+    model : MeshHarmonicModel
+        The machine with any flanks.
+    mesh : int
+        Number of the gear mesh.
+    sensor : str
+    weights : mapping of int to float
+        w_n by n from 1.
+    damping_follows : bool
+        Whether the mesh damping is by a damping ratio, so that it follows the mesh stiffness.
+
+    Raises
+    ------
+    CouplingError
+        Where the machine has no such sensor, or the mesh carries no mean force or does not turn.
+    """
+
+    model: MeshHarmonicModel
+    mesh: int
+    sensor: str
+    weights: Mapping[int, float]
+    damping_follows: bool = True
+
+    def __post_init__(self) -> None:
+        """Check that the mesh drives the sensor."""
+        machine = self.model.machine
+        if self.sensor not in machine.sensor_rows:
+            raise CouplingError(f"no sensor {self.sensor!r}; there are: {', '.join(machine.sensor_rows) or 'none'}")
+        if not self._loaded:
+            raise CouplingError(
+                f"gear mesh number {self.mesh} carries no mean force or does not turn; expected one that drives sensors"
+            )
+
+    def of(self, mesh: LoadedMesh, contact: ToothContact) -> float:
+        """Level with some flanks, all teeth alike [m/s²]."""
+        total = sum((self.weights[n] * abs(a)) ** 2 for n, a in self.accelerations(mesh, contact).items())
+        return math.sqrt(0.5 * total)
+
+    def accelerations(self, mesh: LoadedMesh, contact: ToothContact) -> dict[int, complex]:
+        """Complex amplitudes of the sensor's acceleration by the harmonic [m/s²], with some flanks.
+
+        Parameters
+        ----------
+        mesh : LoadedMesh
+            Of the flanks over one mesh period.
+        contact : ToothContact
+            The flanks.
+        """
+        model, number, force = self.model, self._loaded[0], mesh.force
+        if model.machine.flanks(number)[1]:
+            contact = contact.back_flanks
+            mesh = loaded_transmission_error(contact, force, mesh.phases)
+        stiffness, direction = mesh.mean_mesh_stiffness, model.machine.system.contacts[number].direction
+        error = model.transmission_error(number, mesh, hunting_period=1, count=max(self.weights))
+        shuttling = model.shuttling_loads(number, contact, force)
+        before, damping = float(model.contact.stiffness[number]), float(model.contact.damping[number])
+        damping_change = damping * (math.sqrt(stiffness / before) - 1.0) if self.damping_follows else 0.0
+        found = {}
+        for n, (w, by_sensor, by_contact) in self._adjoints.items():
+            load = stiffness * error[n - 1] * direction
+            if n in shuttling:
+                load = load + shuttling[n]
+            change = stiffness - before + 1j * w * damping_change
+            moved = by_sensor @ load
+            moved -= change * (by_sensor @ direction) * (by_contact @ load) / (1.0 + change * (by_contact @ direction))
+            found[n] = complex(-(w**2) * moved)
+        return found
+
+    @cached_property
+    def _loaded(self) -> tuple[int, ...]:
+        """Contacts of the mesh that carry a mean force: its drive flanks or its back flanks."""
+        return tuple(number for number in self.model.loaded if self.model.machine.flanks(number)[0] == self.mesh)
+
+    @cached_property
+    def _adjoints(self) -> dict[int, tuple[float, ComplexArray, ComplexArray]]:
+        """By the harmonic, ω [rad/s], p and u of shape (n,)."""
+        machine, contact = self.model.machine, self.model.machine.system.contacts[self._loaded[0]]
+        loads = np.stack([machine.sensor_rows[self.sensor], contact.direction], axis=1)
+        found = {}
+        for n in self.weights:
+            w = 2.0 * np.pi * n * abs(contact.rate)
+            by_sensor, by_contact = linalg.solve(self.model.dynamic_stiffness(w).T, loads).T
+            found[n] = (w, by_sensor, by_contact)
+        return found
