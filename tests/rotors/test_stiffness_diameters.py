@@ -150,16 +150,28 @@ def test_a_cone_is_stiffened_up_to_the_diameter_and_keeps_its_mass() -> None:
     np.testing.assert_allclose(about_left, rotor.mass * rotor.centre_of_mass, rtol=1e-12)
 
 
-def test_modes_of_a_stiffened_cone_are_those_of_many_short_cylinders() -> None:
+SLIM = Segment(0.15, 0.03, 0.0, STEEL, "cowper", right_outer_diameter=0.036)
+
+
+@pytest.mark.parametrize(
+    ("cone", "stiff"),
+    [
+        (CONE, [StiffnessDiameter(0.03, 0.12, 0.042, 0.05)]),
+        # Two bodies alike on places of different mass.
+        (SLIM, [StiffnessDiameter(at, at + 0.03, 0.06, 0.06) for at in (0.015, 0.105)]),
+    ],
+)
+def test_modes_of_a_stiffened_cone_are_those_of_many_short_cylinders(
+    cone: Segment, stiff: list[StiffnessDiameter]
+) -> None:
     """The error of n steps falls as 1/n², so that Richardson's extrapolation of two of them is the reference."""
-    stiff = [StiffnessDiameter(0.03, 0.12, 0.042, 0.05)]
-    rotor = Rotor("cone", [CONE], [Disc(0.15, 0.3, 1e-4, 1e-4)], stiffness_diameters=stiff)
+    rotor = Rotor("cone", [cone], [Disc(0.15, 0.3, 1e-4, 1e-4)], stiffness_diameters=stiff)
 
     def stepped(count: int) -> Rotor:
         middles = (np.arange(count) + 0.5) / count
-        sections = [CONE.section(float(place)) for place in middles]
+        sections = [cone.section(float(place)) for place in middles]
         parts: list[Segment | Coupling] = [
-            Segment(CONE.length / count, one.outer_diameter, one.inner_diameter, STEEL, "cowper") for one in sections
+            Segment(cone.length / count, one.outer_diameter, one.inner_diameter, STEEL, "cowper") for one in sections
         ]
         return replace(rotor, segments=parts)
 
