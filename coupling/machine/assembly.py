@@ -334,8 +334,8 @@ def _bearing(
     held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
     held = np.union1d(held, [0, 1])
     if isinstance(mounted.law, RollingLaw):
-        # Its tangent may vanish where its force does not stay zero.
-        held = np.arange(5)
+        # Its tangent may vanish where its force does not stay zero. The ring of a floating one slides along z.
+        held = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
     if table is not None:
         ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
         held = np.union1d(held, np.flatnonzero(ever))

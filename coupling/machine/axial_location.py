@@ -4,7 +4,8 @@ A single row with a contact angle carries thrust in one sense alone. Two such ro
 senses: back to back (O) where the left one carries the shaft's force towards +z and the right one that towards -z, so
 that the contact lines run apart towards the axis; face to face (X) the other way round (ISO 5593). An axial offset of
 their rings at assembly presses them against each other, a rigid preload. A spring's force on the shaft presses only the
-row that carries it.
+row that carries it. A floating bearing carries no thrust; where two ball bearings carry it both ways, how they share it
+depends on the place of their rings at assembly.
 """
 
 from collections.abc import Sequence
@@ -50,6 +51,19 @@ class AxialSupport:
         if len(rows) != 2 or rows[0].position == rows[1].position or _spherical(rows[0]):
             return None
         return {(1, -1): "O", (-1, 1): "X"}.get((rows[0].direction, rows[1].direction))  # type: ignore[return-value]
+
+    @property
+    def has_balls(self) -> bool:
+        """Whether it is a ball bearing by its elements."""
+        return self.rolling is not None and isinstance(self.rolling.rows[0], BallRow)
+
+    @property
+    def is_set(self) -> bool:
+        """Whether an axial offset of its single row, or a spring, sets it against other bearings at assembly."""
+        if self.rolling is None:
+            return False
+        # Offsets of two rows press them against each other, not against another bearing.
+        return self.spring != 0.0 or (len(self.rolling.rows) == 1 and self.rolling.is_preloaded)
 
     @property
     def spring(self) -> float:
@@ -106,8 +120,25 @@ class AxialLocation:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on rows that all carry thrust one way, and on springs that do not press rows against each other."""
-        return (*self._one_way(), *self._springs())
+        """Sentences on the rows that carry thrust.
+
+        On rows that all carry it one way, springs that do not press rows against each other, and ball bearings that
+        share it both ways.
+        """
+        return (*self._one_way(), *self._springs(), *self._shared())
+
+    def _shared(self) -> tuple[str, ...]:
+        """Ball bearings that locate the shaft both ways side by side, none of them offset or sprung at assembly."""
+        sharing = [one for one in self.bearings if one.senses == _BOTH and one.has_balls]
+        if len(sharing) < 2 or any(one.is_set for one in self.bearings):
+            return ()
+        names = _listed([one.name for one in sharing])
+        return (
+            f"shaft {self.shaft!r} is located both ways by {names}: how they share its thrust is statically "
+            "indeterminate, and depends on where their rings are at assembly; give all but one of them "
+            "`floating = true` where its outer ring slides in its seat, or an `axial_offset` where they are set "
+            "against each other",
+        )
 
     def _one_way(self) -> tuple[str, ...]:
         for sense in (1, -1):

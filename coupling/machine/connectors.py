@@ -79,6 +79,11 @@ class RollingLaw:
         """Displacement at the mean load [m, rad], shape (5,)."""
         return self.state.displacement
 
+    @property
+    def floats(self) -> bool:
+        """Whether the outer ring slides in its seat along z, without axial force."""
+        return self.state.bearing.floating
+
 
 @dataclass(frozen=True)
 class GapLaw:

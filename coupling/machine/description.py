@@ -579,7 +579,9 @@ class Machine:
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
         pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
         forces = [one for one in self.forces if one.rotor == shaft.name]
-        pushed_at += [mounted.bearing.at for mounted in held if isinstance(mounted.law, RollingLaw)]
+        laws = [(one.bearing.at, one.law) for one in held]
+        thrusts_at = [*pushed_at, *(at for at, law in laws if isinstance(law, RollingLaw) and not law.floats)]
+        pushed_at += [at for at, law in laws if isinstance(law, RollingLaw)]
         modal = modal_rotor(
             self.rotor(shaft.name),
             [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in held],
@@ -588,7 +590,7 @@ class Machine:
             gears_at=[gear.at for gear in gears],
             forces_at=[*(one.at for one in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=pushed_at,
-            thrusts_at=[*pushed_at, *(one.at for one in forces if one.force[2] != 0.0)],
+            thrusts_at=[*thrusts_at, *(one.at for one in forces if one.force[2] != 0.0)],
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 

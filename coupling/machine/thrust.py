@@ -164,7 +164,7 @@ def require_thrust_carried(
         raise CouplingError(
             "; ".join(loose)
             + "; expected a bearing that carries the thrust (a 5x5 stiffness matrix with the entry zz, "
-            "or a rolling bearing), or helical gears whose thrusts on the rotor cancel"
+            "or a rolling bearing that does not float), or helical gears whose thrusts on the rotor cancel"
         )
 
 

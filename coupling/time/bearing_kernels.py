@@ -7,6 +7,10 @@ ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 
+The outer ring of a floating bearing takes the place along z at which the elements have no axial force; forces and
+tangent are condensed over it, see :mod:`rotors.rolling_bearings.equilibrium`. As the energy is least there, its slope
+over ψ is that at the place held.
+
 A gap of radius g around the shaft pushes with F ((r - g) / depth)^n against the radius r.
 
 Importing this module imports numba.
@@ -21,6 +25,10 @@ from coupling.time.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, RO
 from rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
+
+# Last step of a floating ring along z [m], whose effect on the forces is of second order; most steps.
+_SEATED = 1e-14
+_SEATING_STEPS = 100
 
 
 @inner()
@@ -135,19 +143,11 @@ def _gap(shape: FloatArray, q: FloatArray, force: FloatArray, tangent: FloatArra
     return float(push * deep / (exponent + 1.0))
 
 
-@uncounted()
-def bearing_force(
+@inner()
+def _rows(
     bearings: Bearings, number: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
-    """Force (5,) of the shaft on a bearing displaced by q (5,), and its tangent (5, 5); both are overwritten.
-
-    Returns
-    -------
-    energy : float
-        [J].
-    slope : float
-        Its derivative by the nominal time [J/s]: the power of the rotating cage at nominal speed.
-    """
+    """Force and tangent of all rows, overwritten, with the ring held at q; returns energy [J] and its slope [J/s]."""
     for i in range(5):
         force[i] = 0.0
         for j in range(5):
@@ -164,6 +164,57 @@ def bearing_force(
             added, by_angle = _gap(shape, q, force, tangent), 0.0
         energy += added
         slope += by_angle * bearings.cage[row, 1]
+    return energy, slope
+
+
+@inner()
+def _release(force: FloatArray, tangent: FloatArray) -> float:
+    """Condense z, which is left to itself near the least energy; returns by how much that is less [J]."""
+    push, stiffness = force[2], tangent[2, 2]
+    if stiffness > 0.0:
+        for i in range(5):
+            if i != 2:
+                force[i] -= push / stiffness * tangent[i, 2]
+                for j in range(5):
+                    if j != 2:
+                        tangent[i, j] -= tangent[i, 2] * tangent[2, j] / stiffness
+    force[2] = 0.0
+    for i in range(5):
+        tangent[i, 2] = 0.0
+        tangent[2, i] = 0.0
+    return float(0.5 * push * push / stiffness) if stiffness > 0.0 else 0.0
+
+
+@uncounted()
+def bearing_force(
+    bearings: Bearings, number: int, nominal_time: float, q: FloatArray, force: FloatArray, tangent: FloatArray
+) -> tuple[float, float]:
+    """Force (5,) of the shaft on a bearing displaced by q (5,), and its tangent (5, 5); both are overwritten.
+
+    In q a floating bearing gets the place of its ring along z, for which the given one is the start.
+
+    Returns
+    -------
+    energy : float
+        [J].
+    slope : float
+        Its derivative by the nominal time [J/s]: the power of the rotating cage at nominal speed.
+    """
+    energy, slope = _rows(bearings, number, nominal_time, q, force, tangent)
+    if bearings.floating[number]:
+        low, high = -math.inf, math.inf
+        for _ in range(_SEATING_STEPS):
+            stiffness = tangent[2, 2]
+            if stiffness <= 0.0 or abs(force[2]) <= _SEATED * stiffness:
+                break
+            if force[2] > 0.0:
+                high = q[2]
+            else:
+                low = q[2]
+            place = q[2] - force[2] / stiffness
+            q[2] = place if low < place < high else 0.5 * (low + high)
+            energy, slope = _rows(bearings, number, nominal_time, q, force, tangent)
+        return energy - _release(force, tangent), slope
     preload = bearings.preload[number]
     force[2] -= preload
     return energy - preload * q[2], slope

@@ -105,6 +105,7 @@ class Bearings(NamedTuple):
     linear: FloatArray  # (b, 5, 5) stiffness that the connectors hold already, its leading part
     fixed: FloatArray  # (b, 5) displacement along axes that are no directions
     preload: FloatArray  # (b,) of a spring along z [N]
+    floating: npt.NDArray[np.bool_]  # (b,) whether the outer ring slides along z; ``fixed`` has the start of its place
     first_row: IntArray  # (b + 1,)
     kind: IntArray  # (w,) BALLS, ROLLERS or GAP
     elements: IntArray  # (w,) number of rolling elements
@@ -193,6 +194,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
     """Arrays of the laws of some bearings, see :class:`coupling.time.kernel_arrays.Bearings`."""
     b = len(connectors)
     linear, fixed, preload = np.zeros((b, 5, 5)), np.zeros((b, 5)), np.zeros(b)
+    floating = np.zeros(b, dtype=np.bool_)
     rows: list[Row] = []
     first, first_row = [0], [0]
     for number, connector in enumerate(connectors):
@@ -201,6 +203,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         fixed[number] = connector.law.reference
         if isinstance(connector.law, RollingLaw):
             preload[number] = connector.law.state.bearing.axial_preload
+            floating[number] = connector.law.state.bearing.floating
         rows += _rows(connector.law, connector.speed)
         first.append(first[-1] + d)
         first_row.append(len(rows))
@@ -217,6 +220,7 @@ def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
         linear=linear,
         fixed=fixed,
         preload=preload,
+        floating=floating,
         first_row=np.array(first_row, dtype=np.int64),
         kind=np.array([row[0] for row in rows], dtype=np.int64),
         elements=np.array([row[1] for row in rows], dtype=np.int64),

@@ -176,6 +176,10 @@ class _Mounted(Table):
     axial_offset: Length = 0.0
     """Displacement of the inner ring along `carries` at assembly: rigid preload against another bearing of the shaft,
     whose force `gearwhine load` finds."""
+    floating: bool = False
+    """Whether the outer ring slides in its seat along the axis, without friction: a floating bearing, which takes no
+    axial force; another bearing of the shaft locates it. Not for rows that carry thrust one way only or are pressed
+    axially."""
     carries: Literal["+z", "-z"] = "+z"
     """Direction of the axial force of the shaft that loads the elements."""
     arrangement: Arrangement = "single"
@@ -216,6 +220,8 @@ class _Mounted(Table):
             raise wrong(f"'single': a {self.kind} bearing carries axial load both ways by itself", "arrangement")
         if self.axial_offset != 0.0 and self.arrangement != "single":
             raise wrong("nothing: two rows have the preload between them", "axial_offset")
+        if self.floating:
+            self._require_floats()
         if self.flanges != "none" and not cylinders:
             raise wrong("nothing: only cylindrical rollers run between flanges", "flanges")
         if (self.flanges == "none") != (self.flange_stiffness is None):
@@ -225,6 +231,17 @@ class _Mounted(Table):
             kind = "four-point balls" if self.kind == "four-point" else "rollers between flanges"
             raise wrong(f"'linear': {kind} have no law in the transient", "law")
         return self
+
+    def _require_floats(self) -> None:
+        """Refuse a sliding outer ring of rows that it lets slide open, or that are pressed axially at assembly."""
+        for key in ("preload", "axial_offset"):
+            if getattr(self, key) != 0.0:
+                raise wrong("nothing: the outer ring of a floating bearing slides and holds no axial force", key)
+        if self.arrangement != "single":
+            raise wrong("false: only a single bearing floats, not rows set against each other", "floating")
+        if self.kind in ("angular-contact", "tapered-roller") or self.flanges == "one":
+            kind = "rollers with a flange on one side" if self.flanges == "one" else f"{self.kind} bearings"
+            raise wrong(f"false: {kind} would slide open, as they carry thrust one way only", "floating")
 
     @property
     def kind(self) -> CatalogueType:
@@ -262,7 +279,7 @@ class _Mounted(Table):
         rows = standing_rows(self.kind, row, self.width)
         if len(rows) == 2 or self.arrangement == "single":
             rows = rows if len(rows) == 2 else (row.facing(sense),)
-            return RollingBearing(rows, sense * self.preload, label)
+            return RollingBearing(rows, sense * self.preload, label, self.floating)
         assert self.spacing is not None
         if self.arrangement == "tandem":
             pair = paired(row, "tandem", self.spacing)
@@ -688,6 +705,18 @@ class Bearing(Table):
         depends = isinstance(self.stiffness, RollingStiffness | StopStiffness)
         if self.load is not None and not depends:
             raise wrong("nothing: only the stiffness of a rolling bearing or a stop depends on its load", "load")
+        return self
+
+    @model_validator(mode="after")
+    def _floats(self) -> Bearing:
+        if not isinstance(self.stiffness, RollingStiffness) or not self.stiffness.rolling.floating:
+            return self
+        if self.load is not None and self.load.z != 0.0:
+            raise wrong("0: a floating bearing takes no axial force", "load", "z")
+        if isinstance(self.damping, MatrixDamping):
+            rows = self.damping.matrix
+            if any(rows[2]) or any(row[2] for row in rows):
+                raise wrong("zeros in the row and column of z: a floating bearing takes no axial force", "damping")
         return self
 
     @property

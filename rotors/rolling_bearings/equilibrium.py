@@ -10,11 +10,20 @@ equilibrium, and a trust region finds it from any start. The tangent stiffness i
 `linearised_bearing` makes the linear bearing of a rotor. `RollingElements` gives φ and its derivatives at any
 displacement, so that a machine can minimise the energy of its shafts and all its bearings together. Krämer's formulas
 give a first estimate of the stiffness.
+
+The outer ring of a floating bearing slides along z without friction. Its energy is the least over the place w of the
+inner ring against it,
+
+    ψ(x, y, φ_x, φ_y) = min_w φ(x, y, w, φ_x, φ_y),
+
+which is convex as well. At the minimum ∂φ/∂w = 0: there is no axial force, the other forces are those of φ, and the
+Hessian is condensed, H − h hᵀ / h_ww with the column h of w. Where clearance leaves h_ww zero, h is zero too, as H is
+positive semidefinite.
 """
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -52,7 +61,7 @@ class RollingState:
     bearing
         The bearing.
     displacement
-        (5,): of the inner ring against the outer.
+        (5,): of the inner ring against the outer; of a floating bearing z follows from the other four.
     load
         (5,): external load on the inner ring, constraint forces included, the preload spring excluded.
     reaction
@@ -115,11 +124,16 @@ LARGEST_APPROACH = 0.02
 _TOLERANCE = 1e-14
 _ACCEPTED = 1e-10
 _LEAST_FORCE = 1e-9
+# Last step of a floating ring over the element's diameter, whose effect on the forces is of second order; most steps.
+_SEATED = 1e-12
+_SEATING_STEPS = 100
 
 
 @dataclass(frozen=True)
 class RollingElements:
     """Elements of a bearing between its rings: their energy over the inner ring's displacement, prepared once.
+
+    The displacement of a floating bearing is against the seat; its z has no energy.
 
     Parameters
     ----------
@@ -160,7 +174,7 @@ class RollingElements:
             (N and N·m); its Hessian, the tangent stiffness (5, 5); ``noise`` (J) and ``force`` (N), the scales of the
             rounding of energy and forces.
         """
-        q = np.asarray(displacement, dtype=np.float64)
+        q = self.seated(displacement)
         rows = [row.energy(q) for row in self.contacts]
         value, load = sum(row.value for row in rows), sum(row.force for row in rows)
         preload = self.bearing.axial_preload
@@ -168,7 +182,7 @@ class RollingElements:
         gradient[2] -= preload
         work = preload * float(q[2])
         hessian = np.sum([row.hessian for row in rows], axis=0)
-        return Local(
+        local = Local(
             value=value - work,
             gradient=gradient,
             hessian=0.5 * (hessian + hessian.T),
@@ -176,10 +190,30 @@ class RollingElements:
             noise=value + abs(work) + 0.1 * load * self.bearing.largest_element,
             force=load + abs(preload) + _LEAST_FORCE * self.bearing.force_scale,
         )
+        return _released(local) if self.bearing.floating else local
+
+    def seated(self, displacement: FloatArray) -> FloatArray:
+        """Displacement of the inner ring against the outer one, (5,): of a floating bearing with the z of no force."""
+        q = np.array(displacement, dtype=np.float64)
+        if not self.bearing.floating:
+            return q
+        # Newton's method on the axial force, which rises with z, within the bracket of its signs.
+        q[2], low, high = 0.0, -math.inf, math.inf
+        for _ in range(_SEATING_STEPS):
+            rows = [row.energy(q) for row in self.contacts]
+            force = float(sum(row.gradient[2] for row in rows))
+            stiffness = float(sum(row.hessian[2, 2] for row in rows))
+            if stiffness <= 0.0 or abs(force) <= _SEATED * self.bearing.largest_element * stiffness:
+                break
+            low, high = (low, float(q[2])) if force > 0.0 else (float(q[2]), high)
+            place = float(q[2]) - force / stiffness
+            q[2] = place if low < place < high else 0.5 * (low + high)
+        return q
 
     def loads(self, displacement: FloatArray) -> tuple[ElementLoads, ...]:
         """Element loads of each row with the inner ring displaced, (5,)."""
-        return tuple(row.loads(np.asarray(displacement, dtype=np.float64)) for row in self.contacts)
+        q = self.seated(displacement)
+        return tuple(row.loads(q) for row in self.contacts)
 
     @cached_property
     def contacts(self) -> tuple[RowContacts, ...]:
@@ -237,7 +271,8 @@ def rolling_equilibrium(
         not pushed,
         f"axial load on {bearing.name}",
         float(applied[2]),
-        "none, or z held: cylindrical rollers without flanges carry none",
+        "none, or z held: "
+        + ("its outer ring floats" if bearing.floating else "cylindrical rollers without flanges carry none"),
     )
 
     # Rotations as displacements of the pitch circle, so that all five are lengths.
@@ -305,16 +340,16 @@ def rolling_state(
 def _state(
     elements: RollingElements, displacement: FloatArray, load: FloatArray, residual: float, iterations: int
 ) -> RollingState:
-    local, bearing = elements.at(displacement), elements.bearing
+    local, bearing, seated = elements.at(displacement), elements.bearing, elements.seated(displacement)
     state = RollingState(
         bearing=bearing,
-        displacement=displacement,
+        displacement=seated,
         load=load,
         reaction=local.gradient + bearing.axial_preload * np.eye(5)[2],
         stiffness=local.hessian,
         rows=elements.loads(displacement),
         row_thrusts=tuple(
-            row.direction * float(contacts.energy(displacement).gradient[2])
+            row.direction * float(contacts.energy(seated).gradient[2])
             for row, contacts in zip(bearing.rows, elements.contacts, strict=True)
         ),
         speed=elements.speed,
@@ -323,6 +358,19 @@ def _state(
     )
     _require_proof(state)
     return state
+
+
+def _released(local: Local) -> Local:
+    """Energy with z left to itself, near its least: the quadratic's minimum over z, and no force along it."""
+    gradient, hessian = local.gradient.copy(), local.hessian.copy()
+    push, column, stiffness = float(gradient[2]), hessian[:, 2].copy(), float(hessian[2, 2])
+    value = local.value
+    if stiffness > 0.0:
+        value -= 0.5 * push**2 / stiffness
+        gradient -= push / stiffness * column
+        hessian -= np.outer(column, column) / stiffness
+    gradient[2] = hessian[2, :] = hessian[:, 2] = 0.0
+    return replace(local, value=value, gradient=gradient, hessian=hessian)
 
 
 def _contacts(row: Row, speed: float, cage_angle: float) -> RowContacts:

@@ -2,7 +2,8 @@
 
 The inner ring moves by q = (x, y, z, rotation about x, rotation about y) against the outer, taken at the bearing's
 centre. A row's own direction is +1 where pushing the inner ring towards +z loads its contacts, −1 where −z does.
-Double-row and paired bearings stand back to back, face to face or in tandem.
+Double-row and paired bearings stand back to back, face to face or in tandem. A floating bearing has an outer ring that
+slides in its seat along z, without friction: it takes the place at which the elements have no axial force.
 """
 
 from collections.abc import Sequence
@@ -27,16 +28,21 @@ class RollingBearing:
         A constant force of a spring on the inner ring along z, N.
     name
         Name in messages.
+    floating
+        Whether the outer ring slides freely in its seat along z; q is then the inner ring's displacement against the
+        seat.
 
     Raises
     ------
     RotorError
-        No rows, a preload that is not finite, or one on rollers without flanges, which have no axial stiffness.
+        No rows, a preload that is not finite, or one on rollers without flanges, which have no axial stiffness. A
+        floating bearing with a preload, an axial offset of a single row, or rows that carry thrust one way only.
     """
 
     rows: Sequence[Row]
     axial_preload: float = 0.0
     name: str = "rolling bearing"
+    floating: bool = False
 
     def __post_init__(self) -> None:
         """Check for at least one row, and that a preloaded bearing has axial stiffness; keep a tuple."""
@@ -44,6 +50,8 @@ class RollingBearing:
         if not self.rows:
             raise RotorError(f"{self.name} has no rows; expected at least one")
         require_finite(f"axial preload of {self.name}", self.axial_preload)
+        if self.floating:
+            self._require_floats()
         held = self.axial_preload == 0.0 or self.has_axial_stiffness
         require(
             held,
@@ -51,6 +59,20 @@ class RollingBearing:
             self.axial_preload,
             "none: cylindrical rollers carry no axial load without flanges",
         )
+
+    def _require_floats(self) -> None:
+        """Refuse a floating bearing that slides open, or whose preload its sliding ring does not hold."""
+        carried = frozenset[int]().union(*(row.thrust_senses for row in self.rows))
+        if len(carried) == 1:
+            raise RotorError(
+                f"{self.name} floats, and its rows carry thrust one way only: they slide open; expected rows that "
+                "carry it both ways or not at all"
+            )
+        sliding = "none: the outer ring of a floating bearing slides and holds no axial force"
+        require(self.axial_preload == 0.0, f"axial preload of {self.name}", self.axial_preload, sliding)
+        if len(self.rows) == 1:
+            offset = self.rows[0].axial_offset
+            require(offset == 0.0, f"axial offset of {self.name}", offset, sliding)
 
     @property
     def estimated(self) -> bool:
@@ -69,12 +91,14 @@ class RollingBearing:
 
     @property
     def has_axial_stiffness(self) -> bool:
-        """Whether any row carries an axial load."""
-        return any(row.has_axial_stiffness for row in self.rows)
+        """Whether the bearing holds the shaft axially: any row carries an axial load, and it does not float."""
+        return not self.floating and any(row.has_axial_stiffness for row in self.rows)
 
     @property
     def thrust_senses(self) -> frozenset[int]:
-        """Senses of the shaft's axial force that the rows carry: 1 towards +z, −1 towards −z."""
+        """Senses of the shaft's axial force that it carries: 1 towards +z, −1 towards −z; none of a floating one."""
+        if self.floating:
+            return frozenset()
         return frozenset[int]().union(*(row.thrust_senses for row in self.rows))
 
     @property

@@ -66,6 +66,10 @@ BEARINGS = {
     "thrown four-point": (RollingBearing([FOUR_POINT]), 2000.0),
     "thrown self-aligning": (paired(SELF_ALIGNING, "face to face", 45e-3 * math.tan(0.2)), 600.0),
     "self-aligning": (paired(SELF_ALIGNING, "face to face", 45e-3 * math.tan(0.2)), 0.0),
+    "floating": (RollingBearing([BallRow(7, 11.5e-3, 43.5e-3, clearance=5e-6)], floating=True), 0.0),
+    "thrown floating": (RollingBearing([BallRow(7, 11.5e-3, 43.5e-3, clearance=5e-6)], floating=True), 900.0),
+    "floating four-point": (RollingBearing([FOUR_POINT], floating=True), 0.0),
+    "floating spherical": (RollingBearing([SPHERICAL.facing(1), SPHERICAL.facing(-1)], floating=True), 0.0),
 }
 
 
@@ -332,7 +336,7 @@ def test_a_machine_that_adds_bearings_to_a_spring_finds_its_rest() -> None:
 def test_a_state_at_an_equilibrium_s_displacement_is_that_equilibrium(kind: str) -> None:
     bearing, speed = BEARINGS[kind]
     load = np.array([700.0, -300.0, 250.0 * bearing.has_axial_stiffness, 1.0, -0.5])
-    if kind in ("spherical", "self-aligning", "thrown self-aligning"):
+    if kind.endswith(("spherical", "self-aligning")):
         load[3:] = 0.0
     if kind == "thrown tapered":
         load[2] = -2500.0
