@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from gearwhine.case import Case, LoadedCase, load_case, parse_case
-from gearwhine.case.checks import warnings_of
+from gearwhine.case import Case, LoadedCase, changed_case, load_case
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -50,8 +50,7 @@ def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequenc
     CaseError
         With everything that is wrong.
     """
-    texts = [f"{key}={_text(value)}" for key, value in changes.items()] if isinstance(changes, Mapping) else changes
-    return Study(load_case(source, tuple(texts)), source=(os.fspath(source), tuple(texts)))
+    return Study(_Origin(os.fspath(source), changes=_texts(changes)))
 
 
 def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
@@ -90,8 +89,22 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
     >>> round(study.rotors().document["rotors"][0]["mass_kg"], 4)
     2.7744
     """
-    case = parse_case({name: _plain(table) for name, table in tables.items()}, folder=folder)
-    return Study(LoadedCase(case, Path(folder), warnings_of(case)))
+    return Study(_Origin(tables={name: _plain(table) for name, table in tables.items()}, folder=Path(folder)))
+
+
+@dataclass(frozen=True)
+class _Origin:
+    """What a study's case is read from: a file or a bundled case, or tables; and changes of its keys."""
+
+    file: str | None = None
+    tables: Mapping[str, object] = field(default_factory=dict)
+    folder: Path = Path()
+    changes: tuple[str, ...] = ()
+
+    def read(self) -> LoadedCase:
+        if self.file is not None:
+            return load_case(self.file, self.changes)
+        return changed_case(dict(self.tables), self.changes, folder=self.folder)
 
 
 class Study:
@@ -109,13 +122,12 @@ class Study:
         Receives the progress of long work in words; silent by default.
     """
 
-    def __init__(
-        self, loaded: LoadedCase, *, source: tuple[str, tuple[str, ...]] | None = None, progress: Progress = silent
-    ) -> None:
+    def __init__(self, origin: _Origin, progress: Progress = silent) -> None:
+        loaded = origin.read()
         self.case: Case = loaded.case
         self.warnings = loaded.warnings
         self.progress = progress
-        self._source = source
+        self._origin = origin
         self._housing: SolvedHousing | None = None
 
     def __repr__(self) -> str:
@@ -126,6 +138,31 @@ class Study:
         from gearwhine.notebook import case_html
 
         return case_html(self.case)
+
+    def changed(self, changes: Mapping[str, object] | Sequence[str]) -> Study:
+        """Return a study of the same case with other values of some keys; this one stays as it is.
+
+        A housing that this study has solved is not solved again where the changes leave its modes, damping, seats and
+        sensors as they are: those of torque, gears, bearing stiffness or preload do, a bearing's position does not.
+
+        Parameters
+        ----------
+        changes : mapping or sequence of str
+            As of :func:`load`.
+
+        Raises
+        ------
+        CaseError
+            With everything that is wrong.
+        """
+        origin = replace(self._origin, changes=(*self._origin.changes, *_texts(changes)))
+        other = Study(origin, self.progress)
+        if self._housing is not None and other.case.housing is not None:
+            from gearwhine.solve.housing_modes import housing_key
+
+            if housing_key(self.case) == housing_key(other.case):
+                other._housing = self._housing
+        return other
 
     @property
     def housing(self) -> SolvedHousing | None:
@@ -333,10 +370,11 @@ class Study:
         from gearwhine.analyses import machine
         from gearwhine.case import CaseError, Problem
 
-        if self._source is None:
+        if self._origin.file is None:
             raise CaseError([Problem("sweep", "a case built in Python", "a case file, which the workers read")])
+        source = (self._origin.file, self._origin.changes)
         return machine.sweep(
-            self.case, self._source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
+            self.case, source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
         )
 
     def export(
@@ -357,6 +395,13 @@ class Study:
         from gearwhine.analyses.case import export_results
 
         return list(export_results(Path(folder), self.case, formats, signals=signals, seconds=seconds)["files"])
+
+
+def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:
+    """Return changes of keys as ``key=value``."""
+    if isinstance(changes, Mapping):
+        return tuple(f"{key}={_text(value)}" for key, value in changes.items())
+    return tuple(changes)
 
 
 def _text(value: object) -> str:

@@ -26,7 +26,15 @@ from gearwhine.case.errors import CaseError, Problem, did_you_mean
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount, amounts
 from gearwhine.case.gears import Gear, GearPair, shaft_of
 from gearwhine.case.housing import CadFile, Housing, Material, MeshFile, Seat, Sensor, Support
-from gearwhine.case.load import LoadedCase, bundled_case, bundled_cases, bundled_files, load_case, parse_case
+from gearwhine.case.load import (
+    LoadedCase,
+    bundled_case,
+    bundled_cases,
+    bundled_files,
+    changed_case,
+    load_case,
+    parse_case,
+)
 from gearwhine.case.measured import Measured, Update, UpdateParameter
 from gearwhine.case.model import Case, case_document, dump_case, require
 from gearwhine.case.operation import Operation, Sweep, TorqueLine, Transient
@@ -89,6 +97,7 @@ __all__ = [
     "bundled_files",
     "campbell_speeds",
     "case_document",
+    "changed_case",
     "did_you_mean",
     "dump_case",
     "load_case",

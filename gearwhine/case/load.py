@@ -181,14 +181,11 @@ class LoadedCase:
     ----------
     case
         Checked, in SI.
-    path
-        The file it was read from.
     warnings
         Allowed but unlikely choices, a sentence each.
     """
 
     case: Case
-    path: Path
     warnings: tuple[str, ...]
 
 
@@ -209,18 +206,41 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
         With everything that is wrong.
     """
     path, content = _read(source)
-    written = _as_case(_parse(content, path.name), path)
+    return changed_case(_as_case(_parse(content, path.name), path), overrides, folder=path.parent, source=path.name)
+
+
+def changed_case(
+    written: dict[str, Any], overrides: Sequence[str] = (), *, folder: Path, source: str = ""
+) -> LoadedCase:
+    """Change and check a case given as nested tables and lists.
+
+    Parameters
+    ----------
+    written
+        As TOML gives it.
+    overrides
+        As of :func:`load_case`.
+    folder
+        Where relative file names start.
+    source
+        The file's name, for messages.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
 
     def resolved(document: dict[str, Any]) -> Mapping[str, Any]:
         try:
-            return case_document(parse_case(document, folder=path.parent))
+            return case_document(parse_case(document, folder=folder))
         except CaseError:  # which a later change may mend
             return document
 
     document, sources = apply_overrides(written, overrides, resolved)
     document = without_changed(document, written, sources.keys())
-    case = parse_case(document, folder=path.parent, source=path.name, sources=sources)
-    return LoadedCase(case, path, warnings_of(case))
+    case = parse_case(document, folder=folder, source=source, sources=sources)
+    return LoadedCase(case, warnings_of(case))
 
 
 def parse_case(

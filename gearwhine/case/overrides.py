@@ -50,7 +50,8 @@ def apply_overrides(
     A value is written as in TOML; what is not TOML (``10 mm``, ``lumped``) stands for itself as text. An empty
     value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say. One
     thickness of all walls of a box is written out for each of them where a path leads to one of them. A step ``*``
-    stands for every entry of a list or a table, and leaves out those that have not the key, as written or by default.
+    stands for every entry of a list or a table, and leaves out those that have not the key, as written or by default;
+    where no entry of a list has it, all get it.
 
     Parameters
     ----------
@@ -83,7 +84,7 @@ def apply_overrides(
             # What is by default alone cannot be taken away.
             document = _written_out(document, steps)
             whole = resolved(document) if "*" in steps and value is not NOTHING else document
-            places = [place for path in _expanded(document, steps, whole) for place in _set(document, path, value)]
+            places = [place for path in _expanded(document, steps, whole, value) for place in _set(document, path, value)]
         except _LeadsNowhereError as stop:
             problems.append(Problem(stop.key, stop.value, stop.expected, source=f"--set {override}"))
         else:
@@ -110,11 +111,16 @@ class _LeadsNowhereError(Exception):
         self.key, self.value, self.expected = key_of((*location, step)), step, expected
 
 
-def _expanded(document: Any, steps: tuple[str, ...], resolved: Any) -> list[tuple[str, ...]]:
+def _expanded(document: Any, steps: tuple[str, ...], resolved: Any, value: Any) -> list[tuple[str, ...]]:
     """Expand the wildcards of a path to the paths in a document or once it is resolved; a plain path gives itself."""
     if "*" not in steps:
         return [steps]
     places = [place for known in (resolved, document) for place in matching_places(known, steps)]
+    if not places and value is not NOTHING:
+        # A key that no entry of a list has, such as a relief where no gear has one, is a new one for all of them.
+        after = len(steps) - steps[::-1].index("*")
+        entries = [place for place in matching_places(document, steps[:after]) if isinstance(place[-1], int)]
+        places = [(*place, *steps[after:]) for place in entries if steps[after:]]
     found = list(dict.fromkeys(tuple(str(step) for step in place) for place in places))
     if not found:
         raise _LeadsNowhereError((), ".".join(steps), "a path with * that some entries of the case have")

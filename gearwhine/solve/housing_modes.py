@@ -108,6 +108,13 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
     }
 
 
+def housing_key(case: Case) -> str:
+    """Return the content key of all that a machine takes of its solved housing: modes, damping, seats and sensors."""
+    assert case.housing is not None
+    inputs = {"modes": content_key(mode_cache_inputs(case)), "housing": case.housing.model_dump(mode="json")}
+    return content_key(inputs)
+
+
 def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord | None, str | None]:
     """Read the cached modes of these inputs, or None; and a warning where the file cannot be used."""
     path = folder / MODE_CACHE_FILE

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
 
 import gearwhine
 from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_document, load_case, require
 from gearwhine.output import file_stems
 from gearwhine.output.files import PRESENTATION, file_contents, installed, source_digest, with_contents
-from gearwhine.solve.housing_modes import mode_cache_inputs
+from gearwhine.solve.housing_modes import housing_key, mode_cache_inputs
 from gearwhine.solve.transient_record import transient_duration
 from housing.storage.netcdf import content_key
 
@@ -111,13 +110,9 @@ def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str
             "source": code_digest(),
         }
     )
-    modes_key = housing_key = None
-    if case.housing is not None:
-        inputs = mode_cache_inputs(case)
-        modes_key = content_key(inputs)
-        whole: dict[str, Any] = {"modes": modes_key, "housing": case.housing.model_dump(mode="json")}
-        housing_key = content_key(whole)
-    return Point(place, texts, case, key, modes_key, housing_key, f"{stem}-{key[:12]}.nc", transient_duration(case))
+    modes_key = None if case.housing is None else content_key(mode_cache_inputs(case))
+    whole = None if case.housing is None else housing_key(case)
+    return Point(place, texts, case, key, modes_key, whole, f"{stem}-{key[:12]}.nc", transient_duration(case))
 
 
 def _described(keys: Sequence[SweptKey], place: tuple[int, ...]) -> str:
