@@ -39,7 +39,7 @@ from coupling.machine.connectors import (
     shaft_dashpots,
 )
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
-from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing
+from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
 from coupling.machine.loads import (
     AnyTorque,
     BaseMotion,
@@ -151,7 +151,7 @@ class CoupledMachine:
         """
         place, back = self.flanks(number)
         mesh = self.meshes[place]
-        sense = (1 if self.speeds[mesh.driver.rotor] >= 0.0 else -1) * (-1 if back else 1)
+        sense = _senses(self.meshes, self.speeds)[place] * (-1 if back else 1)
         coordinates = MachineCoordinates(self.system.components, self.speeds)
         return _shuttling(coordinates, mesh, sense, replace(self.system.contacts[number], contact=law), force)
 
@@ -212,7 +212,7 @@ def assemble_machine(
     rotors, housing
         The components.
     speeds : dict of str to float
-        Signed speed of each rotor [rad/s].
+        Signed speed of each rotor [rad/s]; at rest see :func:`coupling.machine.gear_train.turning_senses`.
     bearings, meshes, unbalances, bows, torques, forces
         Connectors and loads.
     drives
@@ -261,7 +261,7 @@ def assemble_machine(
         rows, law = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], rates)
         within.append(replace(law, directions=coordinates.rows(given.rotor, rows).T))
 
-    senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
+    senses = _senses(meshes, speeds)
     phases = mesh_phases(
         [mesh.driver.name for mesh in meshes],
         [mesh.driven.name for mesh in meshes],
@@ -311,6 +311,11 @@ def assemble_machine(
         tuple(dashpots),
         tuple(forces),
     )
+
+
+def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float]) -> list[int]:
+    """Sense of rotation of the driver of each mesh."""
+    return turning_senses([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], speeds)
 
 
 def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:

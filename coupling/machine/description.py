@@ -10,7 +10,6 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import copysign
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +17,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears import GearPairGeometry
 from coupling.gears.contact.face_slices import face_stations
+from coupling.gears.geometry.pair import turning_sense
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
@@ -311,7 +311,6 @@ class Machine:
         rotors.EquilibriumError
             Where a rolling bearing is loaded beyond its theory.
         """
-        sense = 1 if self.speed >= 0.0 else -1
         pairs = []
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
@@ -319,7 +318,7 @@ class Machine:
                 continue
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
-            rotation = int(copysign(sense, sense * self.train.ratios[driver.shaft]))
+            rotation = turning_sense(self.speeds[driver.shaft])
             gears = self._static_gears((driver, driven), geometry)
             pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
         try:

@@ -21,7 +21,7 @@ from typing import Literal
 from coupling.errors import CouplingError
 from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.errors import InterferenceError, NoContactError
-from coupling.gears.geometry.pair import mesh_frequency
+from coupling.gears.geometry.pair import mesh_frequency, turning_sense
 from coupling.gears.geometry.profile import meshing_rotations
 from coupling.machine.connectors import GearMesh
 from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, constant_torques, trains
@@ -401,6 +401,30 @@ def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Litera
         None if abs(one) <= least else "driven" if sense * one < 0.0 else "drive" if one > 0.0 else "back"
         for one in pair_torques
     ]
+
+
+def turning_senses(pairs: Sequence[tuple[str, str]], speeds: Mapping[str, float]) -> list[int]:
+    """Return the sense of rotation of each pair's driver, 1 or -1.
+
+    Gears in mesh turn opposite ways, at rest too. There the first pair of a train has the sense that
+    :func:`coupling.gears.geometry.pair.turning_sense` gives its driver, and the others follow.
+
+    Parameters
+    ----------
+    pairs : sequence of tuple of str
+        Rotors of driver and driven.
+    speeds : mapping of str to float
+        Signed speed of each rotor [rad/s].
+    """
+    senses = {name: turning_sense(speed) for name, speed in speeds.items() if speed != 0.0}
+    left = list(dict.fromkeys(pairs))
+    while left:
+        driver, driven = next((pair for pair in left if not senses.keys().isdisjoint(pair)), left[0])
+        left.remove((driver, driven))
+        if driver not in senses:
+            senses[driver] = -senses[driven] if driven in senses else turning_sense(speeds[driver])
+        senses.setdefault(driven, -senses[driver])
+    return [senses[driver] for driver, _ in pairs]
 
 
 def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], speeds: Mapping[str, float]) -> None:

@@ -32,6 +32,7 @@ from coupling.errors import CouplingError
 from coupling.gears import GearError, GearPairGeometry, ToothContact, loaded_transmission_error
 from coupling.machine.connectors import MountedBearing
 from coupling.machine.coupled_system import HarmonicLoad
+from coupling.machine.gear_train import turning_senses
 
 _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that may be left over
 FloatArray = npt.NDArray[np.float64]
@@ -109,7 +110,7 @@ def axial_forces(
     """
     names = list(dict.fromkeys(name for pair in pairs for name in pair.rotors))
     moments = np.zeros((len(names), len(pairs)))
-    senses = [1.0 if speeds[pair.rotors[0]] >= 0.0 else -1.0 for pair in pairs]
+    senses = turning_senses([pair.rotors for pair in pairs], speeds)
     for number, (pair, sense) in enumerate(zip(pairs, senses, strict=True)):
         for rotor, gear in zip(pair.rotors, (pair.geometry.driver, pair.geometry.driven), strict=True):
             moments[names.index(rotor), number] += sense * gear.base_radius

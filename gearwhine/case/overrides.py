@@ -84,7 +84,9 @@ def apply_overrides(
             # What is by default alone cannot be taken away.
             document = _written_out(document, steps)
             whole = resolved(document) if "*" in steps and value is not NOTHING else document
-            places = [place for path in _expanded(document, steps, whole, value) for place in _set(document, path, value)]
+            places = [
+                place for path in _expanded(document, steps, whole, value) for place in _set(document, path, value)
+            ]
         except _LeadsNowhereError as stop:
             problems.append(Problem(stop.key, stop.value, stop.expected, source=f"--set {override}"))
         else:

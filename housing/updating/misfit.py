@@ -198,7 +198,7 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
     else:
         pairs, mac = pair_by_shape(target, state)
         told = np.isfinite(target.noise)
-        penalty += _LOOSE * np.count_nonzero(pairs == UNPAIRED)
+        penalty += _LOOSE * np.count_nonzero(pairs[told] == UNPAIRED)
         # A shape without partner costs as much as at the limit of pairing: with less, a search would drop the pair.
         unlike = 1.0 - np.where(pairs == UNPAIRED, _LEAST_MAC, mac)
         penalty += target.shapes.shape[1] / target.shape_noise**2 * float(unlike[told].sum())

@@ -17,6 +17,7 @@ from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, 
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
+from coupling.machine.assembly import assemble_machine
 from coupling.machine.components import HousingComponent
 from coupling.statics.operating_point import CAUSES
 from coupling.statics.static_equilibrium import static_equilibrium
@@ -222,6 +223,23 @@ def test_five_stations_over_the_face_are_enough(monkeypatch: pytest.MonkeyPatch)
     assert coarse.misalignment == pytest.approx(fine.misalignment, rel=2e-3)
     assert coarse.k_h_beta == pytest.approx(fine.k_h_beta, rel=5e-3)
     assert coarse.misalignment_by_cause["bodies"] == pytest.approx(fine.misalignment_by_cause["bodies"], rel=1.5e-2)
+
+
+def test_a_train_at_rest_is_one_that_hardly_turns() -> None:
+    """Three gears: the second pair's driver turns backwards, and stands with the same flanks in touch."""
+    turning, still = (idler(speed=speed) for speed in (1e-9, 0.0))
+    senses = [math.copysign(1.0, value) for value in still.speeds.values()]
+    assert senses == [1.0, -1.0, 1.0]
+    for first, second in zip(turning.assembled.system.contacts, still.assembled.system.contacts, strict=True):
+        np.testing.assert_allclose(second.direction, first.direction, rtol=1e-12, atol=1e-12)
+    first, second = (np.abs(machine.modes().eigenvalues) for machine in (turning, still))
+    np.testing.assert_allclose(second, first, rtol=1e-6, atol=1e-2)
+    forces = [[one.force for one in machine.operating_point().pairs] for machine in (turning, still)]
+    assert forces[1] == pytest.approx(forces[0])
+    parts = still.assembled
+    alike = assemble_machine(parts.rotors, None, speeds=dict.fromkeys(still.speeds, 0.0), meshes=parts.meshes)
+    for first, second in zip(parts.system.contacts, alike.system.contacts, strict=True):
+        np.testing.assert_array_equal(second.direction, first.direction)
 
 
 def belt_drive(force: tuple[float, float, float], stiffness: npt.ArrayLike = RADIAL) -> Machine:

@@ -160,6 +160,18 @@ def test_shapes_pair_modes_whatever_their_order_and_scale() -> None:
         measure(replace(target, shapes=np.ones((3, 5))), solve(z, None).state, z)
 
 
+def test_a_shape_held_back_costs_nothing_whether_it_has_a_partner_or_none() -> None:
+    z = np.zeros(3)
+    held = replace(target_at(OWN, shapes=np.eye(3)), noise=np.array([0.01, 0.01, np.inf]), shape_noise=0.05)
+    apart = replace(held, shapes=np.array([[1.0, 0, 0], [0, 1.0, 0], [1.0, 1.0, 0.05]]))
+    own, other = (measure(target, solve(z, None).state, z) for target in (held, apart))
+    assert (own.pairs[2], other.pairs[2]) == (2, UNPAIRED)
+    assert own.value == pytest.approx(0.0, abs=1e-12)
+    assert other.value == pytest.approx(0.0, abs=1e-12)
+    # One that counts costs more than an error of five standard deviations.
+    assert measure(replace(apart, noise=held.noise[:1].repeat(3)), solve(z, None).state, z).value > 25.0
+
+
 def test_no_shape_is_cheaper_for_being_lost() -> None:
     """As a measured shape turns away from the model's, J grows to the place where it loses its partner, and beyond."""
     z = np.zeros(3)

@@ -42,6 +42,15 @@ angle and helix angle of a pair agree within it, and a backlash of less, in modu
 _ALLOWED_JAM = 0.01
 
 
+def turning_sense(speed: float) -> int:
+    """Return the sense of rotation by a signed speed, 1 or -1.
+
+    A shaft at rest keeps the sense that it would turn in as the sign of its zero: the speed 0.0 of a train times a
+    negative ratio is -0.0.
+    """
+    return int(math.copysign(1.0, speed))
+
+
 def mesh_frequency(speed: float, teeth: int) -> float:
     """Tooth-mesh frequency [Hz] of a gear with this number of teeth at a speed [rad/s] of either sign."""
     return abs(speed) * teeth / (2.0 * math.pi)

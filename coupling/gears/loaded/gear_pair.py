@@ -16,7 +16,7 @@ from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
 from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency
+from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency, turning_sense
 from coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, loaded_transmission_error
 from coupling.gears.stiffness.crack import ToothCrack
 from coupling.gears.stiffness.models import (
@@ -267,7 +267,7 @@ def load_gear_pair(
         geometry,
         model,
         corner_contact=pair.has_corner_contact,
-        faces=pair.face_slices(geometry, 1 if speed is None or speed >= 0.0 else -1),
+        faces=pair.face_slices(geometry, 1 if speed is None else turning_sense(speed)),
     )
     static = loaded_transmission_error(contact, force)
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
