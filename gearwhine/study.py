@@ -107,6 +107,13 @@ class _Origin:
         return changed_case(dict(self.tables), self.changes, folder=self.folder)
 
 
+@dataclass
+class _KeptHousing:
+    """The solved housing that studies share; None until one of them needs it."""
+
+    solved: SolvedHousing | None = None
+
+
 class Study:
     """A checked case and its analyses.
 
@@ -128,7 +135,7 @@ class Study:
         self.warnings = loaded.warnings
         self.progress = progress
         self._origin = origin
-        self._housing: SolvedHousing | None = None
+        self._kept = _KeptHousing()
 
     def __repr__(self) -> str:
         """Return the case's title."""
@@ -142,8 +149,8 @@ class Study:
     def changed(self, changes: Mapping[str, object] | Sequence[str]) -> Study:
         """Return a study of the same case with other values of some keys; this one stays as it is.
 
-        A housing that this study has solved is not solved again where the changes leave its modes, damping, seats and
-        sensors as they are: those of torque, gears, bearing stiffness or preload do, a bearing's position does not.
+        Both have one solved housing where the changes leave its modes, damping, seats and sensors as they are: those of
+        torque, gears, bearing stiffness or preload do, a bearing's position does not.
 
         Parameters
         ----------
@@ -157,11 +164,11 @@ class Study:
         """
         origin = replace(self._origin, changes=(*self._origin.changes, *_texts(changes)))
         other = Study(origin, self.progress)
-        if self._housing is not None and other.case.housing is not None:
+        if self.case.housing is not None and other.case.housing is not None:
             from gearwhine.solve.housing_modes import housing_key
 
             if housing_key(self.case) == housing_key(other.case):
-                other._housing = self._housing
+                other._kept = self._kept
         return other
 
     @property
@@ -171,13 +178,13 @@ class Study:
 
     def _solved_housing(self, *, heard: bool) -> SolvedHousing | None:
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        if self._housing is None and self.case.housing is not None:
+        if self._kept.solved is None and self.case.housing is not None:
             from gearwhine.solve.housing_modes import solve_housing
             from gearwhine.solve.sound import check_before_modes
 
             before = check_before_modes(self.case) if heard else None
-            self._housing = solve_housing(self.case, self.progress, before=before)
-        return self._housing
+            self._kept.solved = solve_housing(self.case, self.progress, before=before)
+        return self._kept.solved
 
     @property
     def machine(self) -> Machine:

@@ -234,7 +234,7 @@ def assemble_machine(
         Where a name has no component, two components share one, a rotor has no speed, a seat no housing, a train more
         than one drive, helical gears push a rotor that no bearing holds along its axis, or the gears of a pair cannot
         be in mesh: by speeds that are not in the ratio of their teeth, or of one sense; by axes that are not at their
-        centre distance; by faces that do not overlap.
+        centre distance; by faces that are not in one plane.
     rotors.RotorError
         Where a bearing's table does not reach as far as the speeds.
     """

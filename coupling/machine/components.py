@@ -84,13 +84,13 @@ class HousingComponent(Component):
     seat_axes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def seat_motions(self, seat: str, z: float) -> FloatArray:
-        """Return a seat's rigid motion at height z of the shaft [m]: x, y, z, rotations about x and y, shape (5, n).
+        """Return a seat's rigid motion at z along the shaft [m]: x, y, z, rotations about x and y, shape (5, n).
 
         The transpose projects a bearing force onto the housing's modes (modal force).
         """
         x, y, along, about_x, about_y = self.seats[seat].T[:5]
         arm = z - self.seat_z[seat]
-        # A rotation about y moves a point above the centre towards +x, one about x towards -y.
+        # A rotation about y moves a point beyond the centre towards +z along +x, one about x along -y.
         return np.array([x + arm * about_y, y - arm * about_x, along, about_x, about_y])
 
 

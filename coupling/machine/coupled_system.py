@@ -185,24 +185,24 @@ class CoupledSystem:
 
     @cached_property
     def drive_stiffness(self) -> FloatArray:
-        """Mean mesh stiffness of every drive flank, 0 of the others [N/m], shape (c,)."""
+        """Unloaded mean mesh stiffness of every carrying flank, 0 of the others [N/m], shape (c,)."""
         return np.array(
             [one.contact.unloaded_mean_mesh_stiffness * one.drives for one in self.contacts], dtype=np.float64
         )
 
     @cached_property
     def drive_damping(self) -> FloatArray:
-        """Mesh damping of every drive flank, 0 of the others [N s/m], shape (c,)."""
+        """Mesh damping of every carrying flank, 0 of the others [N s/m], shape (c,)."""
         return np.array([one.contact.damping * one.drives for one in self.contacts], dtype=np.float64)
 
     @cached_property
     def mean_stiffness(self) -> FloatArray:
-        """K with every drive flank at its mean mesh stiffness [1/s²], shape (n, n)."""
+        """K with every carrying flank at its unloaded mean mesh stiffness [1/s²], shape (n, n)."""
         return self.stiffness + (self.contact_directions * self.drive_stiffness) @ self.contact_directions.T
 
     @cached_property
     def mean_damping(self) -> FloatArray:
-        """C with every drive flank's damping [1/s], shape (n, n)."""
+        """C with every carrying flank's damping [1/s], shape (n, n)."""
         return self.damping + (self.contact_directions * self.drive_damping) @ self.contact_directions.T
 
     @cached_property

@@ -100,7 +100,7 @@ class Machine:
     ------
     CouplingError
         Where a name is given twice or unknown, no gear pair turns a shaft, a loop of pairs locks, gears are a pair
-        twice, both gears of a pair sit on one shaft, faces do not overlap along z, outputs do not balance the torque or
+        twice, both gears of a pair sit on one shaft, faces are not in one plane, outputs do not balance the torque or
         nothing takes it, power flows from driven to driver, a bearing sits in a seat that the housing does not have or
         that is off its shaft, or nothing carries the thrust of helical gears.
     coupling.gears.GearError
@@ -596,7 +596,7 @@ class Machine:
     def _static_gears(
         self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
     ) -> tuple[StaticGear, StaticGear]:
-        """Place both gears of a pair on their shafts, with stations over the face that they have in common."""
+        """Place both gears of a pair on their shafts, with stations over the narrower face."""
         starts = [self.shaft(gear.shaft).start for gear in gears]
         middles = [start + gear.at for start, gear in zip(starts, gears, strict=True)]
         halves = [0.5 * gear.gear.face_width for gear in gears]

@@ -1,8 +1,8 @@
 """Gear train: speed ratios, senses of rotation, power flow, mesh phases; checks that a train can exist.
 
 External gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂; their shafts are as far apart as the geometry
-of the pair says, and their faces overlap along the shafts. A train at constant speed takes as much power as it gives,
-Σ T ω = 0 over its shafts.
+of the pair says, and the middles of their faces at most half of the narrower face apart along the shafts. A train at
+constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
 
 Gear pairs that share gears have related mesh phases. Each gear is fitted to its shaft so that the first pair it belongs
 to begins a mesh period at t = 0. The phase of every further pair of the same gear follows from the gear's teeth: as
@@ -442,7 +442,8 @@ def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], spe
     ------
     CouplingError
         Where both gears of a pair sit on one rotor, turn the same way or not in the ratio of their teeth, have axes
-        that are not at the centre distance of their geometry, or faces that do not overlap.
+        that are not at the centre distance of their geometry, or faces whose middles are more than half of the
+        narrower face apart.
     """
     for mesh in meshes:
         _require_ratio(mesh, speeds)
@@ -534,7 +535,10 @@ def geometry_on_axes(
 
 
 def require_one_plane(label: str, places: Sequence[float], face_width: float) -> None:
-    """Refuse gears whose faces do not overlap: two middles of faces along z, and the width of the common face [m]."""
+    """Refuse gears that are not in one plane: two middles of faces along z, and the width of the narrower face [m].
+
+    A pair is analysed as one whose narrower face carries over its whole width.
+    """
     shift, reach = abs(places[0] - places[1]), 0.5 * face_width
     if shift > reach + LARGEST_OFFSET:
         raise CouplingError(

@@ -1,21 +1,12 @@
-r"""Operating point: static equilibrium of the whole machine under its torques, weight and preloads.
+"""Operating point: static equilibrium of the whole machine under its torques, weight and preloads.
 
 Shafts are exact Timoshenko beams between the stations of bearings, gears and torques, within the face of a solid gear
 as stiff as its section with the teeth (:mod:`rotors.analyses.static_stiffness`,
-:mod:`coupling.gears.geometry.toothed_section`). The housing is its modes with the
-residual ones, whose static compliance at the seats is exact. Rolling bearings act by each of their elements, gear
-pairs by slices of their faces, averaged over a mesh period (:mod:`coupling.gears.loaded.face_load`). With x the
-motions of all stations and the housing's coordinates, K their linear stiffness, f the loads, and connectors of
-deflections z = Eᵀ x and energies phi(z), the equilibrium is the minimum of
-
-    Pi(x) = 1/2 xᵀ K x - fᵀ x + sum phi(Eᵀ x),
-
-which is convex where the bearings' stiffness is symmetric. Each connector has a nominal stiffness k0, so that K0 = K
-+ E k0 Eᵀ holds every motion; then x = K0⁻¹ (f + E mu), with mu = k0 z - dphi/dz at the equilibrium, and only the few
-components of mu are sought, by a trust region and, from there, Newton's method with the connectors' own, perhaps
-unsymmetric, tangents. With C = Eᵀ K0⁻¹ E = L Lᵀ and nu = Lᵀ mu,
-
-    z = z_f + L nu,      Pi(nu) = 1/2 nuᵀ nu + sum (phi(z) - 1/2 zᵀ k0 z).
+:mod:`coupling.gears.geometry.toothed_section`). The housing is its modes with the residual ones, whose static
+compliance at the seats is exact. Rolling bearings act by each of their elements, gear pairs by slices of their faces,
+averaged over a mesh period (:mod:`coupling.gears.loaded.face_load`). Bearings, gear pairs and pedestals are the
+connectors of this linear structure; their equilibrium with it is that of
+:mod:`coupling.statics.connector_equilibrium`.
 
 Rigid motions that nothing holds, such as the rotation of the train, must carry no load; they stay at zero.
 
@@ -39,6 +30,7 @@ from coupling.gears.loaded.transmission_error import LoadedMesh
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing, RollingLaw
 from coupling.machine.loads import ShaftForce, Torque
+from coupling.statics.connector_equilibrium import ConnectedStructure
 from coupling.statics.static_model import (
     ConnectorLaw,
     FaceContactLaw,
@@ -48,7 +40,6 @@ from coupling.statics.static_model import (
     StaticPair,
     StaticShaftPart,
 )
-from rotors.numerics.trust_region import Local, minimise
 from rotors.rolling_bearings import RollingState, linearised_bearing, rolling_state
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,12 +47,6 @@ FloatArray = npt.NDArray[np.float64]
 RESIDUAL_BAR = 1e-9
 """Largest force out of balance, relative to the largest load, beyond the rounding of elastic forces."""
 
-_TOLERANCE = 1e-12
-_NEWTON_STEPS = 30
-_HALVINGS = 6
-_REFINEMENTS = 2
-_ROUNDED = 1e-11  # part of the deflections below which steps are whole, and end where their error hardly falls
-_FALLS = 0.5  # part of the error that a step beyond rounding leaves at most
 _ROUNDINGS = 8.0  # units of rounding of the terms of an elastic force
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
 _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
@@ -175,7 +160,7 @@ class PairLoad:
     mean : FaceLoad
         Over the phases of a mesh period.
     fine : FaceLoad
-        At more phases, for the transmission error.
+        At 200 phases of it, for the transmission error.
     """
 
     pair: StaticPair
@@ -398,7 +383,29 @@ def solve_operating_point(
 
 
 class _StaticModel:
-    """Coordinates, stiffness, loads and connectors of the static machine."""
+    """Coordinates, stiffness, loads and connectors of the static machine.
+
+    Attributes
+    ----------
+    first : dict of str to int
+        First coordinate of each shaft: six of each of its nodes, along and about x, y, z.
+    housing_first, pedestal_first : int, dict of str to int
+        That of the housing's modes, and of each pedestal's motion along x and y.
+    size : int
+        Number n of coordinates.
+    stiffness, load : ndarray, shape (n, n) and (n,)
+        Without the connectors.
+    laws : list of ConnectorLaw
+        Of bearings, gear pairs and pedestals, in this order.
+    directions : list of ndarray, shape (n, d)
+        Deflections of each connector by the coordinates.
+    twists : list of ndarray, shape (n, d)
+        The part of each gear pair's directions that is rotation of its shafts.
+    nominal : ndarray
+        Nominal stiffness of all connectors, which starts the search.
+    parts : list of slice
+        Deflections of each connector among those of all.
+    """
 
     def __init__(
         self,
@@ -428,8 +435,8 @@ class _StaticModel:
         self.size = size + 2 * len(pedestals)
         self.stiffness = self._linear_stiffness()
         self.load = self._loads(torques, forces)
-        self.directions = [self._bearing_rows(one.mounted) for one in bearings]
-        approaches = [self._pair_rows(pair) for pair in pairs]
+        self.directions = [self._bearing_directions(one.mounted) for one in bearings]
+        approaches = [self._pair_directions(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
         self.twists = [twist for _, twist in approaches]
@@ -486,7 +493,7 @@ class _StaticModel:
         rows[:, first : first + 6] = np.eye(6)
         return rows
 
-    def seat_rows(self, mounted: MountedBearing) -> FloatArray:
+    def seat_motion(self, mounted: MountedBearing) -> FloatArray:
         """Motion of a bearing's seat, (5, n): x, y, z and the rotations about x and y."""
         rows = np.zeros((5, self.size))
         if mounted.seat is not None:
@@ -499,10 +506,10 @@ class _StaticModel:
             rows[0, first] = rows[1, first + 1] = 1.0
         return rows
 
-    def _bearing_rows(self, mounted: MountedBearing) -> FloatArray:
-        return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_rows(mounted)).T)
+    def _bearing_directions(self, mounted: MountedBearing) -> FloatArray:
+        return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
 
-    def _pair_rows(self, pair: StaticPair) -> tuple[FloatArray, FloatArray]:
+    def _pair_directions(self, pair: StaticPair) -> tuple[FloatArray, FloatArray]:
         """Approach of the flanks at the stations of the face, and relative tilt, by all coordinates, (n, j + 1).
 
         And the part of it that is rotation about z, of the same shape: its slope is the twist over the face.
@@ -585,87 +592,14 @@ class _StaticModel:
         return np.array(columns).T, words
 
     def solve(self) -> OperatingPoint:
-        """Minimise the potential, polish by Newton's method, and prove the balance of forces."""
+        """Find the equilibrium and prove the balance of forces."""
         extra, free = self._hold_free_motions()
-        directions, nominal = self.all_directions, self.nominal
-        held = self.stiffness + extra + directions @ nominal @ directions.T
-        factor = linalg.lu_factor(held)
-
-        def answer_to(loads: FloatArray) -> FloatArray:
-            """Motions under loads; refined, so that a short span's stiffness costs a soft bearing no digits."""
-            x = linalg.lu_solve(factor, loads)
-            for _ in range(_REFINEMENTS):
-                x = x + linalg.lu_solve(factor, loads - held @ x)
-            return np.asarray(x)
-
-        # The nominal law k0 (z - z0) starts the search near closed flanks.
-        shift = nominal @ np.concatenate([self._offset(n) for n in range(len(self.laws))])
-        unloaded = answer_to(self.load + directions @ shift)
-        start = directions.T @ unloaded
-        compliance = directions.T @ answer_to(directions)
-        values, vectors = np.linalg.eigh(0.5 * (compliance + compliance.T))
-        kept = values > 1e-13 * values[-1]
-        spread = vectors[:, kept] * np.sqrt(values[kept])
-
-        def remainder(z: FloatArray, laws: Sequence[ConnectorLaw]) -> tuple[float, FloatArray, FloatArray]:
-            """Energy, force and tangent of the laws beyond their nominal ones."""
-            energy, force, tangent = 0.0, np.zeros(z.size), np.zeros((z.size, z.size))
-            for part, law in zip(self.parts, laws, strict=True):
-                stored, own, slope = law.at(z[part])
-                energy, force[part], tangent[part, part] = energy + stored, own, slope
-            linear = nominal @ z - shift
-            return energy - 0.5 * float(z @ (nominal @ z)) + float(shift @ z), force - linear, tangent - nominal
-
-        # Forces of an unsymmetric stiffness have no energy; its nominal one stands for it until Newton's method.
-        conservative = [
-            LinearLaw(nominal[part, part]) if isinstance(law, LinearLaw) else law
-            for part, law in zip(self.parts, self.laws, strict=True)
-        ]
-        noise = float(np.abs(self.load) @ np.abs(unloaded)) + 1e-12
-
-        def potential(nu: FloatArray) -> Local:
-            energy, force, tangent = remainder(start + spread @ nu, conservative)
-            gradient = nu + spread.T @ force
-            return Local(
-                value=0.5 * float(nu @ nu) + energy,
-                gradient=gradient,
-                hessian=np.eye(nu.size) + spread.T @ tangent @ spread,
-                noise=noise + abs(energy),
-                force=float(np.abs(nu).max(initial=0.0)) + float(np.abs(spread.T @ force).max(initial=0.0)) + 1e-300,
-            )
-
-        size = np.sqrt(np.abs(np.diag(compliance)))
-        size = np.where(size > 0.0, size, 1.0)
-
-        def motions(z: FloatArray) -> tuple[FloatArray, FloatArray]:
-            """Motions under the loads and the forces at deflections z, and the tangents there."""
-            _, force, tangent = remainder(z, self.laws)
-            # In one solution, as the difference of two large ones would lose digits.
-            return answer_to(self.load + directions @ (shift - force)), tangent
-
-        def unbalanced(z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-            """Deflections less those of the motions, over `size`, their derivative and their size."""
-            x, tangent = motions(z)
-            gap = (z - directions.T @ x) / size
-            return gap, np.eye(z.size) + compliance @ tangent * size / size[:, None], float(np.linalg.norm(gap))
-
-        radius = max(float(np.sqrt(abs(self.load @ unloaded))), 1e-9)
-        found = minimise(potential, np.zeros(spread.shape[1]), radius, _TOLERANCE)
-        z, iterations = start + spread @ found.place, found.iterations
-        here = unbalanced(z)
-        for _ in range(_NEWTON_STEPS):
-            gap, slope, left = here
-            step = size * np.linalg.lstsq(slope, gap, rcond=None)[0]
-            rounded = left <= _ROUNDED * float(np.linalg.norm(z / size))
-            for halving in range(1 if rounded else _HALVINGS):
-                there = z - 0.5**halving * step
-                trial = unbalanced(there)
-                if trial[2] < left:
-                    z, here, iterations = there, trial, iterations + 1
-                    break
-            if here[2] == left or (rounded and here[2] > _FALLS * left):
-                break
-        x, _ = motions(z)
+        # The nominal laws start the search near closed flanks.
+        offset = np.concatenate([self._offset(n) for n in range(len(self.laws))])
+        structure = ConnectedStructure(
+            self.stiffness + extra, self.load, self.all_directions, self.laws, self.parts, self.nominal, offset
+        )
+        x, iterations = structure.equilibrium()
         return self._result(x, extra, free, iterations)
 
     def _offset(self, number: int) -> FloatArray:
@@ -679,7 +613,49 @@ class _StaticModel:
     def _result(self, x: FloatArray, extra: FloatArray, free: tuple[str, ...], iterations: int) -> OperatingPoint:
         deflections = [rows.T @ x for rows in self.directions]
         states = [law.at(z) for law, z in zip(self.laws, deflections, strict=True)]
-        forces = [force for _, force, _ in states]
+        residual = self._require_balance(x, extra, deflections, [force for _, force, _ in states], iterations)
+        bearings = tuple(
+            BearingLoad(
+                one.mounted,
+                force,
+                deflection,
+                self.seat_motion(one.mounted) @ x,
+                tangent,
+                _rolling_state(one, deflection),
+            )
+            for one, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
+        )
+        own = slice(self.housing_first, self.housing_first + (0 if self.housing is None else self.housing.size))
+        of_pairs = slice(len(self.bearings), len(self.bearings) + len(self.pairs))
+        tangent = StaticTangent(
+            self.stiffness
+            + extra
+            + sum(rows @ slope @ rows.T for rows, (_, _, slope) in zip(self.directions, states, strict=True)),
+            {part.name: self._own(part.name) for part in self.shafts},
+            own,
+            {one.mounted.bearing.name: rows for one, rows in zip(self.bearings, self.directions, strict=False)},
+            tuple(self.directions[of_pairs]),
+        )
+        return OperatingPoint(
+            tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts),
+            bearings,
+            self._pair_loads(x, deflections[of_pairs], [loads for _, loads, _ in states[of_pairs]], bearings),
+            None if self.housing is None else x[own],
+            residual,
+            iterations,
+            free,
+            tangent,
+        )
+
+    def _require_balance(
+        self,
+        x: FloatArray,
+        extra: FloatArray,
+        deflections: Sequence[FloatArray],
+        forces: Sequence[FloatArray],
+        iterations: int,
+    ) -> float:
+        """Return the largest force out of balance over the largest load; refuse more than `RESIDUAL_BAR`."""
         residual = self.load - (self.stiffness + extra) @ x
         for rows, force in zip(self.directions, forces, strict=True):
             residual = residual - rows @ force
@@ -688,7 +664,9 @@ class _StaticModel:
         terms = np.abs(self.stiffness + extra) @ np.abs(x)
         # Without loads the preloads are the scale, also of rows that press each other within a bearing.
         laws = [] if np.any(self.load) else zip(self.laws, deflections, strict=True)
-        pressing = max((law.elements.at(z).force for law, z in laws if isinstance(law, RollingElementLaw)), default=0.0)
+        pressing = max(
+            (float(law.elements.at(z).force) for law, z in laws if isinstance(law, RollingElementLaw)), default=0.0
+        )
         rounding = _ROUNDINGS * np.finfo(np.float64).eps * float(terms[: self.housing_first].max())
         beyond, _ = self._relative(np.maximum(np.abs(residual) - rounding, 0.0), forces, pressing)
         relative, where = self._relative(residual, forces, pressing)
@@ -698,44 +676,27 @@ class _StaticModel:
                 f"{where} after {iterations} steps; expected at most {RESIDUAL_BAR:g}. The load may be more than "
                 "bearings or teeth can carry, a bearing may be missing, or play may leave a shaft loose"
             )
-        bearings = tuple(
-            BearingLoad(
-                one.mounted,
-                force,
-                deflection,
-                self.seat_rows(one.mounted) @ x,
-                tangent,
-                _rolling_state(one, deflection),
-            )
-            for one, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
-        )
+        return relative
+
+    def _pair_loads(
+        self,
+        x: FloatArray,
+        approaches: Sequence[FloatArray],
+        loads: Sequence[FloatArray],
+        bearings: Sequence[BearingLoad],
+    ) -> tuple[PairLoad, ...]:
+        """Return the loads of all gear pairs by approach and loads at the stations of their faces."""
         causes = self._causes(x, bearings)
-        count = len(self.bearings)
-        meshes = states[count : count + len(self.pairs)]
-        pressed = max((float(loads[:-1].sum()) for _, loads, _ in meshes), default=0.0)
-        if self.pairs and pressed <= RESIDUAL_BAR * float(np.abs(self.load).max(initial=0.0)):
+        largest = max((float(one[:-1].sum()) for one in loads), default=0.0)
+        if self.pairs and largest <= RESIDUAL_BAR * float(np.abs(self.load).max(initial=0.0)):
             names = ", ".join(pair.label for pair in self.pairs)
             turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())
             raise CouplingError(f"{names}: no flanks carry a load under a torque of {turned:g} N m; expected a torque")
-        pairs = tuple(
-            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, pressed)
-            for pair, approach, rows, twist in zip(
-                self.pairs, deflections[count:], self.directions[count:], self.twists, strict=False
-            )
+        directions = self.directions[len(self.bearings) : len(self.bearings) + len(self.pairs)]
+        return tuple(
+            self._pair(pair, approach, {cause: rows.T @ part for cause, part in causes.items()}, twist.T @ x, largest)
+            for pair, approach, rows, twist in zip(self.pairs, approaches, directions, self.twists, strict=True)
         )
-        shafts = tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts)
-        own = slice(self.housing_first, self.housing_first + (0 if self.housing is None else self.housing.size))
-        tangent = StaticTangent(
-            self.stiffness
-            + extra
-            + sum(rows @ slope @ rows.T for rows, (_, _, slope) in zip(self.directions, states, strict=True)),
-            {part.name: self._own(part.name) for part in self.shafts},
-            own,
-            {one.mounted.bearing.name: rows for one, rows in zip(self.bearings, self.directions, strict=False)},
-            tuple(self.directions[count : count + len(self.pairs)]),
-        )
-        housing = None if self.housing is None else x[own]
-        return OperatingPoint(shafts, bearings, pairs, housing, relative, iterations, free, tangent)
 
     def _relative(self, residual: FloatArray, forces: Sequence[FloatArray], least: float) -> tuple[float, str]:
         """Largest force out of balance over the largest load, moments over that load times the longest shaft; where.
@@ -811,7 +772,7 @@ class _StaticModel:
         by_cause["bodies"] = twist
         touched = approach - pair.clearance * contact.uniform
         force = contact.at(touched).force
-        # What the balance of forces leaves open is no load of a pair that only turns along.
+        # The force of an idle pair is rounding below the residual of the balance.
         force = force if force > RESIDUAL_BAR * pressed else 0.0
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
         # An idle pair is solved under a small force, which moves nothing else.

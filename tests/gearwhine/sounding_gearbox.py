@@ -6,7 +6,7 @@ from typing import Any
 import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run import RunSolution
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.housing_modes import SolvedHousing
 
 QUICK: dict[str, Any] = {
     "acoustics.method": "erp",
@@ -25,16 +25,21 @@ TOP = {
 
 
 @cache
+def small_gearbox() -> gw.Study:
+    """The gearbox with the housing of all these."""
+    return gw.load("small-gearbox")
+
+
 def sounding_housing() -> SolvedHousing:
-    """Housing of all these."""
-    return solve_housing(gw.load("small-gearbox").case)
+    """Its solved housing."""
+    housing = small_gearbox().housing
+    assert housing is not None
+    return housing
 
 
 def sounding_gearbox(changes: dict[str, Any]) -> gw.Study:
     """Load the gearbox with changes that leave its housing as it is."""
-    study = gw.load("small-gearbox", changes)
-    study._housing = sounding_housing()
-    return study
+    return small_gearbox().changed(changes)
 
 
 @cache

@@ -93,6 +93,19 @@ def test_a_sweep_goes_through_one_wall_of_all() -> None:
     assert {walls.front for walls in thick} == {0.01}
 
 
+def test_a_key_that_no_entry_of_a_list_has_is_set_in_all() -> None:
+    bare = ("gear.0.tip_relief=", "gear.1.tip_relief=")
+    relief = "{ amount = '12 um', length = '1 mm' }"
+    assert [gear.tip_relief.amount for gear in changed(*bare, f"gear.*.tip_relief={relief}").gear] == [12e-6, 12e-6]  # type: ignore[union-attr]
+    assert [gear.errors.helix.crowning for gear in changed("gear.*.errors.helix.crowning=5 um").gear] == [5e-6, 5e-6]  # type: ignore[union-attr]
+    # Those that one has are changed where they stand.
+    assert changed(bare[0], f"gear.*.tip_relief={relief}").gear[0].tip_relief is None
+    with pytest.raises(CaseError, match=r"gear\[1\]\.tip_releif .*no such key; did you mean 'tip_relief'"):
+        changed("gear.*.tip_releif=5 um")
+    with pytest.raises(CaseError, match=r"rotor\.\*\.x\.y: expected a path with \*|no such key"):
+        changed("rotor.*.x.y=5 um")
+
+
 LEADS_NOWHERE = {
     "no equals sign": ("housing.box.wall", "expected key.path=value"),
     "no key": ("=3", "expected key.path=value"),

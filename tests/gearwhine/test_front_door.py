@@ -27,6 +27,9 @@ def study() -> gw.Study:
     return gw.load("small-gearbox", COARSE | SHORT)
 
 
+ROD = {"name": "rod", "material": "steel", "segments": [{"length": "500 mm", "diameter": "30 mm"}]}
+
+
 def test_every_name_of_the_front_door_is_there_and_none_is_loaded_early() -> None:
     assert len(gw.__all__) <= 36
     assert all(getattr(gw, name) is not None for name in gw.__all__)
@@ -113,7 +116,7 @@ def test_a_run_has_histories_in_memory_as_on_file(study: gw.Study, tmp_path: Pat
 def test_gears_and_rotors_need_no_housing() -> None:
     study = gw.load("small-gearbox")
     gears, rotors = study.gears(), study.rotors()
-    assert study._housing is None
+    assert study._kept.solved is None
     assert gears.dataset["transmission_error"].attrs["units"] == "m"
     assert gears.solved[0].solved.torque == pytest.approx(study.case.operation.torque if study.case.operation else 0.0)
     assert [one.rotor.name for one in rotors.solved] == [rotor.name for rotor in study.case.rotor]
@@ -277,3 +280,21 @@ def test_a_simulation_leaves_the_results_of_a_run_in_the_folder(tmp_path: Path) 
     assert ">gearwhine simulate</h2>" in page
     assert ">gearwhine run</h2>" in page
     assert page.count("the energy balance closes") == 3  # of each, and once on the first page
+
+
+def test_a_changed_study_solves_its_housing_again_only_where_it_has_to(study: gw.Study) -> None:
+    assert study.housing is not None
+    kept = study.changed({"operation.torque": "30 N*m", "gear.*.tip_relief": ""})
+    assert (kept.case.operation.torque, study.case.operation.torque) != (30.0, 30.0)  # type: ignore[union-attr]
+    assert [gear.tip_relief for gear in kept.case.gear] == [None, None]
+    assert kept.case.transient == study.case.transient  # by the changes that the first one was loaded with
+    assert kept.housing is study.housing
+    for change in ({"housing.box.wall": "9 mm"}, {"bearing.0.at": "12 mm"}, {"housing.damping_ratio": 0.05}):
+        assert study.changed(change)._kept.solved is None
+    built = gw.build(
+        material={"steel": {"youngs_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}}, rotor=[ROD]
+    )
+    longer = built.changed({"rotor.rod.segments[0].length": "600 mm"}).changed(["title=longer"])
+    assert (longer.case.title, longer.case.rotor[0].segments[0].length) == ("longer", 0.6)  # type: ignore[union-attr]
+    with pytest.raises(gw.CaseError, match="one of 'rod'"):
+        built.changed({"rotor.rodd.mass": "lumped"})

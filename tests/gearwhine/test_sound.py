@@ -205,7 +205,7 @@ def test_refuses_choices_that_do_not_fit(changes, message):
 )
 def test_refuses_what_is_not_there(study, changes, message):
     other = gw.load("small-gearbox", changes)
-    other._housing = study.housing
+    other._kept.solved = study.housing
     with pytest.raises(Exception, match=message) as caught:
         other.sound()
     assert type(caught.value).__name__ in ("CaseError", "HousingError")

@@ -107,7 +107,7 @@ class GearPairGeometry:
 
     @property
     def face_width(self) -> float:
-        """Width of the face that both gears share [m]."""
+        """Width of the narrower face, on which the pair carries [m]."""
         return min(self.driver.face_width, self.driven.face_width)
 
     @cached_property

@@ -1,0 +1,201 @@
+"""Static equilibrium of a linear structure whose parts are joined by a few nonlinear connectors.
+
+With x the coordinates, K the linear stiffness, f the loads, and connectors of deflections z = Eᵀ x and energies φ(z),
+the equilibrium is the minimum of
+
+    Π(x) = ½ xᵀ K x - fᵀ x + Σ φ(Eᵀ x),
+
+which is convex where the connectors' stiffness is symmetric. Each connector has a nominal law k₀ (z - z₀), so that
+K₀ = K + E k₀ Eᵀ holds every motion. Then
+
+    x = K₀⁻¹ (f + E (k₀ z₀ + μ)),      μ = k₀ (z - z₀) - dφ/dz,
+
+and only the few components of μ are sought. With the deflections z_f = Eᵀ K₀⁻¹ (f + E k₀ z₀) under the nominal laws,
+the compliance C = Eᵀ K₀⁻¹ E = S Sᵀ between the connectors, and ν = Sᵀ μ,
+
+    z = z_f + S ν,      Π(ν) = ½ νᵀ ν + Σ (φ(z) - ½ zᵀ k₀ z + zᵀ k₀ z₀).
+
+S has the eigenvectors of C times the roots of its eigenvalues, without those that are rounding. A trust region finds
+the minimum of Π(ν); from there Newton's method takes the connectors' own tangents, which may be unsymmetric.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from coupling.statics.static_model import ConnectorLaw, LinearLaw
+from rotors.numerics.trust_region import Local, minimise
+
+FloatArray = npt.NDArray[np.float64]
+
+_TOLERANCE = 1e-12
+_NEWTON_STEPS = 30
+_HALVINGS = 6
+_REFINEMENTS = 2
+_ROUNDED = 1e-11  # part of the deflections below which steps are whole, and end where their error hardly falls
+_FALLS = 0.5  # part of the error that a step beyond rounding leaves at most
+_NO_COMPLIANCE = 1e-13  # part of the largest eigenvalue of the compliance below which one is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class _Imbalance:
+    """Deflections less those of the motions that their forces cause, over `size`; derivative and norm."""
+
+    difference: FloatArray
+    slope: FloatArray
+    norm: float
+
+
+@dataclass(frozen=True, eq=False)
+class ConnectedStructure:
+    """A linear structure with its loads and connectors.
+
+    Attributes
+    ----------
+    stiffness : ndarray, shape (n, n)
+        K, without the connectors.
+    load : ndarray, shape (n,)
+        f.
+    directions : ndarray, shape (n, d)
+        E, of all connectors one beside the other.
+    laws : sequence of ConnectorLaw
+    parts : sequence of slice
+        Deflections of each law among all d.
+    nominal : ndarray, shape (d, d)
+        k₀.
+    offset : ndarray, shape (d,)
+        z₀.
+    """
+
+    stiffness: FloatArray
+    load: FloatArray
+    directions: FloatArray
+    laws: Sequence[ConnectorLaw]
+    parts: Sequence[slice]
+    nominal: FloatArray
+    offset: FloatArray
+
+    def equilibrium(self) -> tuple[FloatArray, int]:
+        """Coordinates x in equilibrium, as nearly as rounding allows, shape (n,), and the number of steps.
+
+        The balance of forces is for the caller to prove: without an equilibrium this is where the search ended.
+        """
+        # The scale of motions under the loads: the first radius of the search.
+        radius = max(float(np.sqrt(abs(self.load @ self._under_nominal_laws))), 1e-9)
+        found = minimise(self._potential, np.zeros(self._spread.shape[1]), radius, _TOLERANCE)
+        z, steps = self._polished(self._start + self._spread @ found.place)
+        x, _ = self._motions(z)
+        return x, found.iterations + steps
+
+    @cached_property
+    def _held(self) -> FloatArray:
+        return np.asarray(self.stiffness + self.directions @ self.nominal @ self.directions.T)
+
+    @cached_property
+    def _factor(self) -> tuple[FloatArray, npt.NDArray[np.int32]]:
+        return linalg.lu_factor(self._held)
+
+    def _answer_to(self, loads: FloatArray) -> FloatArray:
+        """K₀⁻¹ times loads; refined, so that a short span's stiffness costs a soft bearing no digits."""
+        x = linalg.lu_solve(self._factor, loads)
+        for _ in range(_REFINEMENTS):
+            x = x + linalg.lu_solve(self._factor, loads - self._held @ x)
+        return np.asarray(x)
+
+    @cached_property
+    def _shift(self) -> FloatArray:
+        """k₀ z₀."""
+        return np.asarray(self.nominal @ self.offset)
+
+    @cached_property
+    def _under_nominal_laws(self) -> FloatArray:
+        """Coordinates under the loads with the nominal laws, (n,)."""
+        return self._answer_to(self.load + self.directions @ self._shift)
+
+    @cached_property
+    def _start(self) -> FloatArray:
+        """z_f."""
+        return np.asarray(self.directions.T @ self._under_nominal_laws)
+
+    @cached_property
+    def _compliance(self) -> FloatArray:
+        """C."""
+        return np.asarray(self.directions.T @ self._answer_to(self.directions))
+
+    @cached_property
+    def _spread(self) -> FloatArray:
+        """S."""
+        values, vectors = np.linalg.eigh(0.5 * (self._compliance + self._compliance.T))
+        kept = values > _NO_COMPLIANCE * values[-1]
+        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+
+    @cached_property
+    def _size(self) -> FloatArray:
+        """Scale of each deflection: the root of its own compliance, (d,)."""
+        size = np.sqrt(np.abs(np.diag(self._compliance)))
+        return np.where(size > 0.0, size, 1.0)
+
+    def _beyond_nominal(self, z: FloatArray, laws: Sequence[ConnectorLaw]) -> tuple[float, FloatArray, FloatArray]:
+        """Energy, force and tangent of the laws at deflections, beyond the nominal ones."""
+        energy, force, tangent = 0.0, np.zeros(z.size), np.zeros((z.size, z.size))
+        for part, law in zip(self.parts, laws, strict=True):
+            stored, own, slope = law.at(z[part])
+            energy, force[part], tangent[part, part] = energy + stored, own, slope
+        linear = self.nominal @ z - self._shift
+        stored = 0.5 * float(z @ (self.nominal @ z)) - float(self._shift @ z)
+        return energy - stored, force - linear, tangent - self.nominal
+
+    @cached_property
+    def _conservative_laws(self) -> list[ConnectorLaw]:
+        # Forces of an unsymmetric stiffness have no energy; its nominal one stands for it until Newton's method.
+        return [
+            LinearLaw(self.nominal[part, part]) if isinstance(law, LinearLaw) else law
+            for part, law in zip(self.parts, self.laws, strict=True)
+        ]
+
+    def _potential(self, nu: FloatArray) -> Local:
+        """Π(ν), its gradient and its second derivatives."""
+        spread = self._spread
+        energy, force, tangent = self._beyond_nominal(self._start + spread @ nu, self._conservative_laws)
+        pushed = spread.T @ force
+        noise = float(np.abs(self.load) @ np.abs(self._under_nominal_laws)) + 1e-12
+        return Local(
+            value=0.5 * float(nu @ nu) + energy,
+            gradient=nu + pushed,
+            hessian=np.eye(nu.size) + spread.T @ tangent @ spread,
+            noise=noise + abs(energy),
+            force=float(np.abs(nu).max(initial=0.0)) + float(np.abs(pushed).max(initial=0.0)) + 1e-300,
+        )
+
+    def _motions(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Coordinates under the loads and the connectors' forces at deflections z, and the tangents beyond nominal."""
+        _, force, tangent = self._beyond_nominal(z, self.laws)
+        # In one solution, as the difference of two large ones would lose digits.
+        return self._answer_to(self.load + self.directions @ (self._shift - force)), tangent
+
+    def _imbalance(self, z: FloatArray) -> _Imbalance:
+        x, tangent = self._motions(z)
+        difference = (z - self.directions.T @ x) / self._size
+        slope = np.eye(z.size) + self._compliance @ tangent * self._size / self._size[:, None]
+        return _Imbalance(difference, slope, float(np.linalg.norm(difference)))
+
+    def _polished(self, z: FloatArray) -> tuple[FloatArray, int]:
+        """Newton's method with halved steps, to rounding: deflections and the number of steps."""
+        here, steps = self._imbalance(z), 0
+        for _ in range(_NEWTON_STEPS):
+            before = here.norm
+            step = self._size * np.linalg.lstsq(here.slope, here.difference, rcond=None)[0]
+            rounded = before <= _ROUNDED * float(np.linalg.norm(z / self._size))
+            for halving in range(1 if rounded else _HALVINGS):
+                nearer = z - 0.5**halving * step
+                trial = self._imbalance(nearer)
+                if trial.norm < before:
+                    z, here, steps = nearer, trial, steps + 1
+                    break
+            if here.norm == before or (rounded and here.norm > _FALLS * before):
+                break
+        return z, steps
