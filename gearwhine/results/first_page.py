@@ -18,6 +18,7 @@ from gearwhine.output.sections import (
     percent,
     table_of,
 )
+from gearwhine.results.bearing_lives import LONGEST_LIFE
 from gearwhine.results.comparison import LINKED_PAIR
 from gearwhine.results.motion import leading_lines, path_place, shape_column
 from gearwhine.results.run import SPECTRUM
@@ -179,7 +180,8 @@ def _under_load(documents: Sequence[Document]) -> list[str]:
         )
     if bearings := [bearing for bearing in load.get("bearings", ()) if bearing.get("life_h")]:
         shortest = min(bearings, key=lambda bearing: float(bearing["life_h"]))
-        hours = f"{float(format(shortest['life_h'], '.3g')):,.0f}".replace(",", " ")
+        told = min(float(format(shortest["life_h"], ".3g")), LONGEST_LIFE)
+        hours = ("over " if shortest["life_h"] > LONGEST_LIFE else "") + f"{told:,.0f}".replace(",", " ")
         said.append(f"shortest bearing life L10 {hours} h, of {shortest['name']}")
     return [f"Under load: {'; '.join(said)}."] if said else []
 

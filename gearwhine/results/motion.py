@@ -26,6 +26,15 @@ MESH = (
 )
 """Of a gear mesh, figures of the motion by contacts, and the number of the contact that its mean load presses."""
 
+BEARING = (
+    Quantity("name", lambda row: row[0], heading="bearing"),
+    Quantity("mean_force_n", lambda row: row[1].mean[:3], heading="mean force x, y, z [N]", shown=".1f"),
+    Quantity("rms_force_n", lambda row: row[1].rms[:3], heading="a.c. force x, y, z [N rms]", shown=".2f"),
+    Quantity("mean_moment_n_m", lambda row: row[1].mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
+    Quantity("rms_moment_n_m", lambda row: row[1].rms[3:]),
+)
+"""Of a bearing's name and the parts of its load: forces along x, y, z and moments about x and y."""
+
 SENSOR_COLUMNS = (
     Column("sensor", "name"),
     Column("rms [m/s²]", "rms_m_per_s2", ".3g"),

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from gearwhine.output.sections import (
     table_of,
 )
 from gearwhine.output.store import Option, kept_sentence
+from gearwhine.results.bearing_lives import life_quantities
 from housing.acoustics.sound_levels import power_level
 
 if TYPE_CHECKING:
@@ -138,28 +140,7 @@ BEARING = (
         "load of the rolling element on the outer ring, row after row",
     ),
     Quantity("equivalent_load_n", _rated(lambda rated: rated.equivalent_load)),
-    Quantity("dynamic_rating_n", _rated(lambda rated: rated.rating)),
-    Quantity("dynamic_rating_from", _rated(lambda rated: rated.rating_from)),
-    Quantity(
-        "life_h",
-        _rated(lambda rated: rated.life),
-        "bearing_life",
-        (),
-        "h",
-        "basic rating life L10 by ISO 281 at the speed of operation",
-        heading="L10\n[h]",
-        shown=".3g",
-    ),
-    Quantity(
-        "reference_life_h",
-        _rated(lambda rated: rated.reference_life),
-        "bearing_reference_life",
-        (),
-        "h",
-        "basic reference rating life L10r by ISO/TS 16281 of the elements' loads, at the speed of operation",
-        heading="L10r\n[h]",
-        shown=".3g",
-    ),
+    *life_quantities(lambda key: _rated(attrgetter(key)), "bearing", ("L10\n[h]", "L10r\n[h]")),
 )
 """Of a bearing at the operating point."""
 

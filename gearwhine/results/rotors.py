@@ -11,6 +11,7 @@ import numpy as np
 from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of, warning
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
+from gearwhine.results.bearing_lives import life_quantities
 from gearwhine.results.housing import COUNT_CERTIFICATE
 
 if TYPE_CHECKING:
@@ -217,27 +218,8 @@ ROLLING = (
         heading="stiffness [N/m]",
         shown=lambda row: ", ".join(f"{row['stiffness'][motion][motion]:.3g}" for motion in range(3)),
     ),
-    Quantity("dynamic_rating_n", lambda row: _rated(row).rating),
-    Quantity("dynamic_rating_from", lambda row: _rated(row).rating_from),
-    Quantity(
-        "life_h",
-        lambda row: _rated(row).life,
-        "rolling_bearing_life",
-        (),
-        "h",
-        "basic rating life L10 by ISO 281 at the speed of operation",
-        heading="rated life L10 [h]",
-        shown=".3g",
-    ),
-    Quantity(
-        "reference_life_h",
-        lambda row: _rated(row).reference_life,
-        "rolling_bearing_reference_life",
-        (),
-        "h",
-        "basic reference rating life L10r by ISO/TS 16281 of the elements' loads, at the speed of operation",
-        heading="L10r [h]",
-        shown=".3g",
+    *life_quantities(
+        lambda key: lambda row: getattr(_rated(row), key), "rolling_bearing", ("rated life L10 [h]", "L10r [h]")
     ),
     Quantity("estimated", lambda row: _loaded(row).bearing.estimated),
     Quantity("characteristic_frequencies_hz", _frequencies),

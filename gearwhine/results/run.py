@@ -15,6 +15,7 @@ from gearwhine.output.sections import Column, Curves, Document, Picture, Section
 from gearwhine.results import comparison, operating_point, sound
 from gearwhine.results.housing import line_picture, modes_sentence
 from gearwhine.results.motion import (
+    BEARING,
     MESH,
     SENSOR_COLUMNS,
     leading_lines,
@@ -168,15 +169,6 @@ PAIR = (
 )
 """Of the transient, its signature, the number of the contact that is pressed, and the number of the gear pair."""
 MESH_COLUMNS = (*columns_of(MESH), Column("friction takes [W]", "friction.mean_power_w", ".3g"))
-
-BEARING = (
-    Quantity("name", lambda row: row[0], heading="bearing"),
-    Quantity("mean_force_n", lambda row: row[1].mean[:3], heading="mean force x, y, z [N]", shown=".1f"),
-    Quantity("rms_force_n", lambda row: row[1].rms[:3], heading="a.c. force x, y, z [N rms]", shown=".2f"),
-    Quantity("mean_moment_n_m", lambda row: row[1].mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
-    Quantity("rms_moment_n_m", lambda row: row[1].rms[3:]),
-)
-"""Of a bearing's name and the parts of its load: forces along x, y, z and moments about x and y."""
 
 CONVENTIONS = {
     "amplitude": "peak: a sine a sin(2 pi f t) has the amplitude a",

@@ -1,6 +1,6 @@
 """Steady state: quantities of periodic motions and of their branch over speed, and how they are shown."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,11 +8,13 @@ import numpy as np
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.output.store import Option, kept_sentence
-from gearwhine.results.motion import MESH, SENSOR_COLUMNS, line_table, mesh_sentence
+from gearwhine.results.motion import BEARING, MESH, SENSOR_COLUMNS, line_table, mesh_sentence
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
     from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
+
+_TILTS = ("about x", "about y")
 
 PROOF = (
     Quantity("period_s", lambda response: response.period),
@@ -92,6 +94,25 @@ def _signals(of: Any, name: str, dimension: str, unit: str, what: str) -> Quanti
     return Quantity("", lambda row: of(row[1].histories) or None, name, (dimension, "period_time"), unit, what)
 
 
+def _bearing_load(what: str, rows: slice, along: str, labels: Sequence[str], unit: str, long_name: str) -> Part:
+    """One period of the loads on all bearings: forces along x, y, z or moments about x, y, and the labels of these."""
+    return Part(
+        "",
+        lambda row: row,
+        (
+            Quantity("", lambda row: list(labels), along, (along,), common=True),
+            Quantity(
+                "",
+                lambda row: {name: load[:, rows].T for name, load in row[1].histories.bearing_load.items()} or None,
+                f"steady_bearing_{what}",
+                ("bearing", along, "period_time"),
+                unit,
+                long_name,
+            ),
+        ),
+    )
+
+
 MOTION = (
     Quantity("", lambda row: row[2], "steady_motion", (), "1", "motion at operation"),
     Quantity(
@@ -121,8 +142,11 @@ MOTION = (
         "m/s2",
         "acceleration along the sensor",
     ),
+    _bearing_load("force", slice(0, 3), "direction", "xyz", "N", "force of the shaft on its bearing"),
+    _bearing_load("moment", slice(3, 5), "rotation", _TILTS, "N m", "moment of the shaft on its bearing"),
     Part("", lambda row: row[1].response, PROOF),
     Rows("gear_pairs", lambda row: _pairs(row[0], row[1]), PAIR),
+    Rows("bearings", lambda row: row[0].bearing_parts(row[1]), BEARING),
     Quantity("sensors", lambda row: _sensors(row[0], row[1])),
 )
 """Of the solved state, one of its periodic motions, and its number from 1."""
@@ -176,6 +200,7 @@ SUPERPOSED = (
     Quantity("stable", lambda solved: solved.superposed.stable),
     Rows("excitations", _excitations, EXCITATION, "excitation"),
     Rows("gear_pairs", lambda solved: _pairs(solved, None), PAIR),
+    Rows("bearings", lambda solved: solved.bearing_parts(), BEARING),
     Quantity("sensors", lambda solved: _sensors(solved, None)),
 )
 """Of motions that are superposed: figures by the contact law at their sum, lines of all groups."""
@@ -203,6 +228,24 @@ EVENT = (
     Quantity("speed_rpm", lambda event: event.speed * RPM, heading="speed [rpm]", shown=".1f"),
     Quantity("kind", lambda event: event.kind, heading="what happens"),
 )
+LOUDEST = (
+    Quantity("sensor", lambda one: one.sensor, heading="sensor"),
+    Quantity("speed_rpm", lambda one: one.speed * RPM, heading="loudest at [rpm]", shown=".0f"),
+    Quantity("rms_m_per_s2", lambda one: one.rms, heading="rms [m/s²]", shown=".3g"),
+    Quantity("frequency_hz", lambda one: one.frequency, heading="highest line [Hz]", shown=".1f"),
+    Quantity("amplitude_m_per_s2", lambda one: one.amplitude, heading="[m/s², peak]", shown=".3g"),
+    Quantity("excitation", lambda one: one.excitation, heading="excitation"),
+    Quantity(
+        "housing_mode",
+        lambda one: one.mode,
+        heading="most of it by",
+        shown=lambda row: f"mode {row['housing_mode']}, {row['mode_hz']:.1f} Hz ({percent(row['share'])})",
+    ),
+    Quantity("mode_hz", lambda one: one.mode_hz),
+    Quantity("share", lambda one: one.share),
+)
+"""Of the point of a branch at which a sensor is loudest."""
+
 CURVE = (
     Quantity(
         "speed_rpm",
@@ -251,6 +294,7 @@ CURVE = (
         "sensors",
         lambda solved: [{"name": name, "rms_m_per_s2": values} for name, values in solved.branch_rms.items()],
     ),
+    Rows("loudest", lambda solved: solved.loudest, LOUDEST),
     Rows("bifurcations", lambda solved: solved.curve.bifurcations, EVENT),
     Quantity("", lambda solved: [event.kind for event in solved.curve.bifurcations], "branch_event", ("branch_event",)),
     Quantity(
@@ -314,6 +358,7 @@ def report(document: Document) -> Section:
     tables: tuple[Table, ...] = ()
     for motion in document["motions"]:
         tables += table_of(columns_of(PAIR), motion["gear_pairs"])
+        tables += table_of(columns_of(BEARING), motion.get("bearings", ()), "Bearings")
         tables += line_table(motion["sensors"], "lines")
     tables += table_of(columns_of(EVENT), document.get("curve", {}).get("bifurcations", ()), "Over speed")
     return Section("Steady state", (*_content(document), *tables), pictures=_PICTURES)
@@ -381,8 +426,8 @@ def _proof(motion: Document, name: str) -> str:
     )
 
 
-def curve_sentences(curve: Document) -> Iterator[str]:
-    """Yield sentences on the branch over speed: its reach, the largest forces, the events along it."""
+def curve_sentences(curve: Document) -> Iterator[str | Table]:
+    """Yield what is told of a branch over speed: reach, largest forces, where sensors are loudest, events along it."""
     speeds = curve["speed_rpm"]
     unstable = sum(not stable for stable in curve["stable"])
     yield (
@@ -397,5 +442,6 @@ def curve_sentences(curve: Document) -> Iterator[str]:
             f"Gear mesh {pair['driver']} → {pair['driven']}: largest force {pair['peak_force_n'][worst]:.0f} N at "
             f"{speeds[worst]:.0f} rpm"
         )
+    yield from table_of(columns_of(LOUDEST), curve.get("loudest", ()))
     for event in curve["bifurcations"]:
         yield f"{event['speed_rpm']:9.1f} rpm: {event['kind']}; {_EVENTS.get(event['kind'], 'stability changes')}"

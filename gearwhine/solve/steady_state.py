@@ -1,6 +1,7 @@
 """Steady state of a case: the periodic motion under its excitation, and the branch of such motions over speed."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -17,9 +18,10 @@ from coupling.periodic.superposition import (
     excitation_groups,
     superposed_response,
 )
-from coupling.signals.histories import Histories, transient_outputs
+from coupling.signals.excitation import line_names
+from coupling.signals.histories import Histories, modal_record, transient_outputs, with_modal_rows
 from coupling.signals.histories import histories as coupled_histories
-from coupling.signals.spectrum import Spectrum
+from coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.speeds_and_torques import BEYOND_OPERATION
@@ -35,6 +37,7 @@ _OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: litt
 _LEAST_SAMPLES = 512
 _HARMONICS = 4.0  # of the mesh that are of interest where no housing says how far the model goes
 _LINES = 20  # that are told of each signal
+_NAMED = 1e-3  # of the spacing of lines within which one has the name of an excitation
 _DOUBTFUL = 0.1  # part of a mesh's varying force that may be neglected without a warning
 
 CURVE_TOLERANCE = 1e-5
@@ -102,6 +105,42 @@ class SteadyMotion:
 
 
 @dataclass(frozen=True)
+class LoudestPoint:
+    """Point of a branch at which a sensor's acceleration is largest, and what carries it.
+
+    Attributes
+    ----------
+    sensor : str
+    speed : float
+        Of the first driver's rotor [rad/s].
+    rms : float
+        Acceleration up to the trusted limit [m/s²].
+    frequency : float
+        Of its highest line [Hz].
+    amplitude : float
+        Of that line [m/s²].
+    excitation : str
+        Name of that line, such as ``3× pinion -> wheel``.
+    mode : int
+        Number of the housing mode with the largest part in that line, from 1.
+    mode_hz : float
+        Its natural frequency [Hz].
+    share : float
+        That part, in phase with the line, over the line.
+    """
+
+    sensor: str
+    speed: float
+    rms: float
+    frequency: float
+    amplitude: float
+    excitation: str
+    mode: int
+    mode_hz: float
+    share: float
+
+
+@dataclass(frozen=True)
 class SolvedSteady:
     """The steady state.
 
@@ -118,6 +157,8 @@ class SolvedSteady:
         The branch over the speed of the first driver's rotor [rad/s].
     branch_rms : dict of str to ndarray, shape (p,)
         Of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].
+    loudest : tuple of LoudestPoint
+        Of each sensor on the branch.
     """
 
     machine: CoupledMachine
@@ -125,6 +166,21 @@ class SolvedSteady:
     curve: ResponseCurve | None = None
     branch_rms: dict[str, FloatArray] = field(default_factory=dict)
     superposed: SuperposedResponse | None = None
+    loudest: tuple[LoudestPoint, ...] = ()
+
+    def bearing_parts(self, motion: SteadyMotion | None = None) -> list[tuple[str, SignalParts]]:
+        """Mean and alternating part of each bearing's load in one motion, or in all that are superposed.
+
+        Forces along x, y, z [N] and moments about x, y [N m]; the peak of superposed motions is a bound.
+        """
+        motions = self.motions if motion is None else (motion,)
+        found = []
+        for name in motions[0].histories.bearing_load:
+            parts = [signal_parts(one.histories.bearing_load[name].T) for one in motions]
+            # Each group's motion has the mean load; of different frequencies the powers add.
+            mean, rms = np.mean([one.mean for one in parts], axis=0), np.hypot.reduce([one.rms for one in parts])
+            found.append((name, SignalParts(mean, rms, np.sum([one.peak for one in parts], axis=0))))
+        return found
 
     def superposition_warnings(self) -> list[dict[str, Any]]:
         """Warnings where the sum of the groups' motions is no longer near the motion under all of them."""
@@ -228,7 +284,44 @@ def solve_steady(
     reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
     here = curve.at(speed) if reached[0] <= speed <= reached[1] else [periodic_response(machine.system)]
     motions = tuple(_motion(case, machine, housing, speed, one) for one in here)
-    return SolvedSteady(machine, motions, curve, {name: np.array(values) for name, values in rms.items()})
+    found = {name: np.array(values) for name, values in rms.items()}
+    loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, found))
+    return SolvedSteady(machine, motions, curve, found, loudest=loudest)
+
+
+def _loudest(
+    case: Case, machine: CoupledMachine, housing: SolvedHousing, curve: ResponseCurve, rms: dict[str, FloatArray]
+) -> Iterator[LoudestPoint]:
+    """Yield where each sensor is loudest on a branch; nothing of one that does not move."""
+    places = {name: int(values.argmax()) for name, values in rms.items() if values.any()}
+    for place in sorted(set(places.values())):
+        speed = float(curve.speeds[place])
+        here = machine.at_speed(speed)
+        motion = _motion(case, here, housing, speed, curve.motion(place))
+        samples = len(motion.histories.times)
+        record = motion.response.record(with_modal_rows(here, transient_outputs(here)), samples)
+        modal = amplitude_spectrum(modal_record(here, record).housing_acceleration.T, motion.response.period / samples)
+        assert here.housing is not None
+        for name, row in here.housing.sensors.items():
+            if places.get(name) != place:
+                continue
+            spectrum = motion.spectrum(motion.histories.sensor_acceleration[name])
+            frequency, amplitude = motion.lines(motion.histories.sensor_acceleration[name])[0]
+            number = int(np.argmin(np.abs(spectrum.frequencies - frequency)))
+            line = spectrum.lines[number]
+            shares = (row[: len(modal.lines)] * modal.lines[:, number] * line.conj()).real / abs(line) ** 2
+            mode = int(shares.argmax())
+            yield LoudestPoint(
+                sensor=name,
+                speed=speed,
+                rms=float(rms[name][place]),
+                frequency=frequency,
+                amplitude=amplitude,
+                excitation=line_names(here, [frequency], _NAMED * spectrum.spacing)[0].name,
+                mode=mode + 1,
+                mode_hz=float(housing.modes.frequencies_hz[mode]),
+                share=float(shares[mode]),
+            )
 
 
 _NO_BRANCH = (

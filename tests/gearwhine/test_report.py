@@ -17,6 +17,7 @@ from gearwhine.output.report import Contents, report_page
 from gearwhine.output.sections import Column, Picture, Section, columns_of, table_of
 from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update
 from gearwhine.results import steady_state as steady
+from gearwhine.results.bearing_lives import life_in_words
 from gearwhine.results.first_page import first_page, machine_section
 
 VOID = {"meta", "img"}
@@ -246,6 +247,11 @@ def test_the_first_page_tells_the_hardest_loaded_parts(tmp_path: Path) -> None:
         "Under load: K_Hβ 1.58 of second → wheel, whose flanks stand 2.4 µm out of line over the face; "
         "shortest bearing life L10 138 000 h, of b."
     )
+
+
+@pytest.mark.parametrize(("hours", "said"), [(None, ""), (9.1234e5, "9.12e+05"), (2e44, "> 1e6"), (40.0, "40")])
+def test_a_life_of_a_bearing_without_load_is_no_number(hours: float | None, said: str) -> None:
+    assert life_in_words(hours) == said
 
 
 def pair_of(case: Case) -> tuple[str, str]:

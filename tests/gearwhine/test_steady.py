@@ -144,3 +144,43 @@ def test_what_stands_still_or_has_no_range_is_refused() -> None:
     still = load_case("spur-pair", [*FEW, "operation.speed=0 rpm", "transient="]).case
     with pytest.raises(CaseError, match="stands still"):
         solve_steady(still, machine, None)
+
+
+def test_a_sensor_is_loudest_where_the_mesh_meets_the_mode_it_sits_on() -> None:
+    """The top's own mode: its resonance carries nearly all of the line, at the mesh frequency."""
+    coarse = {"housing.box.mesh_size": "60 mm", "rotor.*.unbalance": ""}
+    study = gw.load("small-gearbox", coarse)
+    assert study.housing is not None
+    top = study.machine.housing_component.sensors["top"]  # type: ignore[union-attr]
+    frequencies = study.housing.modes.frequencies_hz
+    mode = int(np.abs(top[: len(frequencies)]).argmax())
+    speeds = [f"{frequencies[mode] * 60.0 / 28 * part:.3f} rpm" for part in (0.97, 1.03)]
+    swept = study.changed({"sweep.speed": speeds})
+    assert swept.housing is study.housing
+    result = swept.steady(curve=True, points=6)
+    found = {one["sensor"]: one for one in result.document["curve"]["loudest"]}["top"]
+    assert found["housing_mode"] == mode + 1
+    assert found["mode_hz"] == pytest.approx(frequencies[mode])
+    assert found["share"] == pytest.approx(1.0, abs=0.05)
+    assert found["excitation"] == "1× pinion -> wheel"
+    # At 1 % of damping the peak is within a half-power bandwidth of the mode.
+    assert found["frequency_hz"] == pytest.approx(frequencies[mode], rel=0.02)
+    assert found["frequency_hz"] == pytest.approx(28 * found["speed_rpm"] / 60.0)
+    assert found["amplitude_m_per_s2"] == pytest.approx(np.sqrt(2.0) * found["rms_m_per_s2"], rel=0.01)
+    branch = {one["name"]: one["rms_m_per_s2"] for one in result.document["curve"]["sensors"]}["top"]
+    assert found["rms_m_per_s2"] == max(branch)
+    # Bearings of a shaft carry its mesh force along the line of action between them, in the file as in the document.
+    (motion,) = result.document["motions"]
+    force = motion["gear_pairs"][0]["mean_force_n"]
+    for shaft in ("input", "output"):
+        parts = [one["mean_force_n"] for one in motion["bearings"] if one["name"].startswith(shaft)]
+        assert len(parts) == 2
+        assert np.hypot(*np.sum(parts, axis=0)[:2]) == pytest.approx(force, rel=1e-3)
+    data = result.dataset["steady_bearing_force"]
+    assert (data.dims, data.attrs["units"]) == (("steady_motion", "bearing", "direction", "period_time"), "N")
+    for one in motion["bearings"]:
+        own = data.sel(bearing=one["name"])[0]
+        assert own.mean("period_time").values == pytest.approx(one["mean_force_n"], abs=1e-6 * force)
+        assert own.std("period_time").values == pytest.approx(one["rms_force_n"], abs=1e-6 * force)
+        moment = result.dataset["steady_bearing_moment"].sel(bearing=one["name"])[0].mean("period_time")
+        assert moment.values == pytest.approx(one["mean_moment_n_m"], abs=1e-6 * force)
