@@ -1,6 +1,6 @@
 """Mode pictures: the selection of mode shapes, and their drawing as pictures, films or animated models."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -90,6 +90,7 @@ def draw_modes(
     mode_format: ModeFormat,
     place: Path,
     progress: Progress,
+    besides: Iterable[int] = (),
 ) -> list[str]:
     """Draw modes into a folder and name the files.
 
@@ -106,6 +107,8 @@ def draw_modes(
         A picture of each mode and one sheet of all; or a model, or a film, of each.
     place : path
     progress : callable
+    besides : iterable of int
+        Numbers of further modes.
     """
     notes = {}
     if comparison is not None:
@@ -121,6 +124,7 @@ def draw_modes(
         numbers = sorted(notes) if notes else strongest_modes(housing, _DOMINANT)
     else:
         numbers = parse_numbers(which, count)
+    numbers = sorted({*numbers, *besides})
     if mode_format == "glb":
         from housing.pictures.gltf import write_mode_models
 

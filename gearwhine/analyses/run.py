@@ -21,6 +21,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import comparison_document, write_comparison
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
+from gearwhine.results.motion import leading_lines
 from gearwhine.results.operating_point import LOAD, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import RUN_SIGNATURE, TRANSIENT, HistoryStream, run_signature_document, transient_document
@@ -201,7 +202,10 @@ def run(
         from gearwhine.drawing_process import one_process
 
         with one_process():
-            draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress)
+            # The tables of lines name modes, and the report links their pictures.
+            lines_told = leading_lines(document.get("sensors", ()), "peaks")
+            named = {row["by_mode"] for row in lines_told if row["by_mode"] is not None}
+            draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress, named)
             if load is not None:
                 draw_load_pictures(solved.housing, load, place, progress)
             if solved.sound is not None:
