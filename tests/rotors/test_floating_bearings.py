@@ -32,6 +32,8 @@ LOCATING = {
     "deep groove": (RollingBearing([BALLS]), 0.0),
     "thrown deep groove": (RollingBearing([BALLS]), 900.0),
     "four-point": (RollingBearing([FourPointRow(13, 9.5e-3, 50e-3, math.radians(35.0), clearance=6e-6)]), 0.0),
+    "double-row": (paired(BallRow(13, 8.1e-3, 38.5e-3, 0.4, clearance=6e-6), "back to back", 12e-3), 0.0),
+    "preloaded double-row": (paired(BallRow(13, 8.1e-3, 38.5e-3, 0.4), "face to face", 12e-3, preload=200.0), 0.0),
     "spherical": (RollingBearing([SPHERICAL.facing(1), SPHERICAL.facing(-1)]), 0.0),
 }
 EACH = pytest.mark.parametrize("kind", LOCATING)
