@@ -173,7 +173,8 @@ def _under_load(documents: Sequence[Document]) -> list[str]:
     said = []
     if pairs := [pair for pair in load.get("gear_pairs", ()) if pair.get("k_h_beta") is not None]:
         worst = max(pairs, key=lambda pair: float(pair["k_h_beta"]))
-        out_of_line = abs(worst["misalignment_over_face_m"]) * 1e6
+        # A thousandth of a micrometre: less is rounding of an equilibrium.
+        out_of_line = round(abs(worst["misalignment_over_face_m"]) * 1e6, 3)
         said.append(
             f"K_Hβ {worst['k_h_beta']:.3g} of {worst['driver']} → {worst['driven']}, whose flanks stand "
             f"{out_of_line:.3g} µm out of line over the face"
