@@ -104,8 +104,7 @@ MODE_COLUMNS = (
 def _contributions(row: Any) -> dict[str, list[dict[str, Any]]]:
     solved, line = row
     power = line.sound.power
-    own = 0.5 * np.diag(line.sound.resistance)
-    alone = {name: float(power_level(one)) for name, one in zip(solved.bearings, own.tolist(), strict=True)}
+    alone = dict(zip(solved.bearings, power_level(line.sound.power_alone).tolist(), strict=True))
     return {
         "housing_modes": parts_of_modes(line.sound.by_mode, len(solved.mode_frequencies), power),
         "bearings": [
@@ -414,8 +413,8 @@ SOUND = (
     _lines("sound_name", lambda line: line.name, "", "name of the line"),
     _lines("sound_order", lambda line: line.order, "1", "order over the speed of the first driver"),
     _lines("sound_power", lambda line: line.sound.power, "W", "sound power of the line"),
-    _lines("equivalent_radiated_power", lambda line: line.sound.medium.impedance * line.sound.area
-           * line.sound.mean_square_velocity, "W", "equivalent radiated power of the line"),
+    _lines("equivalent_radiated_power", lambda line: line.sound.equivalent_power, "W",
+           "equivalent radiated power of the line"),
     Quantity("", lambda solved: list(solved.microphones) or None, "microphone", ("microphone",), common=True),
     Quantity(
         "",

@@ -171,9 +171,14 @@ class RadiatedSound:
         return float(0.5 * sum(field.mean_square_velocity.sum().real for field in self.fields) / self.area)
 
     @property
+    def equivalent_power(self) -> float:
+        """Equivalent radiated power ρ c S ⟨v²⟩ of the sum [W]: that of a radiation efficiency of 1."""
+        return self.medium.impedance * self.area * self.mean_square_velocity
+
+    @property
     def radiation_efficiency(self) -> float:
         """Radiation efficiency σ = W / (ρ c S ⟨v²⟩) of the sum; 0 where nothing moves."""
-        equivalent = self.medium.impedance * self.area * self.mean_square_velocity
+        equivalent = self.equivalent_power
         return self.power / equivalent if equivalent > 0.0 else 0.0
 
     @property
@@ -256,6 +261,11 @@ class RadiatedSound:
     def by_motion(self) -> FloatArray:
         """Part of each motion in the power of the sum [W], shape (n,): ½ Re Σⱼ Rᵢⱼ; negative where it works against."""
         return np.asarray(0.5 * self.resistance.sum(axis=1))
+
+    @property
+    def power_alone(self) -> FloatArray:
+        """Sound power of each motion without the others [W], shape (n,): ½ Rᵢᵢ."""
+        return np.asarray(0.5 * np.diag(self.resistance))
 
     @cached_property
     def by_mode(self) -> FloatArray:

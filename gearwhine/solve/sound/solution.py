@@ -104,8 +104,7 @@ class SoundLine:
     @cached_property
     def equivalent_db(self) -> float:
         """Level of the equivalent radiated power [dB], an estimate."""
-        sound = self.sound
-        return float(power_level(sound.medium.impedance * sound.area * sound.mean_square_velocity))
+        return float(power_level(self.sound.equivalent_power))
 
     @property
     def power_balance_db(self) -> float | None:
