@@ -51,6 +51,7 @@ from housing.acoustics.known_source import SourceError
 from housing.acoustics.medium import Medium
 from housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
 from housing.acoustics.sound_levels import (
+    BOX_MICROPHONES,
     a_weighting,
     power_level,
     pressure_level,
@@ -133,8 +134,8 @@ class ModeSound:
     frequency_hz : float
     radiation_efficiency : float
         σ.
-    by_face : dict of str to float
-        Part of each face in the power.
+    face_shares : dict of str to float
+        Power through each face relative to the sound power, the largest first.
     power_balance_db, interior_pressure : float or None
         Proofs, see :func:`power_balance_db` and :func:`interior_pressure`.
     known_source : SourceError or None
@@ -144,7 +145,7 @@ class ModeSound:
     number: int
     frequency_hz: float
     radiation_efficiency: float
-    by_face: dict[str, float]
+    face_shares: dict[str, float]
     power_balance_db: float | None = None
     interior_pressure: float | None = None
     known_source: SourceError | None = None
@@ -171,7 +172,7 @@ class SolvedSound:
     microphones : dict of str to ndarray, shape (3,)
         Positions [m].
     box_area : float or None
-        Of the measurement surface of ISO 3744 that the last nine microphones stand on [m²].
+        Of the measurement surface of ISO 3744 that the last `BOX_MICROPHONES` stand on [m²].
     limit_hz : float
         Highest frequency of the sound.
     told : tuple of dict
@@ -223,12 +224,18 @@ class SolvedSound:
         }
 
     @property
+    def box_microphones(self) -> tuple[str, ...]:
+        """Names of the microphones on the measurement surface of ISO 3744; empty without one."""
+        return () if self.box_area is None else tuple(self.microphones)[-BOX_MICROPHONES:]
+
+    @property
     def box_level_db(self) -> float | None:
         """Sound power level by the mean pressure on the box of microphones [dB], ISO 3744:2010, equation 6."""
         if self.box_area is None or not self.lines:
             return None
-        levels = list(self.microphone_levels().values())[-9:]
-        return float(sum_of_levels(levels) + 10.0 * np.log10(self.box_area / 9.0))
+        levels = self.microphone_levels()
+        total = sum_of_levels(levels[name] for name in self.box_microphones)
+        return float(total + 10.0 * np.log10(self.box_area / BOX_MICROPHONES))
 
     @property
     def by_face(self) -> dict[str, float]:
