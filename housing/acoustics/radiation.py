@@ -67,7 +67,7 @@ class Field(Protocol):
     @property
     def pressure_at_corners(self) -> ComplexArray: ...  # noqa: D102
     @property
-    def mean_square_velocity(self) -> ComplexArray: ...  # noqa: D102
+    def velocity_products(self) -> ComplexArray: ...  # noqa: D102
     @property
     def resistance(self) -> FloatArray: ...  # noqa: D102
     @property
@@ -95,14 +95,14 @@ class EquivalentField:
         return self.medium.impedance * self.velocity
 
     @cached_property
-    def mean_square_velocity(self) -> ComplexArray:
+    def velocity_products(self) -> ComplexArray:
         """∫ v̄ᵢ vⱼ dS [m⁴/s²], shape (n, n)."""
         return surface_product(self.surface, self.velocity, self.velocity)
 
     @property
     def resistance(self) -> FloatArray:
         """ρ c Re ∫ v̄ᵢ vⱼ dS, shape (n, n)."""
-        return np.asarray(self.medium.impedance * self.mean_square_velocity.real)
+        return np.asarray(self.medium.impedance * self.velocity_products.real)
 
     @property
     def surface_resistance(self) -> FloatArray:
@@ -147,7 +147,7 @@ class RadiatedSound:
 
     @cached_property
     def resistance(self) -> FloatArray:
-        """Radiation resistance R of the motions: their sum with amplitudes a has the power ½ aᴴ R a, shape (n, n)."""
+        """Radiation resistance R of the motions, shape (n, n), as :attr:`SoundField.resistance`."""
         return np.asarray(sum(field.resistance for field in self.fields))
 
     @property
@@ -168,7 +168,7 @@ class RadiatedSound:
     @property
     def mean_square_velocity(self) -> float:
         """Mean over the surface of the sum's normal velocity, squared and averaged over time [m²/s²]."""
-        return float(0.5 * sum(field.mean_square_velocity.sum().real for field in self.fields) / self.area)
+        return float(0.5 * sum(field.velocity_products.sum().real for field in self.fields) / self.area)
 
     @property
     def equivalent_power(self) -> float:
@@ -229,7 +229,7 @@ class RadiatedSound:
         self.require_source()
 
     def require_source(self) -> None:
-        """Refuse a solution that errs by more than five times the amplitude of known sources at a vertex.
+        """Refuse a solution that errs by more than ten times the amplitude of known sources at a vertex.
 
         Raises
         ------
