@@ -380,10 +380,10 @@ def require_proved(sounds: Sequence[RadiatedSound], *, alone: bool = False) -> l
     return counted
 
 
-def _set_down(surface: RadiatingSurface, floor: HardPlane, reach: float) -> RadiatingSurface:
-    """Move the vertices within reach [m] of a floor into it."""
+def set_down(surface: RadiatingSurface, floor: HardPlane, edge: float) -> RadiatingSurface:
+    """Move the vertices of a wrap within 2 % of its edge [m] from a floor into it."""
     heights = floor.height(surface.points)
-    moved = np.where(np.abs(heights) < reach, heights, 0.0)
+    moved = np.where(np.abs(heights) < _STANDS * edge, heights, 0.0)
     return RadiatingSurface(surface.points - np.outer(moved, floor.normal), surface.triangles)
 
 
@@ -405,7 +405,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
         As :func:`housing.acoustics.wrapping.wrap`.
     """
     surface = wrap(mesh, edge, close_holes)
-    return surface if floor is None else _set_down(surface, floor, _STANDS * edge)
+    return surface if floor is None else set_down(surface, floor, edge)
 
 
 @dataclass(frozen=True)

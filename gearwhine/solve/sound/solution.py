@@ -18,6 +18,14 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.sound.acoustics_checks import (
+    acoustics_warnings,
+    flat_face,
+    microphone_problems,
+    microphones_of,
+    surface_names,
+    wrap_settings,
+)
 from gearwhine.solve.sound.kept_radiation import kept_radiation
 from gearwhine.solve.sound.microphones import MicrophoneHistories, microphone_histories
 from gearwhine.solve.sound.motion_lines import (
@@ -36,14 +44,6 @@ from gearwhine.solve.sound.proofs import (
     microphone_doubts,
     power_balance_db,
     require_proofs,
-)
-from gearwhine.solve.sound.radiating_surface import (
-    acoustics_warnings,
-    flat_face,
-    microphone_problems,
-    microphones_of,
-    surface_names,
-    wrap_settings,
 )
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
