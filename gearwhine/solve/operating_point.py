@@ -25,8 +25,9 @@ from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.influences import LoadSensitivity
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings
-from gearwhine.solve.sensitivity_ranking import LoadSensitivity, solve_load_sensitivity
+from gearwhine.solve.sensitivity_ranking import solve_load_sensitivity
 from rotors import EquilibriumError, RotorError
 from rotors.rolling_bearings import BallRow, RollerRow, Row
 
