@@ -11,7 +11,7 @@ source; the largest error at points 1 m from the middle and at points beside the
 power of the source over the exact one, 2π/ρc; and the proofs that know no source: pressure inside, and the power
 through the surface over that in the far field.
 
-``--unbounded`` takes the bound away from the correction for a bent pressure: a vertex of uneven triangles may then be
+``--unbounded`` takes the bound away from the correction for a curved pressure: a vertex of uneven triangles may then be
 left nearly free by the equations.
 """
 
@@ -203,13 +203,13 @@ def main() -> None:
     given = arguments(
         __doc__,
         only=(str, "", "bodies with this in their name"),
-        unbounded=(bool, False, "without the bound of the correction for a bent pressure"),
+        unbounded=(bool, False, "without the bound of the correction for a curved pressure"),
         cost=(bool, False, "time of the proof"),
         repeats=(int, 5, "of each time"),
     )
     print(machine())
     if given.unbounded:
-        boundary_elements._MOST_BENT = np.inf
+        boundary_elements._MOST_CURVATURE = np.inf
     if given.cost:
         cost(given.only, given.repeats)
     else:

@@ -17,7 +17,7 @@ from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
-    from gearwhine.solve.load_sensitivity import LoadSensitivity
+    from gearwhine.solve.influences import LoadSensitivity
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
     from gearwhine.solve.sound.solution import SolvedSound

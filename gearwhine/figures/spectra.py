@@ -1,6 +1,6 @@
 """Spectra figures: spectral lines on a logarithmic scale, and waterfall diagrams.
 
-A waterfall shows spectra over speed, with mesh orders and the housing's natural frequencies.
+A waterfall shows spectra over speed, with mesh harmonics and the housing's natural frequencies.
 """
 
 from collections.abc import Sequence
@@ -39,6 +39,7 @@ _MOST_LINES = 1 << 12
 _DENSEST = 2.5  # lines to a millimetre of paper that are drawn one by one
 _DECADES = 5.0  # of the amplitude axis, below its highest line
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
 
 _ROW_DECADES = 4.0  # that a row shows, below the highest line of all
 _OVERLAP = 1.7  # height of a row over the distance to the next
@@ -58,9 +59,9 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) 
         frequencies, amplitude = frequencies[highest], amplitude[highest]
     top = float(amplitude.max(initial=0.0))
     if top > 0.0:
-        axes.set_yscale("log")
-        axes.set_ylim(top * 10.0**-_DECADES, top * 3.0)
         floor = top * 10.0**-_DECADES
+        axes.set_yscale("log")
+        axes.set_ylim(floor, top * 3.0)
         if np.count_nonzero(amplitude > floor) > _DENSEST * panel_size(axes)[0]:
             # Lines so close are one blue area.
             heights = np.maximum(amplitude, floor)
@@ -117,25 +118,16 @@ def draw_waterfall(
     ValueError
         Arrays whose shapes do not fit, or no spectrum at all.
     """
-    at = np.asarray(values, dtype=np.float64)
-    lines, heights = np.asarray(frequencies, dtype=np.float64), np.asarray(amplitudes, dtype=np.float64)
+    at, lines, heights = _spectra(values, frequencies, amplitudes)
     meshes, modes = (_table(table, at.size) for table in (mesh_frequencies, housing_frequencies))
-    if not lines.shape == heights.shape == (at.size, lines.shape[-1]):
-        raise ValueError(
-            f"values {at.shape}, frequencies {lines.shape} and amplitudes {heights.shape}: not (s,), (s, m)"
-        )
-    shown = np.flatnonzero(np.isfinite(heights).any(axis=1))
-    if not shown.size:
-        raise ValueError("no spectrum to draw")
-    rows = shown[np.argsort(at[shown])]
-    rows = rows[np.unique(np.linspace(0, rows.size - 1, min(rows.size, _MOST_ROWS)).round().astype(int))]
+    rows = _chosen_rows(at, heights)
     highest = float(np.nanmax(np.where(lines > 0.0, heights, np.nan), initial=0.0)) or 1.0
     limit = float(np.nanmax(np.where(np.isfinite(heights), lines, np.nan)))
     spacing = _spacing(at[rows])
 
-    orders = _orders(at[rows], meshes[rows], list(mesh_names), limit)
-    above = [one.label for one in orders if one.at_top]
-    beside = [one.label for one in orders if not one.at_top]
+    harmonics = _mesh_harmonics(at[rows], meshes[rows], list(mesh_names), limit)
+    above = [one.label for one in harmonics if one.at_top]
+    beside = [one.label for one in harmonics if not one.at_top]
     width = SHEET_WIDTH - LEFT - column_width(beside)
     row = arrange(above, [label.x / limit * width for label in above], width)
     tall = min(_LOWEST_PANEL + _ROW_HEIGHT * rows.size, _HIGHEST_PANEL)
@@ -146,16 +138,12 @@ def draw_waterfall(
     axes.set(xlim=(0.0, limit), ylim=(at[rows[0]] - 0.35 * spacing, at[rows[-1]] + (_OVERLAP + 0.2) * spacing))
     axes.set(xlabel="frequency [Hz]", ylabel=value_name)
     axes.grid(visible=False, axis="y")
+
     for depth, number in enumerate(rows):
         place, zorder = float(at[number]), 3.0 + 0.01 * (rows.size - depth)
         _draw_row(axes, lines[number], heights[number], place, spacing, highest, zorder=zorder)
         _mark_modes(axes, modes[number], place, spacing, limit)
-    handles: dict[str, Line2D] = {}
-    for one in orders:
-        (drawn,) = axes.plot(
-            one.frequencies, one.values, color=one.color, lw=0.8, ls=(0, (4, 3)), zorder=4.5, label=one.name
-        )
-        handles.setdefault(one.name, drawn)
+    handles = _draw_harmonics(axes, harmonics)
     draw_row(axes, row, tall + 1.0)
     draw_column(axes, beside)
     if modes.size:
@@ -164,8 +152,23 @@ def draw_waterfall(
     return figure
 
 
+def _chosen_rows(values: FloatArray, heights: FloatArray) -> IntArray:
+    """Return the spectra that are drawn, ascending in their value: those that are not NaN alone, at most `_MOST_ROWS`.
+
+    Raises
+    ------
+    ValueError
+        Where there is none.
+    """
+    shown = np.flatnonzero(np.isfinite(heights).any(axis=1))
+    if not shown.size:
+        raise ValueError("no spectrum to draw")
+    rows = shown[np.argsort(values[shown])]
+    return np.asarray(rows[np.unique(np.linspace(0, rows.size - 1, min(rows.size, _MOST_ROWS)).round().astype(int))])
+
+
 @dataclass(frozen=True)
-class _Order:
+class _MeshHarmonic:
     """A multiple of a mesh frequency through the rows [Hz], and its label at the edge of the panel that it leaves."""
 
     name: str
@@ -176,9 +179,9 @@ class _Order:
     at_top: bool
 
 
-def _orders(values: FloatArray, meshes: FloatArray, names: list[str], limit: float) -> list[_Order]:
+def _mesh_harmonics(values: FloatArray, meshes: FloatArray, names: list[str], limit: float) -> list[_MeshHarmonic]:
     """Return the multiples of mesh frequencies that lie below a limit [Hz]; pairs of one frequency are one."""
-    found: list[_Order] = []
+    found: list[_MeshHarmonic] = []
     groups: dict[bytes, list[int]] = {}
     for pair in range(meshes.shape[1]):
         groups.setdefault(np.nan_to_num(meshes[:, pair]).round(9).tobytes(), []).append(pair)
@@ -198,8 +201,19 @@ def _orders(values: FloatArray, meshes: FloatArray, names: list[str], limit: flo
             if not at_top and across[last + 1] > x:
                 # It leaves the panel between two rows.
                 x, y = limit, float(np.interp(limit, across[last : last + 2], up[last : last + 2]))
-            found.append(_Order(name, color, across, up, Label(f"{harmonic}×", x, y, color), at_top))
+            found.append(_MeshHarmonic(name, color, across, up, Label(f"{harmonic}×", x, y, color), at_top))
     return found
+
+
+def _draw_harmonics(axes: Axes, harmonics: Sequence[_MeshHarmonic]) -> dict[str, Line2D]:
+    """Draw mesh harmonics through the rows, and return a line of each name for the legend."""
+    handles: dict[str, Line2D] = {}
+    for one in harmonics:
+        (drawn,) = axes.plot(
+            one.frequencies, one.values, color=one.color, lw=0.8, ls=(0, (4, 3)), zorder=4.5, label=one.name
+        )
+        handles.setdefault(one.name, drawn)
+    return handles
 
 
 def _draw_row(
@@ -219,6 +233,18 @@ def _mark_modes(axes: Axes, modes: FloatArray, base: float, spacing: float, limi
         axes.vlines(inside, base - 0.22 * spacing, base, color=INK, lw=0.7, zorder=5.0)
 
 
+def _spectra(
+    values: npt.ArrayLike, frequencies: npt.ArrayLike, amplitudes: npt.ArrayLike
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    at = np.asarray(values, dtype=np.float64)
+    lines, heights = np.asarray(frequencies, dtype=np.float64), np.asarray(amplitudes, dtype=np.float64)
+    if not lines.shape == heights.shape == (at.size, lines.shape[-1]):
+        raise ValueError(
+            f"values {at.shape}, frequencies {lines.shape} and amplitudes {heights.shape}: not (s,), (s, m)"
+        )
+    return at, lines, heights
+
+
 def _table(values: npt.ArrayLike, rows: int) -> FloatArray:
     table = np.asarray(values, dtype=np.float64)
     if table.size == 0:
@@ -229,5 +255,5 @@ def _table(values: npt.ArrayLike, rows: int) -> FloatArray:
 
 
 def _spacing(values: Sequence[float] | FloatArray) -> float:
-    """Spacing between neighbouring rows, in the middle."""
+    """Median spacing of neighbouring rows."""
     return float(np.median(np.diff(values))) if len(values) > 1 else max(abs(float(values[0])), 1.0)

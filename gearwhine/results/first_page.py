@@ -20,6 +20,7 @@ from gearwhine.output.sections import (
 )
 from gearwhine.results.bearing_lives import LONGEST_LIFE
 from gearwhine.results.comparison import LINKED_PAIR
+from gearwhine.results.line_columns import LINE_NAME
 from gearwhine.results.motion import leading_lines, path_place, shape_column
 from gearwhine.results.run import SPECTRUM
 from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
@@ -431,7 +432,7 @@ _CAUSES = (
     Column("sensor", "sensor"),
     Column("frequency [Hz]", "frequency_hz", ".1f", link=_paths_of),
     Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
-    Column("what it is", "name"),
+    LINE_NAME,
     Column("coupled mode near it", _near),
     Column("mostly through bearing", _through),
     shape_column("mostly by"),

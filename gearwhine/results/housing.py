@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
+from gearwhine.results.line_columns import LINE_NAME, line_frequency
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -262,8 +263,8 @@ def line_picture(frequency_hz: float, name: str | None) -> Picture:
 
 
 _LINES = (
-    Column("line [Hz]", "frequency_hz", ".1f", link=lambda line: (line_picture(line["frequency_hz"], None).place,)),
-    Column("what it is", "name"),
+    line_frequency(lambda line: (line_picture(line["frequency_hz"], None).place,)),
+    LINE_NAME,
     Column("largest [µm, peak]", "largest_displacement_m", ".3g", 1e6),
     Column("largest [m/s², peak]", "largest_acceleration_m_per_s2", ".3g"),
     Column(

@@ -6,6 +6,7 @@ from typing import Any
 from gearwhine.output.quantity import Quantity
 from gearwhine.output.sections import Column, Document, Table, percent, table_of
 from gearwhine.results.housing import shape_places
+from gearwhine.results.line_columns import LINE_NAME, line_frequency
 
 _TOLD = 0.03  # an error of a line that is worth its place
 _LINES_OF_A_SENSOR = 6  # in the report
@@ -67,11 +68,11 @@ def shape_column(heading: str) -> Column:
 
 LINE_COLUMNS = (
     Column("sensor", "sensor"),
-    Column("line [Hz]", "frequency_hz", ".1f", link=_paths_of),
+    line_frequency(_paths_of),
     Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
     Column("level [dB re 1e-6 m/s²]", "level_db", ".1f"),
     Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
-    Column("what it is", "name"),
+    LINE_NAME,
     shape_column("mostly by"),
 )
 

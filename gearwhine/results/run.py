@@ -14,6 +14,7 @@ from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows,
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results import comparison, operating_point, sound
 from gearwhine.results.housing import line_picture, modes_sentence
+from gearwhine.results.line_columns import line_frequency
 from gearwhine.results.motion import (
     BEARING,
     MESH,
@@ -619,7 +620,7 @@ def _paths(document: Document) -> tuple[Section, ...]:
     note = "Shares in phase with the line, which add up to it: parts above 100 % are cancelled by those below zero."
     columns = (
         Column("sensor", "sensor"),
-        Column("line [Hz]", "frequency_hz", ".1f"),
+        line_frequency(),
         *(column for column in _SIGNATURE_COLUMNS if column.heading not in ("sensor", "Hz")),
         shape_column("the housing there"),
     )

@@ -19,7 +19,8 @@ from gearwhine.output.sections import (
     percent,
     table_of,
 )
-from housing.acoustics.sound_levels import power_level, pressure_level
+from gearwhine.results.line_columns import line_frequency
+from housing.acoustics.sound_levels import BOX_MICROPHONES, power_level, pressure_level
 
 if TYPE_CHECKING:
     from gearwhine.solve.sound.solution import SolvedSound
@@ -30,14 +31,13 @@ _METHODS = {
     "rayleigh": "Rayleigh's integral over flat faces in baffles",
     "erp": "equivalent radiated power, an estimate",
 }
-_TOLD = 3  # parts of a line that are named
-_SHOWN = 12  # lines on the terminal
-_BRIEF = 5  # of them beside another analysis
-_LITTLE = 1e-3  # part of the power that may be left out without a word
-_ON_BOX = 9  # microphones of the box, the last ones
+_LISTED = 3  # faces, lines or microphones that a sentence lists, and lines listed for each microphone
+_TERMINAL_LINES = 12  # lines in the table of the terminal
+_BRIEF_LINES = 5  # the same beside another analysis
+_LEAST_LEFT_OUT = 1e-3  # part of the power from which lines left out are mentioned
 _MODE_NAME = "housing mode "
 _LOCAL = "local compliance"
-_FAINT = 0.02  # part of a power that is worth its place
+_LEAST_SHARE = 0.02  # of a power, from which a mode, bearing or face is listed
 
 
 def _largest_error(error: "SourceError | None") -> float | None:
@@ -58,37 +58,34 @@ SURFACE = (
 """Of the radiating surface."""
 
 MODE = (
-    Quantity("number", lambda one: one.number, "sound_mode", unit="1", long_name="number of the housing mode"),
+    Quantity("number", lambda one: one.number, name="sound_mode", unit="1", long_name="number of the housing mode"),
     Quantity(
         "frequency_hz",
         lambda one: one.frequency_hz,
-        "sound_mode_frequency",
-        (),
-        "Hz",
-        "natural frequency",
+        name="sound_mode_frequency",
+        unit="Hz",
+        long_name="natural frequency",
         heading="natural frequency [Hz]",
         shown=".1f",
     ),
     Quantity(
         "radiation_efficiency",
         lambda one: one.radiation_efficiency,
-        "radiation_efficiency",
-        (),
-        "1",
-        "radiation efficiency of the mode at its natural frequency",
+        name="radiation_efficiency",
+        unit="1",
+        long_name="radiation efficiency of the mode at its natural frequency",
         heading="radiation efficiency",
         shown=".3g",
     ),
-    Quantity("faces", lambda one: {face: part for face, part in one.by_face.items() if abs(part) > _FAINT}),
+    Quantity("faces", lambda one: {face: part for face, part in one.face_shares.items() if abs(part) > _LEAST_SHARE}),
     Quantity("power_balance_db", lambda one: one.power_balance_db),
     Quantity("interior_pressure", lambda one: one.interior_pressure),
     Quantity(
         "known_source_error",
         lambda one: _largest_error(one.known_source),
-        "sound_mode_known_source_error",
-        (),
-        "1",
-        "largest error of a known source's pressure on the surface at the natural frequency",
+        name="sound_mode_known_source_error",
+        unit="1",
+        long_name="largest error of a known source's pressure on the surface at the natural frequency",
     ),
     Quantity("known_source_rms", lambda one: _rms_error(one.known_source)),
 )
@@ -104,15 +101,14 @@ MODE_COLUMNS = (
 def _contributions(row: Any) -> dict[str, list[dict[str, Any]]]:
     solved, line = row
     power = line.sound.power
-    own = 0.5 * np.diag(line.sound.resistance)
-    alone = {name: float(power_level(one)) for name, one in zip(solved.bearings, own.tolist(), strict=True)}
+    alone = dict(zip(solved.bearings, power_level(line.sound.power_alone).tolist(), strict=True))
     return {
         "housing_modes": parts_of_modes(line.sound.by_mode, len(solved.mode_frequencies), power),
         "bearings": [
             part | {"alone_db": alone[part["name"]]}
-            for part in _worth_telling(zip(solved.bearings, line.sound.by_motion.tolist(), strict=True), power)
+            for part in _largest_shares(zip(solved.bearings, line.sound.by_motion.tolist(), strict=True), power)
         ],
-        "faces": _worth_telling(line.sound.by_face.items(), power),
+        "faces": _largest_shares(line.sound.by_face.items(), power),
     }
 
 
@@ -129,20 +125,24 @@ def parts_of_modes(by_mode: npt.NDArray[np.float64], natural: int, power: float)
         Of the line [W].
     """
     modes = [(f"{_MODE_NAME}{number}", float(part)) for number, part in enumerate(by_mode[:natural], start=1)]
-    return _worth_telling([*modes, (_LOCAL, float(by_mode[natural:].sum()))], power)
+    return _largest_shares([*modes, (_LOCAL, float(by_mode[natural:].sum()))], power)
 
 
-def _worth_telling(parts: Iterable[tuple[str, float]], power: float) -> list[dict[str, Any]]:
+def _largest_shares(parts: Iterable[tuple[str, float]], power: float) -> list[dict[str, Any]]:
     return [
         {"name": name, "share": part / power}
         for name, part in sorted(parts, key=lambda one: -abs(one[1]))
-        if abs(part) > _FAINT * power
+        if abs(part) > _LEAST_SHARE * power
     ]
 
 
-def _lines(name: str, of: Any, unit: str, what: str) -> Quantity:
+def _of_lines(name: str, of: Any, unit: str, long_name: str) -> Quantity:
     """Declare an array over the lines."""
-    return Quantity("", lambda solved: np.array([of(line) for line in solved.lines]), name, ("sound_line",), unit, what)
+
+    def values(solved: "SolvedSound") -> Any:
+        return np.array([of(line) for line in solved.lines])
+
+    return Quantity("", values, name=name, dimensions=("sound_line",), unit=unit, long_name=long_name)
 
 
 ENTRY = (
@@ -187,7 +187,7 @@ def _largest(heading: str, group: str) -> Column:
     return Column(heading, text)
 
 
-_LINE = Column("line [Hz]", "frequency_hz", ".1f", link=_picture_of)
+_LINE = line_frequency(_picture_of)
 _ORDER = Column("order", "order", ".4g")
 _LEVELS = (Column("L_W [dB]", "sound_power_db", ".1f"), Column("L_WA [dB]", "sound_power_db_a", ".1f"))
 _NAME = Column("what it is", lambda row: arrowed(str(row["name"])))
@@ -234,7 +234,7 @@ SWEPT_LINE = (
     Quantity(
         "name",
         lambda row: row[0]["name"],
-        "sound_line_name",
+        name="sound_line_name",
         long_name="name of the loudest lines",
         heading="loudest line",
         shown=lambda row: arrowed(str(row["name"])),
@@ -242,7 +242,7 @@ SWEPT_LINE = (
     Quantity(
         "frequency_hz",
         lambda row: row[0]["frequency_hz"],
-        "sound_line_frequency",
+        name="sound_line_frequency",
         unit="Hz",
         long_name="frequency of the loudest lines",
         heading="at [Hz]",
@@ -251,14 +251,14 @@ SWEPT_LINE = (
     Quantity(
         "order",
         lambda row: row[0]["order"],
-        "sound_line_order",
+        name="sound_line_order",
         unit="1",
         long_name="order of the loudest lines over the speed of the first driver",
     ),
     Quantity(
         "sound_power_db",
         lambda row: row[0]["sound_power_db"],
-        "sound_line_level",
+        name="sound_line_level",
         unit="dB",
         long_name="sound power level of the loudest lines re 1 pW",
         heading="its L_W [dB]",
@@ -267,7 +267,7 @@ SWEPT_LINE = (
     Quantity(
         "mode",
         lambda row: _mode_number(row[0]),
-        "sound_line_mode",
+        name="sound_line_mode",
         unit="1",
         long_name="number of the housing mode with the largest part of the line's power",
         heading="most by mode",
@@ -276,14 +276,14 @@ SWEPT_LINE = (
     Quantity(
         "mode_frequency_hz",
         lambda row: None if (number := _mode_number(row[0])) is None else row[1][number - 1],
-        "sound_line_mode_frequency",
+        name="sound_line_mode_frequency",
         unit="Hz",
         long_name="natural frequency of that mode",
     ),
     Quantity(
         "mode_share",
         lambda row: None if (mode := _first_mode(row[0])) is None else mode["share"],
-        "sound_line_mode_share",
+        name="sound_line_mode_share",
         unit="1",
         long_name="part of that mode in the line's power",
     ),
@@ -311,10 +311,9 @@ MICROPHONE = (
     Quantity(
         "known_source_error",
         lambda row: row[4],
-        "microphone_known_source_error",
-        (),
-        "1",
-        "largest error of a known source's pressure at the microphone",
+        name="microphone_known_source_error",
+        unit="1",
+        long_name="largest error of a known source's pressure at the microphone",
     ),
 )
 """Of a microphone: name, position, level of all lines, the same A-weighted, and the error of a known source there."""
@@ -322,7 +321,7 @@ MICROPHONE = (
 
 HEARD_COLUMNS = (
     Column("microphone", "microphone"),
-    Column("line [Hz]", "frequency_hz", ".1f"),
+    line_frequency(),
     _NAME,
     Column("sound pressure [dB re 20 µPa]", "level_db", ".1f"),
 )
@@ -334,7 +333,7 @@ def _heard(document: Document) -> list[Document]:
     found = []
     for microphone in document["microphones"]:
         name = microphone["name"]
-        loudest = sorted(document["lines"], key=lambda line: -float(line["microphones_db"][name]))[:_TOLD]
+        loudest = sorted(document["lines"], key=lambda line: -float(line["microphones_db"][name]))[:_LISTED]
         found += [line | {"microphone": name, "level_db": line["microphones_db"][name]} for line in loudest]
     return found
 
@@ -384,21 +383,21 @@ SOUND = (
     Quantity(
         "",
         lambda solved: None if solved.histories is None else solved.histories.times,
-        "microphone_time",
-        ("microphone_time",),
-        "s",
-        "time",
+        name="microphone_time",
+        dimensions=("microphone_time",),
+        unit="s",
+        long_name="time",
         common=True,
     ),
     Quantity(
         "",
         lambda solved: None if solved.histories is None else solved.histories.pressure,
-        "microphone_pressure",
-        ("microphone", "microphone_time"),
-        "Pa",
-        "sound pressure at the microphone",
+        name="microphone_pressure",
+        dimensions=("microphone", "microphone_time"),
+        unit="Pa",
+        long_name="sound pressure at the microphone",
     ),
-    _lines("sound_frequency", lambda line: line.frequency_hz, "Hz", "frequency of the line"),
+    _of_lines("sound_frequency", lambda line: line.frequency_hz, "Hz", "frequency of the line"),
     Quantity(
         "",
         lambda solved: (
@@ -406,24 +405,34 @@ SOUND = (
             if any(line.known_source is not None for line in solved.lines)
             else None
         ),
-        "sound_known_source_error",
-        ("sound_line",),
-        "1",
-        "largest error of a known source's pressure on the surface at the frequency of the line",
+        name="sound_known_source_error",
+        dimensions=("sound_line",),
+        unit="1",
+        long_name="largest error of a known source's pressure on the surface at the frequency of the line",
     ),
-    _lines("sound_name", lambda line: line.name, "", "name of the line"),
-    _lines("sound_order", lambda line: line.order, "1", "order over the speed of the first driver"),
-    _lines("sound_power", lambda line: line.sound.power, "W", "sound power of the line"),
-    _lines("equivalent_radiated_power", lambda line: line.sound.medium.impedance * line.sound.area
-           * line.sound.mean_square_velocity, "W", "equivalent radiated power of the line"),
-    Quantity("", lambda solved: list(solved.microphones) or None, "microphone", ("microphone",), common=True),
+    _of_lines("sound_name", lambda line: line.name, "", "name of the line"),
+    _of_lines("sound_order", lambda line: line.order, "1", "order over the speed of the first driver"),
+    _of_lines("sound_power", lambda line: line.sound.power, "W", "sound power of the line"),
+    _of_lines(
+        "equivalent_radiated_power",
+        lambda line: line.sound.equivalent_power,
+        "W",
+        "equivalent radiated power of the line",
+    ),
+    Quantity(
+        "",
+        lambda solved: list(solved.microphones) or None,
+        name="microphone",
+        dimensions=("microphone",),
+        common=True,
+    ),
     Quantity(
         "",
         lambda solved: np.array(list(solved.microphones.values())) if solved.microphones else None,
-        "microphone_position",
-        ("microphone", "coordinate"),
-        "m",
-        "position of the microphone",
+        name="microphone_position",
+        dimensions=("microphone", "coordinate"),
+        unit="m",
+        long_name="position of the microphone",
         common=True,
     ),
     Quantity(
@@ -433,12 +442,12 @@ SOUND = (
             if solved.microphones and solved.lines
             else None
         ),
-        "sound_pressure",
-        ("sound_line", "microphone", "part"),
-        "Pa",
-        "complex amplitude of the sound pressure",
+        name="sound_pressure",
+        dimensions=("sound_line", "microphone", "part"),
+        unit="Pa",
+        long_name="complex amplitude of the sound pressure",
     ),
-)  # fmt: skip
+)
 """Of the sound of a case."""
 
 
@@ -449,7 +458,7 @@ def sound_document(solved: "SolvedSound") -> dict[str, Any]:
 
 def _parts(faces: Document) -> str:
     """Return parts of a power in words, the largest first."""
-    ordered = sorted(faces.items(), key=lambda one: -one[1])[:_TOLD]
+    ordered = sorted(faces.items(), key=lambda one: -one[1])[:_LISTED]
     return ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in ordered)
 
 
@@ -487,7 +496,7 @@ def known_source_sentence(document: Document) -> str:
     if why is None:
         if not document["lines"] and not document["modes"]:
             return ""
-        why = "the housing is too thin beside its triangles, or nothing counts that it could prove"
+        why = "the housing is too thin for a source inside it, or no line or mode radiates enough to be checked"
     return f"No proof by a known source: {why}"
 
 
@@ -497,7 +506,9 @@ def left_out_sentence(document: Document) -> str:
     parts = []
     known = [one for one in left_out if one["share"] is not None]
     rest = 1.0 - document["covered"] if known else 0.0
-    if known and (rest >= _LITTLE or any(one["frequency_hz"] > document["highest_frequency_hz"] for one in known)):
+    if known and (
+        rest >= _LEAST_LEFT_OUT or any(one["frequency_hz"] > document["highest_frequency_hz"] for one in known)
+    ):
         parts.append(f"{percent(max(rest, 0.0))} of the power by the estimate, most of it {_named(known, shares=True)}")
     if unknown := [one for one in left_out if one["share"] is None]:
         parts.append(f"{_named(unknown)}, where the housing's modes are not complete")
@@ -509,9 +520,9 @@ def _named(lines: list[Document], *, shares: bool = False) -> str:
     names = [
         f"{arrowed(str(one['name']))} at {one['frequency_hz']:.0f} Hz"
         + (f" ({percent(one['share'])})" if shares else "")
-        for one in lines[:_TOLD]
+        for one in lines[:_LISTED]
     ]
-    return ", ".join(names) + (f" and {len(lines) - _TOLD} more" if len(lines) > _TOLD else "")
+    return ", ".join(names) + (f" and {len(lines) - _LISTED} more" if len(lines) > _LISTED else "")
 
 
 def brief(document: Document) -> Iterator[str | Table]:
@@ -520,11 +531,18 @@ def brief(document: Document) -> Iterator[str | Table]:
         yield total
         if left_out := left_out_sentence(document):
             yield left_out
-        yield from table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_BRIEF], "Loudest lines of the sound")
+        yield from table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_BRIEF_LINES], "Loudest lines of the sound")
     if document["microphone_error"] is not None:
         names = [str(one["name"]) for one in document["microphones"]]
-        told = ", ".join(names[:_TOLD]) + (f" and {len(names) - _TOLD} more" if len(names) > _TOLD else "")
+        told = ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
         yield f"Sound pressure over time at {counted(len(names), 'microphone')} ({told}): gearwhine export --wav"
+
+
+def _microphones_by_place(document: Document) -> tuple[list[Document], list[Document]]:
+    """Return the microphones of the case, and those on the box of ISO 3744, which stand behind them."""
+    microphones = document["microphones"]
+    first_on_box = len(microphones) - (0 if document["box_power_db"] is None else BOX_MICROPHONES)
+    return microphones[:first_on_box], microphones[first_on_box:]
 
 
 def _content(document: Document) -> Iterator[str | Table]:
@@ -543,7 +561,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     if proof := known_source_sentence(document):
         yield proof
     if document["box_power_db"] is not None:
-        levels = [one["level_db"] for one in document["microphones"][-_ON_BOX:]]
+        levels = [one["level_db"] for one in _microphones_by_place(document)[1]]
         yield (
             f"By the mean pressure on the box of microphones (ISO 3744): L_W {document['box_power_db']:.1f} dB; "
             f"pressure {min(levels):.1f} to {max(levels):.1f} dB re 20 µPa"
@@ -552,11 +570,11 @@ def _content(document: Document) -> Iterator[str | Table]:
 
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the levels, the lines, the microphones and the modes for the terminal."""
-    microphones = document["microphones"]
-    if document["box_power_db"] is not None:
-        microphones = microphones[:-_ON_BOX]
+    microphones, _ = _microphones_by_place(document)
     tables = (
-        *table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_SHOWN], "Loudest lines, and the largest part of each"),
+        *table_of(
+            LOUDEST_COLUMNS, loudest_lines(document)[:_TERMINAL_LINES], "Loudest lines, and the largest part of each"
+        ),
         *((PARTS,) if document["lines"] else ()),
         *table_of(columns_of(MICROPHONE), microphones, "All lines at the microphones"),
         *table_of(MODE_COLUMNS, document["modes"], "Modes; a radiation efficiency of 1 is that of a plane wave"),
@@ -572,11 +590,11 @@ def report(document: Document) -> Section:
         *table_of(HEARD_COLUMNS, _heard(document), "Loudest lines at each microphone"),
         *table_of(MODE_COLUMNS, document["modes"], "Radiation of the housing's modes"),
     )
-    notes = (_READ,) if document["lines"] else ()
+    notes = (_READING_NOTE,) if document["lines"] else ()
     return Section("Sound", (*_content(document), *notes, *tables), pictures=_PICTURES)
 
 
-_READ = (
+_READING_NOTE = (
     "L_W is the sound power level re 1 pW, L_WA the same A-weighted. The equivalent radiated power (ERP) is an "
     "estimate that takes a radiation efficiency of 1. The order is the frequency over that of the first driver's "
     f"rotation. {PARTS}: others that work against the largest one make it exceed that. Mode local is the compliance "

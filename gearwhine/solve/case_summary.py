@@ -147,7 +147,7 @@ def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]
     """
     if (refuse := check_before_modes(case)) is None:
         return []
-    from gearwhine.solve.sound.radiating_surface import acoustics_warnings
+    from gearwhine.solve.sound.acoustics_checks import acoustics_warnings
 
     assert case.housing is not None
     mesh = preview.mesh or build_mesh(case, order=1)

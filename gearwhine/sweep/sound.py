@@ -86,9 +86,9 @@ def add_sound(
         As :func:`gearwhine.solve.sound.solution.solve_sound`; where a line fails its proofs, if one does at every
         point. A single point is left without sound, with a warning.
     """
+    from gearwhine.solve.sound.acoustics_checks import acoustics_warnings, microphones_of
     from gearwhine.solve.sound.kept_radiation import kept_radiation
     from gearwhine.solve.sound.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
-    from gearwhine.solve.sound.radiating_surface import acoustics_warnings, microphones_of
     from gearwhine.solve.sound.solution import build_radiation, highest_frequency
 
     if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):

@@ -14,10 +14,10 @@ CHIEF): H. A. Schenck, "Improved integral formulation for acoustic radiation pro
 Society of America 44 (1968), 41-58. Many points, spread at random, and least squares make an accident unlikely that
 all lie on nodal surfaces; points that were not used prove it, see :attr:`SoundField.interior_residual`.
 
-The linear functions of a pressure that is bent should pass it in the mean and not through its values at the vertices,
-from which they would deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the
-second derivatives H lies ``Σ eᵀ H e / 24`` below that of the linear function through its corners. The value in the
-equation of a vertex is therefore ``p − B p`` with the bending B of :func:`_bending`, except at edges and corners of the
+The linear functions of a curved pressure should equal it on the average over a triangle. Those through its values at
+the vertices deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the second
+derivatives H lies ``Σ eᵀ H e / 24`` below that of the linear function through its corners. The value in the equation of
+a vertex is therefore ``p − B p`` with the matrix B of :func:`_curvature_correction`, except at edges and corners of the
 surface, where the pressure has no second derivatives. Powers and reciprocity are two to five times as exact as
 without.
 
@@ -55,10 +55,11 @@ _FEWEST_INNER = 30
 _VAIN = 50  # rounds of 64 trials without a point inside after which there is none
 _NEAR = 0.01  # longest edges from a triangle below which the quadrature fails: 0.3 % at 0.003 edges, 10 % at 0.001
 _SMOOTH = np.cos(np.deg2rad(15.0))  # between a triangle's normal and the mean one of a vertex that is on no edge
-_MOST_BENT = 0.35
-"""Most of a spike at a vertex that counts as bending: it is a quarter to a half on even triangles, and nine tenths
-where edges differ by half. Known sources in a box of uneven triangles were off by 140 % at a bound of 0.5, by 16 %
-at this one and by 7 % at 0.2; powers, reciprocity and points far away have the correction's whole use from 0.3 on."""
+_MOST_CURVATURE = 0.35
+"""Largest part of a spike at a vertex that the correction takes for curvature: without a bound it is a quarter to a
+half on even triangles, and nine tenths where edges differ by half. Known sources in a box of uneven triangles were off
+by 140 % at a bound of 0.5, by 16 % at this one and by 7 % at 0.2; powers, reciprocity and points far away have the
+correction's whole use from 0.3 on."""
 _MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # of linear shape functions on a triangle of unit area
 
 MOST_TRIANGLES = 16_000
@@ -79,9 +80,9 @@ class SoundField:
     velocity : ndarray, shape (3 n_triangles, n)
         Normal velocity at the corners of each triangle [m/s].
     pressure : ndarray, shape (n_points, n)
-        At the vertices [Pa], of linear functions that pass the pressure in the mean.
+        At the vertices [Pa], of linear functions that equal the pressure on the average over a triangle.
     inside : ndarray, shape (n_checks, n)
-        Pressure at points inside that the solution did not use [Pa], where zero is exact. None for a baffled face,
+        Pressure at points inside that the solution did not use [Pa], where zero is exact. Empty for a baffled face,
         which has no inside, and where no point inside is far enough from the surface, as in a thin plate.
     known : KnownField or None
         Solution for known sources inside by the same equations. None for a baffled face, and where no source can stand.
@@ -99,7 +100,7 @@ class SoundField:
     @property
     def wavenumber(self) -> float:
         """Wavenumber k = ω / c [rad/m]."""
-        return _TWO_PI * self.frequency_hz / self.medium.speed_of_sound
+        return self.medium.wavenumber(self.frequency_hz)
 
     @property
     def baffled(self) -> bool:
@@ -129,10 +130,10 @@ class SoundField:
     @property
     def flux(self) -> ComplexArray:
         """Normal derivative of the pressure, −i ω ρ v [Pa/m]."""
-        return -1j * self.wavenumber * self.medium.impedance * self.velocity
+        return self.medium.flux(self.frequency_hz, self.velocity)
 
     @cached_property
-    def mean_square_velocity(self) -> ComplexArray:
+    def velocity_products(self) -> ComplexArray:
         """∫ v̄ᵢ vⱼ dS [m⁴/s²], shape (n, n)."""
         return surface_product(self.surface, self.velocity, self.velocity)
 
@@ -143,7 +144,7 @@ class SoundField:
 
     @cached_property
     def surface_resistance(self) -> FloatArray:
-        """Radiation resistance from the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n) [W s²/m² per unit velocity]."""
+        """The same as `resistance` from the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n)."""
         product = surface_product(self.surface, self.velocity, self.pressure_at_corners)
         return np.asarray(0.5 * (product + product.conj().T).real)
 
@@ -156,7 +157,10 @@ class SoundField:
 
     @cached_property
     def resistance(self) -> FloatArray:
-        """Radiation resistance R from the far field, shape (n, n): the power of amplitudes a is ½ aᴴ R a.
+        """Radiation resistance R from the far field [W], shape (n, n): distributions times a have the power ½ aᴴ R a.
+
+        The factors a are numbers beside velocities in m/s. Where the distributions are those of modes, per unit of the
+        rates q̇ [√kg m/s] of their coordinates, a is q̇ and R is in W s²/(kg m²).
 
         ``R = (1 / ρ c) ∫ F̄ᵢ Fⱼ dΩ`` over the directions into the air, where F exp(−i k r) / r is the far field. R is
         positive semidefinite by construction; an error ε of the pressure that is out of phase with the velocity, which
@@ -351,8 +355,8 @@ class BoundaryElements:
         return min(_CHECK_POINTS, (len(self._inner_points) + 1) // 2)
 
     @cached_property
-    def _bending(self) -> sparse.coo_array:
-        return _bending(self.surface)
+    def _correction(self) -> sparse.coo_array:
+        return _curvature_correction(self.surface)
 
     def _inner_count(self, wavenumber: float) -> int:
         """Twice the natural frequencies of the inside, by Weyl's law, within 5 % of this one, and a few more."""
@@ -385,8 +389,7 @@ class BoundaryElements:
                 "triangle that radiates"
             )
         given = np.ascontiguousarray(given.reshape(len(given), -1))
-        wavenumber = _TWO_PI * frequency_hz / self.medium.speed_of_sound
-        flux = -1j * wavenumber * self.medium.impedance * given
+        wavenumber, flux = self.medium.wavenumber(frequency_hz), self.medium.flux(frequency_hz, given)
         inside = np.zeros((0, given.shape[1]), dtype=np.complex128)
         if self.baffled:
             assert self.plane is not None
@@ -406,6 +409,11 @@ class BoundaryElements:
         return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside, known)
 
     def _solve_closed(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
+        """Solve ``c p − ∫ p ∂G/∂n dS = −∫ q G dS`` for the pressure at the vertices, q = ∂p/∂n.
+
+        At a point inside c is 0. At a vertex the double layer leaves its jump, so that c is the part of the directions
+        that leads into the air.
+        """
         vertices = self.surface.points
         count, inner = len(vertices), self._inner_points[self._checks :][: self._inner_count(wavenumber)]
         rows = count + len(inner)
@@ -416,7 +424,7 @@ class BoundaryElements:
         direct = surface_integrals(self.surface, vertices, own, wavenumber, flux)
         matrix[:count], right[:count], free = -direct.double, -direct.single, 1.0 + direct.static
         inside = surface_integrals(self.surface, inner, None, wavenumber, flux)
-        matrix[count:], right[count:] = inside.double, inside.single
+        matrix[count:], right[count:] = -inside.double, -inside.single
         if self.plane is not None:
             mirrored = self.plane.mirror(vertices)
             touching = np.abs(self.plane.height(vertices)) <= self.surface.rounding
@@ -425,11 +433,11 @@ class BoundaryElements:
             right[:count] -= image.single
             free += image.static
             image = surface_integrals(self.surface, self.plane.mirror(inner), None, wavenumber, flux)
-            matrix[count:] += image.double
-            right[count:] += image.single
+            matrix[count:] -= image.double
+            right[count:] -= image.single
         matrix[own, own] += free
-        bent = self._bending
-        matrix[bent.row, bent.col] -= free[bent.row] * bent.data
+        correction = self._correction
+        matrix[correction.row, correction.col] -= free[correction.row] * correction.data
         weights = np.ones(rows)
         weights[count:] = _INNER_WEIGHT
         if self.plane is not None:
@@ -445,13 +453,14 @@ class BoundaryElements:
         return np.ascontiguousarray(solution[:count])
 
 
-def _bending(surface: RadiatingSurface) -> sparse.coo_array:
-    """Matrix B of the height of linear functions p over the pressure that they pass in the mean, at n vertices.
+def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
+    """Matrix B of the difference between averaging linear functions p and the curved pressure p − B p, at n vertices.
 
-    The second derivatives are isotropic in the mean over the triangles around a vertex, ``Σ eᵀ H e = ½ Σ e² Δp``, and
-    Δp there follows from the stiffness matrix K of linear finite elements, ``∫ ∇φᵢ·∇p dS = −Aᵢ Δp`` with a third Aᵢ of
-    the area of its triangles: ``(B p)ᵢ = Σ_T (Σ e²)_T (K_T p)ᵢ / 48 Aᵢ``. It is zero for a linear pressure on a plane.
-    Rows whose diagonal is above `_MOST_BENT`, around vertices of uneven triangles, are reduced to that.
+    On the average over the triangles around a vertex the second derivatives count as isotropic, ``Σ eᵀ H e = ½ Σ e²
+    Δp``, and Δp there follows from the stiffness matrix K of linear finite elements, ``∫ ∇φᵢ·∇p dS = −Aᵢ Δp`` with a
+    third Aᵢ of the area of its triangles: ``(B p)ᵢ = Σ_T (Σ e²)_T (K_T p)ᵢ / 48 Aᵢ``. It is zero for a linear pressure
+    on a plane. Rows whose diagonal is above `_MOST_CURVATURE`, around vertices of uneven triangles, are reduced to
+    that.
     """
     count, triangles = len(surface.points), surface.triangles
     areas, corners = np.bincount(triangles.ravel(), np.repeat(surface.areas / 3.0, 3), count), surface.corners
@@ -466,11 +475,11 @@ def _bending(surface: RadiatingSurface) -> sparse.coo_array:
     weights = np.where(least > _SMOOTH, 1.0 / areas, 0.0)
     values = weights[triangles][:, :, None] * values
     places = np.repeat(triangles, 3, axis=1).ravel(), np.tile(triangles, (1, 3)).ravel()
-    bent = sparse.csr_array((values.ravel(), places), shape=(count, count))
-    # Where the whole of a spike at a vertex is bending, p − B p no longer sees it.
-    part = bent.diagonal()
-    kept = np.where(part > _MOST_BENT, _MOST_BENT / np.where(part > _MOST_BENT, part, 1.0), 1.0)
-    return sparse.coo_array(sparse.diags_array(kept) @ bent)
+    correction = sparse.csr_array((values.ravel(), places), shape=(count, count))
+    # Where the whole of a spike at a vertex is taken for curvature, p − B p no longer sees it.
+    part = correction.diagonal()
+    kept = np.where(part > _MOST_CURVATURE, _MOST_CURVATURE / np.where(part > _MOST_CURVATURE, part, 1.0), 1.0)
+    return sparse.coo_array(sparse.diags_array(kept) @ correction)
 
 
 def _represent(

@@ -143,7 +143,7 @@ class KnownSources:
         return linear_projection(surface, lambda points: self.slope(points, surface.normals, wavenumber))
 
     def linear_pressure(self, surface: RadiatingSurface, wavenumber: float) -> ComplexArray:
-        """Exact pressure as linear functions that pass it in the mean, at the vertices, shape (n_vertices, n).
+        """Exact pressure as linear functions that equal it on the average, at the vertices, shape (n_vertices, n).
 
         Each triangle has its own linear function; a vertex has the mean of those of its triangles.
         """

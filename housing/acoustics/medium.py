@@ -8,6 +8,9 @@ import numpy.typing as npt
 from housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_TWO_PI = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,14 @@ class Medium:
     def impedance(self) -> float:
         """Characteristic impedance ρ c [Pa s/m]."""
         return self.density * self.speed_of_sound
+
+    def wavenumber(self, frequency_hz: float) -> float:
+        """Wavenumber k = ω / c [rad/m]."""
+        return _TWO_PI * frequency_hz / self.speed_of_sound
+
+    def flux(self, frequency_hz: float, velocity: ComplexArray) -> ComplexArray:
+        """Return the normal derivative ∂p/∂n = −i ω ρ v of the pressure [Pa/m] by the normal velocity v [m/s]."""
+        return -1j * self.wavenumber(frequency_hz) * self.impedance * velocity
 
 
 AIR = Medium(density=1.204, speed_of_sound=343.2)

@@ -74,7 +74,7 @@ class ModalRadiation:
     frequencies : ndarray, shape (f,)
         Evenly spaced [Hz].
     resistance : ndarray, shape (f, n, n)
-        Radiation resistance R from the far field, symmetric: rates q̇ have the power ½ q̇ᴴ R q̇ [W s² per unit rate²].
+        Radiation resistance R from the far field, symmetric: rates q̇ have the power ½ q̇ᴴ R q̇ [W s²/(kg m²)].
     surface_resistance : ndarray, shape (f, n, n)
         The same from the surface.
     surface_reactance : ndarray, shape (f, n, n)

@@ -74,7 +74,7 @@ class PowerGradient:
 
     @cached_property
     def resistance(self) -> FloatArray:
-        """R of the modes' rates [W s²], real and symmetric, shape (n_modes, n_modes)."""
+        """R of the modes' rates [W s²/(kg m²)], real and symmetric, shape (n_modes, n_modes)."""
         return self.unit.resistance
 
     def sound(self, rates: ComplexArray) -> RadiatedSound:

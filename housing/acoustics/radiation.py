@@ -67,7 +67,7 @@ class Field(Protocol):
     @property
     def pressure_at_corners(self) -> ComplexArray: ...  # noqa: D102
     @property
-    def mean_square_velocity(self) -> ComplexArray: ...  # noqa: D102
+    def velocity_products(self) -> ComplexArray: ...  # noqa: D102
     @property
     def resistance(self) -> FloatArray: ...  # noqa: D102
     @property
@@ -95,14 +95,14 @@ class EquivalentField:
         return self.medium.impedance * self.velocity
 
     @cached_property
-    def mean_square_velocity(self) -> ComplexArray:
+    def velocity_products(self) -> ComplexArray:
         """∫ v̄ᵢ vⱼ dS [m⁴/s²], shape (n, n)."""
         return surface_product(self.surface, self.velocity, self.velocity)
 
     @property
     def resistance(self) -> FloatArray:
         """ρ c Re ∫ v̄ᵢ vⱼ dS, shape (n, n)."""
-        return np.asarray(self.medium.impedance * self.mean_square_velocity.real)
+        return np.asarray(self.medium.impedance * self.velocity_products.real)
 
     @property
     def surface_resistance(self) -> FloatArray:
@@ -147,7 +147,7 @@ class RadiatedSound:
 
     @cached_property
     def resistance(self) -> FloatArray:
-        """Radiation resistance R of the motions: their sum with amplitudes a has the power ½ aᴴ R a, shape (n, n)."""
+        """Radiation resistance R of the motions, shape (n, n), as :attr:`SoundField.resistance`."""
         return np.asarray(sum(field.resistance for field in self.fields))
 
     @property
@@ -168,12 +168,17 @@ class RadiatedSound:
     @property
     def mean_square_velocity(self) -> float:
         """Mean over the surface of the sum's normal velocity, squared and averaged over time [m²/s²]."""
-        return float(0.5 * sum(field.mean_square_velocity.sum().real for field in self.fields) / self.area)
+        return float(0.5 * sum(field.velocity_products.sum().real for field in self.fields) / self.area)
+
+    @property
+    def equivalent_power(self) -> float:
+        """Equivalent radiated power ρ c S ⟨v²⟩ of the sum [W]: that of a radiation efficiency of 1."""
+        return self.medium.impedance * self.area * self.mean_square_velocity
 
     @property
     def radiation_efficiency(self) -> float:
         """Radiation efficiency σ = W / (ρ c S ⟨v²⟩) of the sum; 0 where nothing moves."""
-        equivalent = self.medium.impedance * self.area * self.mean_square_velocity
+        equivalent = self.equivalent_power
         return self.power / equivalent if equivalent > 0.0 else 0.0
 
     @property
@@ -224,7 +229,7 @@ class RadiatedSound:
         self.require_source()
 
     def require_source(self) -> None:
-        """Refuse a solution that errs by more than five times the amplitude of known sources at a vertex.
+        """Refuse a solution that errs by more than ten times the amplitude of known sources at a vertex.
 
         Raises
         ------
@@ -256,6 +261,11 @@ class RadiatedSound:
     def by_motion(self) -> FloatArray:
         """Part of each motion in the power of the sum [W], shape (n,): ½ Re Σⱼ Rᵢⱼ; negative where it works against."""
         return np.asarray(0.5 * self.resistance.sum(axis=1))
+
+    @property
+    def power_alone(self) -> FloatArray:
+        """Sound power of each motion without the others [W], shape (n,): ½ Rᵢᵢ."""
+        return np.asarray(0.5 * np.diag(self.resistance))
 
     @cached_property
     def by_mode(self) -> FloatArray:
@@ -370,10 +380,10 @@ def require_proved(sounds: Sequence[RadiatedSound], *, alone: bool = False) -> l
     return counted
 
 
-def _set_down(surface: RadiatingSurface, floor: HardPlane, reach: float) -> RadiatingSurface:
-    """Move the vertices within reach [m] of a floor into it."""
+def set_down(surface: RadiatingSurface, floor: HardPlane, edge: float) -> RadiatingSurface:
+    """Move the vertices of a wrap within 2 % of its edge [m] from a floor into it."""
     heights = floor.height(surface.points)
-    moved = np.where(np.abs(heights) < reach, heights, 0.0)
+    moved = np.where(np.abs(heights) < _STANDS * edge, heights, 0.0)
     return RadiatingSurface(surface.points - np.outer(moved, floor.normal), surface.triangles)
 
 
@@ -395,7 +405,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
         As :func:`housing.acoustics.wrapping.wrap`.
     """
     surface = wrap(mesh, edge, close_holes)
-    return surface if floor is None else _set_down(surface, floor, _STANDS * edge)
+    return surface if floor is None else set_down(surface, floor, edge)
 
 
 @dataclass(frozen=True)

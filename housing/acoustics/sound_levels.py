@@ -15,6 +15,9 @@ REFERENCE_POWER = 1e-12
 REFERENCE_PRESSURE = 20e-6
 """[Pa]"""
 
+BOX_MICROPHONES = 9
+"""Microphones of a :func:`measurement_box`."""
+
 _NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 
 

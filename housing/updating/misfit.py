@@ -33,9 +33,9 @@ UNPAIRED = -1
 _LEAST_MAC = 0.5  # below it two shapes are no pair
 _COUNT_SCALE = 0.01  # ln ω on the wrong side of the limit of a known number of modes that costs one σ
 _COUNT_CLEAR = 0.005  # ln ω by which a mode has to be clear of that limit, so that the mesh does not decide
-_HOPELESS = 1e6  # J of a design with too few modes to pair
+_TOO_FEW_MODES = 1e6  # J for each mode that a design has too few of to pair
 _WITHIN = 2.0  # largest error in σ of a frequency that is met
-_LOOSE = 25.0  # J of each measured mode that finds no partner, beside its shape's: as much as an error of five σ
+_UNPAIRED_COST = 25.0  # J for each measured mode without partner, beside its shape's: that of an error of five σ
 
 
 @dataclass(frozen=True)
@@ -187,8 +187,8 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
         strengths = state.dominance
         pairs = strengths.strongest(n, target.band)
         if len(pairs) < n:
-            hopeless = _HOPELESS * (n - len(pairs))
-            return Misfit(hopeless + penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
+            penalty += _TOO_FEW_MODES * (n - len(pairs))
+            return Misfit(penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
         if not strict:
             asked = (target.gap, target.margin, target.firmness)
             pairs = choose_modes(target.logarithms, target.noise, strengths, target.band, *asked)
@@ -197,11 +197,11 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
         penalty += clear.cost
     else:
         pairs, mac = pair_by_shape(target, state)
-        told = np.isfinite(target.noise)
-        penalty += _LOOSE * np.count_nonzero(pairs[told] == UNPAIRED)
+        included = np.isfinite(target.noise)
+        penalty += _UNPAIRED_COST * np.count_nonzero(pairs[included] == UNPAIRED)
         # A shape without partner costs as much as at the limit of pairing: with less, a search would drop the pair.
         unlike = 1.0 - np.where(pairs == UNPAIRED, _LEAST_MAC, mac)
-        penalty += target.shapes.shape[1] / target.shape_noise**2 * float(unlike[told].sum())
+        penalty += target.shapes.shape[1] / target.shape_noise**2 * float(unlike[included].sum())
     count = 0
     if target.count is not None:
         count = int(np.count_nonzero(state.frequencies < target.count.limit))
@@ -220,8 +220,8 @@ def is_met(target: Target, misfit: Misfit) -> bool:
     """
     if target.shapes is not None:
         return False
-    told = np.isfinite(target.noise)
-    if (misfit.pairs[told] == UNPAIRED).any() or (np.abs(misfit.errors / target.noise)[told] > _WITHIN).any():
+    included = np.isfinite(target.noise)
+    if (misfit.pairs[included] == UNPAIRED).any() or (np.abs(misfit.errors / target.noise)[included] > _WITHIN).any():
         return False
     known = target.count
     counted = known is None or known.least <= misfit.count <= known.most
@@ -238,11 +238,11 @@ def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, Floa
         Distance of each from its own side of the limit in units of the penalty's scale: positive above, negative below.
     """
     beyond = np.log(state.frequencies / known.limit)
-    lacks = np.zeros(len(beyond))
-    lacks[: known.least] = np.maximum(beyond[: known.least] + _COUNT_CLEAR, 0.0)
-    lacks[known.most :] = np.minimum(beyond[known.most :] - _COUNT_CLEAR, 0.0)
-    modes = np.flatnonzero(lacks)
-    return modes, lacks[modes] / _COUNT_SCALE
+    shortfall = np.zeros(len(beyond))
+    shortfall[: known.least] = np.maximum(beyond[: known.least] + _COUNT_CLEAR, 0.0)
+    shortfall[known.most :] = np.minimum(beyond[known.most :] - _COUNT_CLEAR, 0.0)
+    modes = np.flatnonzero(shortfall)
+    return modes, shortfall[modes] / _COUNT_SCALE
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:
@@ -269,10 +269,18 @@ def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArr
 def residuals(
     target: Target, misfit: Misfit, near: Neighbour, *, penalties: bool = False
 ) -> tuple[FloatArray, FloatArray]:
-    """Residuals of a neighbour in units of the noise, and their derivatives by the coordinates.
+    """Residuals of a design in units of the noise, and their derivatives by the coordinates.
 
-    With ``penalties`` also the violations of the known number of modes and the shortfalls of the mode choice: a search
-    needs these, but they are no measurements.
+    Parameters
+    ----------
+    target : Target
+    misfit : Misfit
+        Of the design: pairs, errors of the frequencies and shortfalls of the mode choice.
+    near : Neighbour
+        The design's modes, and their slopes.
+    penalties : bool
+        Whether the violations of the known number of modes and the shortfalls of the mode choice are residuals too: a
+        search needs these, but they are no measurements.
 
     Returns
     -------
@@ -280,24 +288,24 @@ def residuals(
         (ln ω - ln ω_measured) / σ of the paired modes, then the part of each unit shape √n ψ / s across the model's.
     slopes : ndarray, shape (n_residuals, n_parameters)
     """
-    told = (misfit.pairs != UNPAIRED) & np.isfinite(target.noise)
-    modes = misfit.pairs[told]
-    missed = [misfit.errors[told] / target.noise[told]]
-    rows = [near.slopes[:, modes].T / target.noise[told, None]]
+    included = (misfit.pairs != UNPAIRED) & np.isfinite(target.noise)
+    modes = misfit.pairs[included]
+    missed = [misfit.errors[included] / target.noise[included]]
+    rows = [near.slopes[:, modes].T / target.noise[included, None]]
     if target.count is not None and penalties:
         lost, beyond = misplaced_modes(target.count, near.state)
         missed.append(target.firmness * beyond)
         rows.append(target.firmness * near.slopes[:, lost].T / _COUNT_SCALE)
     if misfit.choice_shortfall is not None and penalties:
         missed.append(misfit.choice_shortfall.values)
-        rows.append(_lacking_slopes(misfit.choice_shortfall, near))
+        rows.append(_shortfall_slopes(misfit.choice_shortfall, near))
     if target.shapes is not None and np.isfinite(target.shape_noise) and near.state.measured is not None:
         scale = np.sqrt(target.shapes.shape[1]) / target.shape_noise
         model, turning = near.state.measured[modes], near.measured_slopes(modes)
         length = np.linalg.norm(model, axis=1)[:, None]
         own = model / length
         turning = (turning - np.einsum("pmd,md->pm", turning, own)[..., None] * own) / length
-        shapes = target.shapes[told]
+        shapes = target.shapes[included]
         unit = shapes / np.linalg.norm(shapes, axis=1)[:, None]
         along = (unit * own).sum(axis=1)[:, None]
         missed.append(scale * (along * own - unit).ravel())
@@ -307,17 +315,17 @@ def residuals(
     return np.concatenate(missed), np.concatenate(rows)
 
 
-def _lacking_slopes(lacks: ChoiceShortfall, near: Neighbour) -> FloatArray:
+def _shortfall_slopes(shortfall: ChoiceShortfall, near: Neighbour) -> FloatArray:
     """Slopes of the shortfalls of a choice of modes, its thresholds following, shape (n, n_parameters)."""
-    weight = lacks.sign / lacks.scale
-    modes, place = np.unique(lacks.modes, return_inverse=True)
+    weight = shortfall.sign / shortfall.scale
+    modes, place = np.unique(shortfall.modes, return_inverse=True)
     strengths = near.strength_slopes(modes)  # (3, n_parameters, n)
-    edge = lacks.measure < 0
-    slopes = np.where(edge, near.slopes[:, lacks.modes], strengths[lacks.measure, :, place].T).T * weight[:, None]
-    for measure in range(len(strengths)):
+    by_strength = strengths[shortfall.criterion, :, place].T
+    slopes = np.where(shortfall.criterion < 0, near.slopes[:, shortfall.modes], by_strength).T * weight[:, None]
+    for criterion in range(len(strengths)):
         # The threshold is free: a common change of all strengths of one measure costs nothing.
-        mine = lacks.measure == measure
-        if mine.any():
-            free = lacks.sign[mine] / np.linalg.norm(lacks.sign[mine])
-            slopes[mine] -= np.outer(free, free @ slopes[mine])
+        rows = shortfall.criterion == criterion
+        if rows.any():
+            free = shortfall.sign[rows] / np.linalg.norm(shortfall.sign[rows])
+            slopes[rows] -= np.outer(free, free @ slopes[rows])
     return np.asarray(slopes)

@@ -46,7 +46,7 @@ class ChoiceShortfall:
 
     Attributes
     ----------
-    measure : ndarray of int, shape (n,)
+    criterion : ndarray of int, shape (n,)
         Index of the measure of dominance: acceleration, velocity, absolute; -1 for the end of the band.
     modes : ndarray of int, shape (n,)
     sign : ndarray, shape (n,)
@@ -57,7 +57,7 @@ class ChoiceShortfall:
         Unit of each in ln strength or ln ω.
     """
 
-    measure: IntArray
+    criterion: IntArray
     modes: IntArray
     sign: FloatArray
     values: FloatArray

@@ -330,11 +330,11 @@ def _pulls(gravity: Sequence[float] | None) -> list[float]:
 
 def _short_of_buckling(profile: Profile, nodes: FloatArray) -> FloatArray:
     """Add nodes until no element's axial force has a clamped field of its own (ω = 0 of `discretised_shaft`)."""
-    kind = profile.kind[profile.spans(nodes)]
-    bending, force = profile.extremes[kind, 1], np.abs(profile.extremes[kind, 4])
+    section = profile.section_of_span[profile.spans(nodes)]
+    bending, force = profile.bounds[section, 1], np.abs(profile.bounds[section, 4])
     counts = np.maximum(1.0, np.ceil(ELEMENT_MARGIN * np.diff(nodes) * np.sqrt(2.0 * force / bending) / math.pi))
     if counts.max() == 1.0:
         return nodes
-    number = np.repeat(np.arange(kind.size), counts.astype(np.intp))
+    number = np.repeat(np.arange(section.size), counts.astype(np.intp))
     within = np.arange(number.size) - np.searchsorted(number, number)
     return np.append(nodes[number] + within * (np.diff(nodes) / counts)[number], nodes[-1])

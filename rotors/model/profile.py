@@ -11,7 +11,7 @@ Rotor dynamics tells apart the diameter that has the mass of a section and the o
 """
 
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -24,19 +24,19 @@ from rotors.model.segment import Coupling, Segment
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-DEGREE = 16
-TAIL = 2e-15
-ROUNDING = 2e-15
-MOST_HALVINGS = 40
+_DEGREE = 16  # of the interpolants along a cone
+_TAIL = 2e-15  # last coefficients of an interpolant that is exact, relative to the largest
+_ROUNDING = 2e-15  # the same for a wall as thick as the largest diameter, and more for a thinner one
+_MOST_HALVINGS = 40  # of a cone
 
-_ANGLES = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
+_ANGLES = np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)
 _FRACTIONS = 0.5 * (1.0 + np.cos(_ANGLES))
 # Values at the Chebyshev points to coefficients of T_0, T_1, ...; and from these to those of 1, s, s², ...
-_TO_CHEBYSHEV = 2.0 / (DEGREE + 1) * np.cos(np.outer(np.arange(DEGREE + 1), _ANGLES))
+_TO_CHEBYSHEV = 2.0 / (_DEGREE + 1) * np.cos(np.outer(np.arange(_DEGREE + 1), _ANGLES))
 _TO_CHEBYSHEV[0] *= 0.5
-_TO_POWERS = np.zeros((DEGREE + 1, DEGREE + 1))
-for _row in range(DEGREE + 1):
-    _TO_POWERS[_row, : _row + 1] = np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[_row, : _row + 1])
+_TO_POWERS = np.zeros((_DEGREE + 1, _DEGREE + 1))
+for _row in range(_DEGREE + 1):
+    _TO_POWERS[_row, : _row + 1] = np.polynomial.chebyshev.cheb2poly(np.eye(_DEGREE + 1)[_row, : _row + 1])
 
 # Two positions closer than this fraction of the rotor's length are one station: sums of printed segment lengths differ
 # from printed positions by rounding alone.
@@ -53,7 +53,7 @@ class StiffnessDiameter:
     """A length of shaft that is at least this thick against deformation, while its mass is that of its segments.
 
     It stands for a body in one piece with the shaft whose mass is elsewhere, such as a pinion given as a disc. Where
-    several lie over each other, the thickest counts; one thinner than its segment, or over a coupling, has no effect.
+    several overlap, the thickest applies; one thinner than its segment, or over a coupling, has no effect.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class StiffnessDiameter:
 
 @dataclass(frozen=True)
 class Profile:
-    """A shaft as spans of uniform or mildly tapering section; equal spans share one kind.
+    """A shaft as spans of uniform or mildly tapering section; spans of equal section share one.
 
     Attributes
     ----------
@@ -85,40 +85,40 @@ class Profile:
         (s + 1,): ends of the spans, m from the left end; all joints are among them.
     lengths
         (s,): m, of whole segments exactly as given, so that equal segments are equal here.
-    kind
-        (s,): index of each span's kind.
+    section_of_span
+        (s,): index of each span's section.
     coefficients
-        (k, 10, j): of every kind, SI, the coefficients of 1, s, s², ... with s from −1 to 1 along the span: in
+        (k, 10, j): of every section, SI, the coefficients of 1, s, s², ... with s from −1 to 1 along the span: in
         bending 1/(κGA + P), 1/EI, ρA, ρI, g, g P (`rotors.transfer_matrix.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
-    extremes
+    bounds
         (k, 5): least κGA and EI, largest ρA and ρI, axial force P.
     uniform
-        (k,).
+        (k,): whether the section does not taper.
     """
 
     edges: FloatArray
     lengths: FloatArray
-    kind: IntArray
+    section_of_span: IntArray
     coefficients: FloatArray
-    extremes: FloatArray
+    bounds: FloatArray
     uniform: npt.NDArray[np.bool_]
 
     @cached_property
     def mean_bending_stiffness(self) -> float:
         """Geometric mean of the spans' least EI, N·m²."""
-        return float(np.exp(np.log(self.extremes[self.kind, 1]).mean()))
+        return float(np.exp(np.log(self.bounds[self.section_of_span, 1]).mean()))
 
     def spans(self, nodes: FloatArray) -> IntArray:
         """Span that holds each interval between nodes (p + 1,), which hold the edges; (p,)."""
         middles = 0.5 * (nodes[1:] + nodes[:-1])
-        return np.clip(np.searchsorted(self.edges, middles) - 1, 0, self.kind.size - 1)
+        return np.clip(np.searchsorted(self.edges, middles) - 1, 0, self.section_of_span.size - 1)
 
     def between(self, nodes: FloatArray) -> FloatArray:
         """Coefficients (p, 10, j) of the intervals between nodes (p + 1,), which hold the edges."""
         span = self.spans(nodes)
         width = np.diff(self.edges)[span]
         start, part = (nodes[:-1] - self.edges[span]) / width, np.diff(nodes) / width
-        return restricted(self.coefficients[self.kind[span]], 2.0 * start + part - 1.0, part)
+        return restricted(self.coefficients[self.section_of_span[span]], 2.0 * start + part - 1.0, part)
 
 
 def shaft_profile(
@@ -133,25 +133,28 @@ def shaft_profile(
 
     edges = merged_positions(own.edges, [*bent.edges.tolist(), *twisted.edges.tolist()])
     spans = np.column_stack([profile.spans(edges) for profile in (own, bent, twisted)])
-    kinds = np.column_stack([profile.kind[span] for profile, span in zip((own, bent, twisted), spans.T, strict=True)])
-    uniform = own.uniform[kinds[:, 0]] & bent.uniform[kinds[:, 1]] & twisted.uniform[kinds[:, 2]]
-    # A tapering interval is a kind of its own.
-    keys = np.column_stack([kinds, np.where(uniform, -1, np.arange(uniform.size))])
-    _, first, kind = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    sections = np.column_stack(
+        [profile.section_of_span[span] for profile, span in zip((own, bent, twisted), spans.T, strict=True)]
+    )
+    uniform = own.uniform[sections[:, 0]] & bent.uniform[sections[:, 1]] & twisted.uniform[sections[:, 2]]
+    # A tapering interval is a section of its own.
+    keys = np.column_stack([sections, np.where(uniform, -1, np.arange(uniform.size))])
+    _, first, section_of_span = np.unique(keys, axis=0, return_index=True, return_inverse=True)
 
     coefficients = np.zeros((edges.size - 1, 10, max(one.coefficients.shape[2] for one in (own, bent, twisted))))
+    # Inertias are rows of bending, torsion and rod too: last, those of the shaft itself replace those of thicker ones.
     for profile, rows in ((bent, BENDING), (bent, AXIAL), (twisted, TORSION), (own, INERTIAS)):
         given = profile.between(edges)[:, rows]
         coefficients[:, rows, : given.shape[2]] = given
         coefficients[:, rows, given.shape[2] :] = 0.0
-    extremes = np.column_stack([bent.extremes[kinds[:, 1], :2], own.extremes[kinds[:, 0], 2:]])
+    bounds = np.column_stack([bent.bounds[sections[:, 1], :2], own.bounds[sections[:, 0], 2:]])
     whole = (edges[:-1] == own.edges[spans[:, 0]]) & (edges[1:] == own.edges[spans[:, 0] + 1])
     return Profile(
         edges=edges,
         lengths=np.where(whole, own.lengths[spans[:, 0]], np.diff(edges)),
-        kind=kind.reshape(-1).astype(np.intp),
+        section_of_span=section_of_span.reshape(-1).astype(np.intp),
         coefficients=coefficients[first],
-        extremes=extremes[first],
+        bounds=bounds[first],
         uniform=uniform[first],
     )
 
@@ -190,39 +193,42 @@ def _thickened(
 
 
 def _profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:
-    kinds: dict[tuple[object, ...], int] = {}
-    tables: list[tuple[FloatArray, FloatArray]] = []
-    edges, lengths, kind = [float(joints[0])], [], []
+    """Profile of segments and couplings between joints, m, of which uniform ones of equal section share one."""
+    shared: dict[tuple[object, ...], int] = {}
+    powers: list[FloatArray] = []
+    bounds: list[FloatArray] = []
+    edges, lengths, section_of_span = [float(joints[0])], [], []
     for part, left, right in zip(parts, joints[:-1].tolist(), joints[1:].tolist(), strict=True):
-        if isinstance(part, Segment) and part.is_conical:
-            pieces = _taper(part, 0.0, 1.0, 0)
-        else:
-            key = _identity(part)
-            if key not in kinds:
-                kinds[key] = len(tables)
-                values = _coupling_values(part) if isinstance(part, Coupling) else _segment_values(part, 0.5)
-                tables.append((values[0][:, None], values[1]))
-            edges.append(right)
-            lengths.append(part.length)
-            kind.append(kinds[key])
-            continue
-        for start, end, powers, extremes in pieces:
-            kind.append(len(tables))
-            tables.append((powers, extremes))
+        for start, end, own_powers, own_bounds in _spans(part):
+            section = len(powers)
+            if own_powers.shape[1] == 1:
+                section = shared.setdefault(_identity(part), section)
+            if section == len(powers):
+                powers.append(own_powers)
+                bounds.append(own_bounds)
+            section_of_span.append(section)
             edges.append(left + end * (right - left) if end < 1.0 else right)
             lengths.append((end - start) * part.length)
-    order = max(powers.shape[1] for powers, _ in tables)
-    coefficients = np.zeros((len(tables), 10, order))
-    for row, (powers, _) in enumerate(tables):
-        coefficients[row, :, : powers.shape[1]] = powers
+    coefficients = np.zeros((len(powers), 10, max(one.shape[1] for one in powers)))
+    for row, one in enumerate(powers):
+        coefficients[row, :, : one.shape[1]] = one
     return Profile(
         edges=np.array(edges),
         lengths=np.array(lengths),
-        kind=np.array(kind, dtype=np.intp),
+        section_of_span=np.array(section_of_span, dtype=np.intp),
         coefficients=coefficients,
-        extremes=np.array([extremes for _, extremes in tables]),
-        uniform=np.array([powers.shape[1] == 1 for powers, _ in tables]),
+        bounds=np.array(bounds),
+        uniform=np.array([one.shape[1] == 1 for one in powers]),
     )
+
+
+def _spans(part: Segment | Coupling) -> Iterator[tuple[float, float, FloatArray, FloatArray]]:
+    """Start and end (fractions of the part), coefficients and bounds of a part's spans: of a cone one or several."""
+    if isinstance(part, Segment) and part.is_conical:
+        yield from _taper(part, 0.0, 1.0, 0)
+        return
+    values, bounds = _coupling_values(part) if isinstance(part, Coupling) else _segment_values(part, 0.5)
+    yield 0.0, 1.0, values[:, None], bounds
 
 
 def restricted(coefficients: FloatArray, centre: FloatArray, half: FloatArray) -> FloatArray:
@@ -271,7 +277,7 @@ def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
 
 
 def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:
-    """Start and end (fractions of the cone), coefficients and extremes of intervals short enough to interpolate."""
+    """Start and end (fractions of the cone), coefficients and bounds of intervals short enough to interpolate."""
     fractions = [start + fraction * (end - start) for fraction in (*_FRACTIONS.tolist(), 0.0, 1.0)]
     samples = [_segment_values(part, fraction) for fraction in fractions]
     values, rows = np.array([value for value, _ in samples[:-2]]), np.array([row for _, row in samples])
@@ -280,16 +286,16 @@ def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple
     walls = [part.section(fraction) for fraction in (start, end)]
     thinnest = min(section.outer_diameter - section.inner_diameter for section in walls)
     largest = max(outer for outer, _ in part.end_diameters)
-    tolerance = max(TAIL, ROUNDING * largest / thinnest) * np.abs(chebyshev).max(axis=0)
+    tolerance = max(_TAIL, _ROUNDING * largest / thinnest) * np.abs(chebyshev).max(axis=0)
     if not bool((np.abs(chebyshev[-2:]) <= tolerance).all()):
-        if halvings == MOST_HALVINGS:
+        if halvings == _MOST_HALVINGS:
             raise RotorError(f"segment {part!r} tapers too sharply; expected diameters further from zero")
         middle = 0.5 * (start + end)
         return _taper(part, start, middle, halvings + 1) + _taper(part, middle, end, halvings + 1)
     # Coefficients of the size of rounding are zero.
     chebyshev[np.abs(chebyshev) < 0.1 * tolerance] = 0.0
-    extremes = np.array([*rows[:, :2].min(axis=0), *rows[:, 2:4].max(axis=0), part.axial_force])
-    return [(start, end, (chebyshev.T @ _TO_POWERS), extremes)]
+    bounds = np.array([*rows[:, :2].min(axis=0), *rows[:, 2:4].max(axis=0), part.axial_force])
+    return [(start, end, (chebyshev.T @ _TO_POWERS), bounds)]
 
 
 def merged_positions(joints: FloatArray, others: Sequence[float]) -> FloatArray:

@@ -206,7 +206,7 @@ def shaft_spans(rotor: Rotor) -> ShaftSpans:
     nodes = merged_positions(edges, [disc.at for disc in rotor.discs])
     inertias = station_inertias(rotor, nodes)
     span = np.clip(np.searchsorted(edges, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, edges.size - 2)
-    left, width, kind = edges[span], np.diff(edges)[span], profile.kind[span]
+    left, width, kind = edges[span], np.diff(edges)[span], profile.section_of_span[span]
     start, end = (nodes[:-1] - left) / width, (nodes[1:] - left) / width
     lengths = np.where((start == 0.0) & (end == 1.0), profile.lengths[span], np.diff(nodes))
     first = np.ones(kind.size, dtype=np.bool_)

@@ -187,7 +187,8 @@ def ball_loads(
     roots = [np.cbrt(load) for load in loads]
     pressures = [contact.unit_pressure * root for contact, root in zip(contacts, roots, strict=True)]
     semi_axes = [
-        np.outer(root, [contact.semi_major, contact.semi_minor]) for contact, root in zip(contacts, roots, strict=True)
+        np.outer(root, [contact.unit_semi_major, contact.unit_semi_minor])
+        for contact, root in zip(contacts, roots, strict=True)
     ]
     return ElementLoads(
         azimuths=azimuths,

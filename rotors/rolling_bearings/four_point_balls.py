@@ -83,7 +83,7 @@ class FourPointBalls:
         )
         roots = [np.cbrt(load) for load in (inner, outer)]
         axes = [
-            np.outer(root, [contact.semi_major, contact.semi_minor])
+            np.outer(root, [contact.unit_semi_major, contact.unit_semi_minor])
             for root, contact in zip(roots, contacts, strict=True)
         ]
         return ElementLoads(

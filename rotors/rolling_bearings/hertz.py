@@ -70,19 +70,19 @@ class PointContact:
         N/m^{3/2}.
     ellipticity
         κ = a/b, 1 or more.
-    semi_major, semi_minor
+    unit_semi_major, unit_semi_minor
         a and b under a load of 1 N, m; they grow as Q^{1/3}.
     """
 
     stiffness: float
     ellipticity: float
-    semi_major: float
-    semi_minor: float
+    unit_semi_major: float
+    unit_semi_minor: float
 
     @property
     def unit_pressure(self) -> float:
         """Greatest pressure under a load of 1 N, Pa; it grows as Q^{1/3}."""
-        return 1.5 / (math.pi * self.semi_major * self.semi_minor)
+        return 1.5 / (math.pi * self.unit_semi_major * self.unit_semi_minor)
 
     def load_at_pressure(self, pressure: float) -> float:
         """Load under which the greatest pressure is ``pressure`` (Pa), N."""
@@ -101,14 +101,14 @@ def ellipticity(curvature_ratio: float) -> float:
     return math.exp(brentq(excess, 0.0, _LONGEST, xtol=1e-15, rtol=8.9e-16))
 
 
-def point_contact(curvature_major: float, curvature_minor: float, contact_modulus: float) -> PointContact:
+def point_contact(curvature_along_major: float, curvature_along_minor: float, contact_modulus: float) -> PointContact:
     """Contact of two bodies from their relative curvatures.
 
     Parameters
     ----------
-    curvature_major, curvature_minor
-        Sum of both bodies' curvatures in the plane of the longer and of the shorter semi-axis, 1/m; a hollow one counts
-        negative, and the plane of the longer axis has the smaller sum.
+    curvature_along_major, curvature_along_minor
+        Σρ_x and Σρ_y: sum of both bodies' curvatures in the plane of the longer and of the shorter semi-axis, 1/m; a
+        hollow one counts negative, and the plane of the longer axis has the smaller sum.
     contact_modulus
         E*, Pa.
 
@@ -117,16 +117,16 @@ def point_contact(curvature_major: float, curvature_minor: float, contact_modulu
     RotorError
         A curvature or modulus that is not positive, as of a ball in a conforming socket.
     """
-    require_finite("relative curvature in the longer axis", curvature_major, positive=True)
-    require_finite("relative curvature in the shorter axis", curvature_minor, minimum=curvature_major)
+    require_finite("relative curvature in the longer axis", curvature_along_major, positive=True)
+    require_finite("relative curvature in the shorter axis", curvature_along_minor, minimum=curvature_along_major)
     require_finite("contact modulus", contact_modulus, positive=True)
-    kappa = ellipticity(curvature_minor / curvature_major)
-    first = float(ellipkm1(1.0 / kappa**2))
-    second = float(ellipe(1.0 - 1.0 / kappa**2))
-    total = curvature_major + curvature_minor
+    kappa = ellipticity(curvature_along_minor / curvature_along_major)
+    integral_k = float(ellipkm1(1.0 / kappa**2))
+    integral_e = float(ellipe(1.0 - 1.0 / kappa**2))
+    total = curvature_along_major + curvature_along_minor
     size = (1.5 / (total * contact_modulus)) ** (1.0 / 3.0)
-    shape = (2.0 * kappa**2 * second / math.pi) ** (1.0 / 3.0)
-    approach = (2.0 * first / math.pi) / shape * size**2 * total / 2.0
+    shape = (2.0 * kappa**2 * integral_e / math.pi) ** (1.0 / 3.0)
+    approach = (2.0 * integral_k / math.pi) / shape * size**2 * total / 2.0
     return PointContact(approach**-1.5, kappa, shape * size, shape * size / kappa)
 
 

@@ -19,7 +19,7 @@ RodMotion = Literal["torsion", "axial"]
 def free_bending_shaft(rotor: Rotor) -> ContinuousShaft:
     """Assemble the continuous shaft of a rotor's bending in one plane without supports."""
     profile, length = rotor.profile, rotor.length
-    stiffness = profile.extremes[:, :2]
+    stiffness = profile.bounds[:, :2]
     force = profile.mean_bending_stiffness / length**2
     distributed = float(rotor.mass_model == "distributed")
     units = [force, force * length**2, distributed * length**2 / force, distributed / force, 1.0, 1.0 / force]
@@ -29,8 +29,8 @@ def free_bending_shaft(rotor: Rotor) -> ContinuousShaft:
         rotor,
         coefficients=profile.coefficients[:, BENDING] * np.array(units)[:, None],
         stiffness=stiffness,
-        inertia=distributed * profile.extremes[:, 2:4],
-        force=profile.extremes[:, 4],
+        inertia=distributed * profile.bounds[:, 2:4],
+        force=profile.bounds[:, 4],
         node_inertia=inertias[:, :2] * per_node,
         node_polar=inertias[:, 2] * per_node[1],
         displacement_unit=np.array([length, 1.0]) / np.sqrt(force * length),
@@ -43,7 +43,7 @@ def free_rod_shaft(rotor: Rotor, motion: RodMotion) -> ContinuousShaft:
     profile = rotor.profile
     given = profile.coefficients[:, rows]
     # Compliance at the middle stands for that of a tapering span.
-    force = float(np.exp(-np.log(given[profile.kind, 0, 0]).mean())) / rotor.length
+    force = float(np.exp(-np.log(given[profile.section_of_span, 0, 0]).mean())) / rotor.length
     distributed = float(rotor.mass_model == "distributed")
     sides = np.array([-1.0, 0.0, 1.0])[:, None] ** np.arange(given.shape[2])
     values = np.einsum("kfj,sj->ksf", given, sides)

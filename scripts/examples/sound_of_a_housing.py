@@ -23,7 +23,7 @@ for mode in sound.solved.modes:
     powers.append(float(power_level(solved[-1].power)))
     mean = sum_of_levels(pressure_level(solved[-1].pressure_at(places))) - 10.0 * np.log10(len(places))
     measured.append(float(mean + 10.0 * np.log10(area)))
-    faces = ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in list(mode.by_face.items())[:3])
+    faces = ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in list(mode.face_shares.items())[:3])
     print(f"mode {mode.number}, {mode.frequency_hz:.0f} Hz: efficiency {mode.radiation_efficiency:.2f}; {faces}")
     print(f"  {powers[-1]:.1f} dB re 1 pW, by the microphones {measured[-1]:.1f} dB")
 print(f"all modes: {sum_of_levels(powers):.1f} dB re 1 pW, by the microphones {sum_of_levels(measured):.1f} dB")

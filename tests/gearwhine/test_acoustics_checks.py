@@ -9,7 +9,7 @@ import gearwhine as gw
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli.command_line import run_command
 from gearwhine.from_case.mesh import build_mesh
-from gearwhine.solve.sound.radiating_surface import acoustics_warnings, require_acoustics
+from gearwhine.solve.sound.acoustics_checks import acoustics_warnings, require_acoustics
 
 INSIDE = {"name": "in", "position": ["0 mm", "80 mm", "0 mm"]}
 UNDER = {"name": "under", "position": ["1 m", "-30 mm", "0 m"]}

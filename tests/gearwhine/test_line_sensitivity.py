@@ -26,10 +26,10 @@ from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
-from gearwhine.solve import housing_modes, load_sensitivity
+from gearwhine.solve import housing_modes, sensitivity_ranking
+from gearwhine.solve.housing_changes import by_changes, case_changes, housing_fields, slopes_of
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
-from gearwhine.solve.load_sensitivity import case_changes, housing_fields
+from gearwhine.solve.line_model import SolvedLines, solve_lines
 from housing.model.material import element_constants
 from housing.updating.static_sensitivity import harmonic_surface_density
 from meshes import Mesh
@@ -123,9 +123,8 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
     adjoints = [adjoint(point, found.model.by_static(one)) for one in lines]
     fields = housing_fields(case, housing, point, adjoints)
     changes = case_changes(case, housing.mesh, PARAMETERS)
-    rates = found.rates(fields.constants, changes.rates, changes.bearings, changes.sensors, fields.displacement)
-    static = fields.by_parameters(changes.rates, changes.bearings)
-    own = (static + [found.model.by_housing(one, rates) for one in lines]) / changes.slopes
+    rates, slopes = found.rates(fields, changes), slopes_of(changes)
+    own = by_changes(fields, changes) + np.array([found.model.by_housing(one, rates) for one in lines]) / slopes
     fitted = fitted_case(case, parameters=PARAMETERS)
     meshed = MeshedParameters(fitted, fitted.start, case, housing.mesh)
     values = np.array([number.start for number in fitted.numbers])
@@ -142,7 +141,7 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
     assert (np.abs(own @ way - expected) < 1e-4 * np.abs(own * way).sum(axis=1)).all()
     # Each line answers to the step as its slope says.
     number = [number.given.name for number in fitted.numbers].index("bottom wall")
-    small = 1e-6 / changes.slopes[number]
+    small = 1e-6 / slopes[number]
     stepped = [found.model.stepped_housing(one, rates, number, small) for one in lines]
     direct = np.array([found.model.by_housing(one, rates)[number] for one in lines])
     np.testing.assert_allclose(stepped, small * direct, rtol=1e-3)
@@ -324,11 +323,11 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
 
 def test_short_steps_of_either_way_are_the_slope(case: Case, solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bearings and flanks follow the equilibrium here, which has a part in the lines of its own."""
-    monkeypatch.setattr(load_sensitivity, "_LENGTH", 1e-9)
-    monkeypatch.setattr(load_sensitivity, "_PART", 1e-6)
+    monkeypatch.setattr(sensitivity_ranking, "_LENGTH_STEP", 1e-9)
+    monkeypatch.setattr(sensitivity_ranking, "_RELATIVE_STEP", 1e-6)
     housing, point, _ = solved
     machine = describe_machine(case, full_housing_component(case, housing))
-    found = load_sensitivity.solve_load_sensitivity(case, machine, point, housing)
+    found = sensitivity_ranking.solve_load_sensitivity(case, machine, point, housing)
     kinds = {one.kind for one in found.influences}
     assert kinds == {"housing", "bearing stiffness", "bearing position"}
     for kind in kinds:

@@ -16,8 +16,14 @@ from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
+from gearwhine.solve.housing_changes import (
+    by_case_parameters,
+    by_changes,
+    face_changes,
+    housing_fields,
+    housing_parameters,
+)
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.load_sensitivity import by_case_parameters, face_changes, housing_fields, housing_parameters
 from gearwhine.solve.operating_point import solve_load
 from housing.updating.static_sensitivity import StaticSensitivity
 from meshes import Mesh
@@ -115,7 +121,7 @@ def test_the_weight_of_the_housing(case: Case, solve: Solve) -> None:
 def test_material_on_a_face_is_a_thicker_wall(case: Case, fields: StaticSensitivity) -> None:
     """Of the bottom's inner face, against the wall's thickness, by which all nodes of the mesh move."""
     changes = face_changes(case, fields.mesh)
-    faces = dict(zip(changes.names, fields.by_parameters(changes.rates, changes.bearings).T, strict=True))
+    faces = dict(zip([change.parameter for change in changes], by_changes(fields, changes).T, strict=True))
     own = faces["+y at 0, 10, 0 mm"]
     np.testing.assert_allclose(own[:2], by_case_parameters(case, fields, PARAMETERS[1:2])[:2, 0], rtol=0.05)
     assert {name[:2] for name in faces} == {"+x", "-x", "+y", "-y", "+z", "-z"}

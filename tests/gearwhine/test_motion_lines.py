@@ -13,8 +13,8 @@ from coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.case import CaseError, swept_keys
 from gearwhine.results.motion import _line as motion_words
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
+from gearwhine.solve.sound.acoustics_checks import microphones_of
 from gearwhine.solve.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
-from gearwhine.solve.sound.radiating_surface import microphones_of
 from gearwhine.solve.sound.solution import solve_sound
 from gearwhine.sweep.sound import add_sound
 from housing.pictures.drawn_shapes import drawn_housing

@@ -91,7 +91,7 @@ def test_every_mode_that_radiates_is_held_against_known_sources(monkeypatch: pyt
 
 
 def test_a_vertex_that_is_lost_on_the_default_triangles_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The fault that a user heard as 5 dB at a microphone: the correction for a bent pressure without its bound."""
+    """The fault that a user heard as 5 dB at a microphone: the correction for a curved pressure without its bound."""
     case = sounding_gearbox({"acoustics.highest_frequency": "3 kHz"}).case
     housing = sounding_housing()
     # The triangles that they were, without their long edges halved.
@@ -106,7 +106,7 @@ def test_a_vertex_that_is_lost_on_the_default_triangles_is_refused(monkeypatch: 
     sound = solved()
     sound.require_proofs()
     assert doubts(sound, "a line") == []
-    monkeypatch.setattr(boundary_elements, "_MOST_BENT", np.inf)
+    monkeypatch.setattr(boundary_elements, "_MOST_CURVATURE", np.inf)
     lost = solved()
     lost.require_balance()
     assert interior_pressure(lost) == pytest.approx(interior_pressure(sound), rel=0.3)

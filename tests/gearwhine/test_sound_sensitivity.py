@@ -18,9 +18,10 @@ from gearwhine.output.sections import Table
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
+from gearwhine.solve.housing_changes import by_changes, case_changes, housing_fields, slopes_of
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.line_sensitivity import SolvedLines, solve_lines
-from gearwhine.solve.load_sensitivity import LineChange, case_changes, housing_fields
+from gearwhine.solve.influences import LineChange
+from gearwhine.solve.line_model import SolvedLines, solve_lines
 from gearwhine.solve.sound import solution
 from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 from housing.acoustics.radiation import HousingRadiation
@@ -98,10 +99,9 @@ def derivatives(case: Case, solved: Solved) -> tuple[FloatArray, HousingRates, F
     lines = [one.line for one in sound_lines(solved)]
     fields = housing_fields(case, housing, point, [adjoint(point, found.model.by_static(one)) for one in lines])
     changes = case_changes(case, housing.mesh, PARAMETERS)
-    rates = found.rates(fields.constants, changes.rates, changes.bearings, changes.sensors, fields.displacement)
-    static = fields.by_parameters(changes.rates, changes.bearings)
-    own = (static + [found.model.by_housing(one, rates) for one in lines]) / changes.slopes
-    return np.asarray(own), rates, changes.slopes
+    rates, slopes = found.rates(fields, changes), slopes_of(changes)
+    own = by_changes(fields, changes) + np.array([found.model.by_housing(one, rates) for one in lines]) / slopes
+    return own, rates, slopes
 
 
 CHAINS = {

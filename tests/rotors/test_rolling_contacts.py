@@ -44,7 +44,7 @@ def test_sphere_on_a_plane_is_the_circle_of_hertz() -> None:
     contact = point_contact(1.0 / radius, 1.0 / radius, modulus)
     assert contact.ellipticity == 1.0
     assert contact.stiffness == pytest.approx(4.0 / 3.0 * modulus * math.sqrt(radius), rel=1e-14)
-    assert contact.semi_major == pytest.approx((0.75 * radius / modulus) ** (1.0 / 3.0), rel=1e-14)
+    assert contact.unit_semi_major == pytest.approx((0.75 * radius / modulus) ** (1.0 / 3.0), rel=1e-14)
 
 
 def test_thrust_bearing_is_a_root_of_one_equation() -> None:

@@ -131,7 +131,9 @@ def test_profile_of_a_cone_is_its_sections(cone: Segment) -> None:
     profile = shaft_profile([cone], np.array([0.0, cone.length]))
     for span, (left, right) in enumerate(zip(profile.edges[:-1], profile.edges[1:], strict=True)):
         for fraction in (0.0, 0.21, 0.5, 0.93, 1.0):
-            found = np.polynomial.polynomial.polyval(2 * fraction - 1, profile.coefficients[profile.kind[span]].T)
+            found = np.polynomial.polynomial.polyval(
+                2 * fraction - 1, profile.coefficients[profile.section_of_span[span]].T
+            )
             place = (left + fraction * (right - left)) / cone.length
             np.testing.assert_allclose(found[:6], cone_coefficients(cone, place), rtol=2e-14)
     # A part of a span is the same polynomial seen closer.

@@ -11,6 +11,6 @@ def check_before_modes(case: Case) -> Callable[[Case, Mesh], None] | None:
     if case.acoustics is None:
         return None
     # The acoustics' kernels are for these cases alone.
-    from gearwhine.solve.sound.radiating_surface import require_acoustics
+    from gearwhine.solve.sound.acoustics_checks import require_acoustics
 
     return require_acoustics

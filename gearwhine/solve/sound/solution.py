@@ -18,6 +18,14 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.sound.acoustics_checks import (
+    acoustics_warnings,
+    flat_face,
+    microphone_problems,
+    microphones_of,
+    surface_names,
+    wrap_settings,
+)
 from gearwhine.solve.sound.kept_radiation import kept_radiation
 from gearwhine.solve.sound.microphones import MicrophoneHistories, microphone_histories
 from gearwhine.solve.sound.motion_lines import (
@@ -37,20 +45,13 @@ from gearwhine.solve.sound.proofs import (
     power_balance_db,
     require_proofs,
 )
-from gearwhine.solve.sound.radiating_surface import (
-    acoustics_warnings,
-    flat_face,
-    microphone_problems,
-    microphones_of,
-    surface_names,
-    wrap_settings,
-)
 from gearwhine.solve.transient import SolvedTransient
 from housing import HousingError
 from housing.acoustics.known_source import SourceError
 from housing.acoustics.medium import Medium
 from housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
 from housing.acoustics.sound_levels import (
+    BOX_MICROPHONES,
     a_weighting,
     power_level,
     pressure_level,
@@ -104,8 +105,7 @@ class SoundLine:
     @cached_property
     def equivalent_db(self) -> float:
         """Level of the equivalent radiated power [dB], an estimate."""
-        sound = self.sound
-        return float(power_level(sound.medium.impedance * sound.area * sound.mean_square_velocity))
+        return float(power_level(self.sound.equivalent_power))
 
     @property
     def power_balance_db(self) -> float | None:
@@ -134,8 +134,8 @@ class ModeSound:
     frequency_hz : float
     radiation_efficiency : float
         σ.
-    by_face : dict of str to float
-        Part of each face in the power.
+    face_shares : dict of str to float
+        Power through each face relative to the sound power, the largest first.
     power_balance_db, interior_pressure : float or None
         Proofs, see :func:`power_balance_db` and :func:`interior_pressure`.
     known_source : SourceError or None
@@ -145,7 +145,7 @@ class ModeSound:
     number: int
     frequency_hz: float
     radiation_efficiency: float
-    by_face: dict[str, float]
+    face_shares: dict[str, float]
     power_balance_db: float | None = None
     interior_pressure: float | None = None
     known_source: SourceError | None = None
@@ -172,7 +172,7 @@ class SolvedSound:
     microphones : dict of str to ndarray, shape (3,)
         Positions [m].
     box_area : float or None
-        Of the measurement surface of ISO 3744 that the last nine microphones stand on [m²].
+        Of the measurement surface of ISO 3744 that the last `BOX_MICROPHONES` stand on [m²].
     limit_hz : float
         Highest frequency of the sound.
     told : tuple of dict
@@ -224,12 +224,18 @@ class SolvedSound:
         }
 
     @property
+    def box_microphones(self) -> tuple[str, ...]:
+        """Names of the microphones on the measurement surface of ISO 3744; empty without one."""
+        return () if self.box_area is None else tuple(self.microphones)[-BOX_MICROPHONES:]
+
+    @property
     def box_level_db(self) -> float | None:
         """Sound power level by the mean pressure on the box of microphones [dB], ISO 3744:2010, equation 6."""
         if self.box_area is None or not self.lines:
             return None
-        levels = list(self.microphone_levels().values())[-9:]
-        return float(sum_of_levels(levels) + 10.0 * np.log10(self.box_area / 9.0))
+        levels = self.microphone_levels()
+        total = sum_of_levels(levels[name] for name in self.box_microphones)
+        return float(total + 10.0 * np.log10(self.box_area / BOX_MICROPHONES))
 
     @property
     def by_face(self) -> dict[str, float]:

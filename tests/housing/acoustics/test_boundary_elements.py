@@ -40,7 +40,7 @@ def efficiency(n: int, ka: float) -> float:
 def sphere_efficiencies(surface: RadiatingSurface, ka: float) -> tuple[np.ndarray, SoundField]:
     velocity = at_corners(surface, harmonics)
     field = at_wavenumber(BoundaryElements(surface, UNIT), ka, velocity)
-    return np.diag(field.resistance) / np.diag(field.mean_square_velocity).real, field
+    return np.diag(field.resistance) / np.diag(field.velocity_products).real, field
 
 
 # π and 4.4934 are natural frequencies of the air inside, at which the plain equation fails.
@@ -215,7 +215,7 @@ def test_simply_supported_plate(mode, k):
 
     baffle = HardPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     field = at_wavenumber(BoundaryElements(plate, UNIT, baffle), k, at_corners(plate, shape))
-    found = field.resistance[0, 0] / field.mean_square_velocity[0, 0].real
+    found = field.resistance[0, 0] / field.velocity_products[0, 0].real
     assert found == pytest.approx(plate_efficiency(*mode, length, width, k), rel=5e-3)
 
 

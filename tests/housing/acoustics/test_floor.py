@@ -48,7 +48,7 @@ def test_a_standing_box_is_the_upper_half_of_the_box_with_its_image():
     assert one.pressure == pytest.approx(both.pressure[: len(upper.points)], rel=1e-9, abs=1e-9 * size)
     assert one.resistance == pytest.approx(0.5 * both.resistance, rel=1e-9)
     assert one.surface_resistance == pytest.approx(0.5 * both.surface_resistance, rel=1e-9)
-    assert one.mean_square_velocity == pytest.approx(0.5 * both.mean_square_velocity, rel=1e-9)
+    assert one.velocity_products == pytest.approx(0.5 * both.velocity_products, rel=1e-9)
 
 
 def test_a_source_in_a_standing_box_and_its_image_have_their_own_field():

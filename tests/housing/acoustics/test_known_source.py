@@ -215,12 +215,12 @@ def test_a_vertex_that_the_equations_leave_free_is_seen_by_known_sources_alone(m
     surface, drawn = uneven(0.76)
     bounded = field_at(BoundaryElements(surface, AIR), 1300.0)
     assert bounded.source_error.largest < 0.1 * SOURCE_OFF
-    monkeypatch.setattr(boundary_elements, "_MOST_BENT", np.inf)
+    monkeypatch.setattr(boundary_elements, "_MOST_CURVATURE", np.inf)
     free = field_at(BoundaryElements(surface, AIR), 1300.0)
     error = free.source_error
     assert error.largest > 1.2 * SOURCE_OFF
-    # Where nine tenths of a spike count as bending: beside the vertex that is drawn.
-    part = boundary_elements._bending(surface).tocsr().diagonal()
+    # Where nine tenths of a spike count as curvature: beside the vertex that is drawn.
+    part = boundary_elements._curvature_correction(surface).tocsr().diagonal()
     assert part.max() == pytest.approx(0.9, abs=0.01)
     lost = int(np.argmax(part))
     assert error.place == pytest.approx(tuple(surface.points[lost]))

@@ -128,7 +128,7 @@ class Powers:
         return rectangle(1.0, 1.0, 1, 1)
 
     @property
-    def mean_square_velocity(self) -> Any:
+    def velocity_products(self) -> Any:
         return np.full((1, 1), 4.0)
 
     @property

@@ -1,4 +1,4 @@
-"""Radiating surface and microphones of a case before its modes are known: what they are, and all that is wrong there.
+"""Checks of a case's `[acoustics]` before its modes are known: radiating surface, floor and microphones.
 
 :func:`require_acoustics` wraps the housing as the solution will and finds every microphone that is not in the air,
 triangles that are too large, and a floor above the soles, so that none of them ends a command after the long work.
@@ -18,7 +18,8 @@ from gearwhine.output.quantity import warning
 from housing import HousingError
 from housing.acoustics.boundary_elements import BoundaryElements
 from housing.acoustics.medium import HardPlane, Medium
-from housing.acoustics.radiation import wrapped
+from housing.acoustics.radiating_surface import RadiatingSurface
+from housing.acoustics.radiation import set_down, wrapped
 from housing.acoustics.sound_levels import measurement_box
 from housing.acoustics.surface_velocity import face_surface
 from housing.errors import TriangleSizeError
@@ -249,24 +250,25 @@ def _surface_problems(case: Case, given: Acoustics, mesh: Mesh) -> Iterator[Prob
     coarse = float(np.ptp(mesh.bounds, axis=0).max()) / _COARSE
     known = given.mesh_size is not None or limit is not None
     edge, holes, floor = wrap_settings(case, limit or given.speed_of_sound / (6.0 * coarse))
-    medium = _medium(given)
     written = f"{1e3 * edge:.4g} mm"
     try:
-        surface = wrapped(mesh, edge, holes, floor)
+        surface = wrapped(mesh, edge, holes)
     except TriangleSizeError as error:
         yield Problem("acoustics.mesh_size", written, f"another edge; {error}")
         return
     except HousingError as error:
         yield Problem("acoustics", given.method, f"a housing that can be wrapped; {error}")
         return
-    try:
-        elements = BoundaryElements(surface, medium, floor)
-    except HousingError:
+    elements = _elements_on(surface, given, edge, floor)
+    positions, _ = microphones_of(case, mesh)
+    if elements is None:
         lowest = millimetres(float(mesh.bounds[0, 1]))
         yield Problem(
             "acoustics.floor", millimetres(given.floor or 0.0), f"a height at or below the soles, y = {lowest}"
         )
-        elements = BoundaryElements(wrapped(mesh, edge, holes, None), medium)
+        elements = BoundaryElements(surface, _medium(given))
+        # The box stands on the floor, so that its microphones cannot be checked.
+        positions = {one.name: positions[one.name] for one in given.microphone}
     if known:
         try:
             elements.require_few()
@@ -274,11 +276,18 @@ def _surface_problems(case: Case, given: Acoustics, mesh: Mesh) -> Iterator[Prob
                 elements.require_resolved(limit)
         except TriangleSizeError as error:
             yield Problem("acoustics.mesh_size", written, f"another edge; {error}")
-    positions, _ = microphones_of(case, mesh)
-    if elements.plane is None and floor is not None:
-        # The nine on the floor follow from its height.
-        positions = {one.name: positions[one.name] for one in given.microphone}
     yield from microphone_problems(case, positions, elements.require_in_air)
+
+
+def _elements_on(
+    surface: RadiatingSurface, given: Acoustics, edge: float, floor: HardPlane | None
+) -> BoundaryElements | None:
+    """Return the boundary elements of a wrap on or above its floor, if any; None where it cannot stand there."""
+    try:
+        standing = surface if floor is None else set_down(surface, floor, edge)
+        return BoundaryElements(standing, _medium(given), floor)
+    except HousingError:
+        return None
 
 
 def _medium(given: Acoustics) -> Medium:

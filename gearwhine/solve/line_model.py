@@ -1,4 +1,4 @@
-"""Sensitivity of a case's lines: the machine linear about its operating point, and its housing's derivatives.
+"""Model of a case's lines: the machine linear about its operating point, and the derivatives of its housing.
 
 Lines are those of the sensors and, where the case has acoustics, of the sound power. The gradients are those of
 :mod:`coupling.linear.mesh_harmonics`, whose motion and adjoint fields must be exact in the housing's basis. Residual
@@ -24,12 +24,13 @@ from gearwhine.from_case.fixtures import attach_all
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import driving, full_housing_component
 from gearwhine.progress import Progress
+from gearwhine.solve.housing_changes import HousingChange
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
 from housing import ModeSet, modal_damping
 from housing.model.housing import RESPONSE_ORDERS
 from housing.modes.natural_modes import ModeSetExtension
-from housing.updating import ModelSensitivity, modal_sensitivities
-from housing.updating.static_sensitivity import PortRates
+from housing.updating import modal_sensitivities
+from housing.updating.static_sensitivity import StaticSensitivity
 
 if TYPE_CHECKING:
     from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
@@ -94,25 +95,14 @@ class SolvedLines:
         displacement = self.housing.modes.displacement
         return np.asarray(displacement(own.real, every) + 1j * displacement(own.imag, every))
 
-    def rates(
-        self,
-        constants: FloatArray,
-        rates: Sequence[ModelSensitivity],
-        bearings: Sequence[PortRates],
-        sensors: Sequence[PortRates],
-        displacement: FloatArray,
-    ) -> HousingRates:
-        """Project derivatives of the housing by some parameters on its modes and residual modes.
+    def rates(self, fields: StaticSensitivity, changes: Sequence[HousingChange]) -> HousingRates:
+        """Project derivatives of the housing by the coordinates of parameters on its modes and residual modes.
 
         Parameters
         ----------
-        constants : ndarray, shape (3, n_elements)
-            λ, μ [Pa] and ρ [kg/m³].
-        rates : sequence of ModelSensitivity
-        bearings, sensors : sequence of mapping
-            Of each parameter, the change of the ports of bearings and of sensors.
-        displacement : ndarray, shape (n_nodes, 3)
-            At the operating point [m].
+        fields : StaticSensitivity
+            With the housing's material and its displacement at the operating point.
+        changes : sequence of HousingChange
         """
         modes, ratios = self.housing.modes, self.housing.damping_ratios
         shapes, omega = modes.shapes, modes.frequencies
@@ -122,7 +112,8 @@ class SolvedLines:
         extra = len(modes.residual_modes.frequencies)
         omega = np.concatenate([omega, modes.residual_modes.frequencies])
         ratios = np.concatenate([ratios, np.full(extra, ratios.max(initial=0.0))])
-        found = modal_sensitivities(self.housing.mesh, constants, shapes, rates)
+        rates = [change.rate for change in changes]
+        found = modal_sensitivities(self.housing.mesh, fields.constants, shapes, rates)
         motions = [self.field(one.line.motion) for one in self.sound]
         powers = [
             {}
@@ -133,15 +124,15 @@ class SolvedLines:
             }
             for rate in rates
         ]
-        flat = shapes.reshape(len(shapes), -1).T
+        flat, displacement = shapes.reshape(len(shapes), -1).T, fields.displacement.ravel()
         return HousingRates(
             omega,
             ratios,
             found.stiffness,
             found.mass,
-            [{name: np.asarray(rows @ flat) for name, rows in one.items()} for one in bearings],
-            [{name: np.asarray(rows @ flat)[0] for name, rows in one.items()} for one in sensors],
-            [{name: np.asarray(rows @ displacement.ravel()) for name, rows in one.items()} for one in bearings],
+            [{name: np.asarray(rows @ flat) for name, rows in change.bearings.items()} for change in changes],
+            [{name: np.asarray(rows @ flat)[0] for name, rows in change.sensors.items()} for change in changes],
+            [{name: np.asarray(rows @ displacement) for name, rows in change.bearings.items()} for change in changes],
             powers,
         )
 

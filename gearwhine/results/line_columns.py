@@ -1,0 +1,13 @@
+"""Columns of tables of spectral lines, alike in all results."""
+
+from collections.abc import Callable, Sequence
+
+from gearwhine.output.sections import Column, Row
+
+LINE_NAME = Column("what it is", "name")
+"""What a line is, such as ``1× pinion -> wheel``."""
+
+
+def line_frequency(link: Callable[[Row], Sequence[str]] | None = None) -> Column:
+    """Return the column of a line's frequency, which may link to places in the report, see :class:`Column`."""
+    return Column("line [Hz]", "frequency_hz", ".1f", link=link)

@@ -1,0 +1,329 @@
+"""Sensitivity ranking at an operating point: change of gear pairs, sensors' lines and sound by walls and bearings.
+
+The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.mesh_harmonics`. Parameters of
+the housing are those of :mod:`gearwhine.solve.housing_changes`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling import Machine
+from coupling.linear.line_outputs import SensorAmplitude
+from coupling.linear.mesh_harmonics import Line, LineModel
+from coupling.statics.operating_point import OperatingPoint
+from coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
+from gearwhine.case import Case, CaseError, Problem
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_changes import HousingChange, by_changes, housing_changes, housing_fields, slopes_of
+from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.influences import Influence, LoadSensitivity, sound_weights
+from gearwhine.solve.line_model import SolvedLines, solve_lines
+from housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
+
+FloatArray = npt.NDArray[np.float64]
+
+_LENGTH_STEP = 1e-3  # step of the parameters that are lengths [m]
+_RELATIVE_STEP = 0.1  # step of the others, relative to their value
+_SOUND = "sound"  # name of the sound's lines in --line, beside the sensors
+_TWO_PI = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class _Step:
+    """Step of a parameter.
+
+    Attributes
+    ----------
+    reference : float or None
+        Value of the parameter that the step is relative to [SI]; None of a length.
+    thickness : float or None
+        Of a parameter that is a thickness [m].
+    """
+
+    reference: float | None
+    thickness: float | None = None
+
+    @property
+    def shown(self) -> float:
+        """The step as it is shown: a length [m], or relative to the reference."""
+        return _LENGTH_STEP if self.reference is None else _RELATIVE_STEP
+
+    @property
+    def size(self) -> float:
+        """Change of the parameter [SI]."""
+        return self.shown if self.reference is None else self.shown * self.reference
+
+    @property
+    def has_reverse(self) -> bool:
+        """Whether the reverse step leaves anything of a wall."""
+        return self.thickness is None or self.thickness > self.size
+
+
+@dataclass(frozen=True, eq=False)
+class Ranking:
+    """Influences of a machine's parameters on its gear pairs and lines, from the adjoint state of each of these.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+    solved : SolvedLines or None
+        Lines of the sensors and of the sound.
+    """
+
+    point: OperatingPoint
+    solved: SolvedLines | None
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """Lines of the sensors, and then of the sound; empty where no mesh drives any."""
+        return () if self.solved is None else self.solved.lines
+
+    @property
+    def model(self) -> LineModel:
+        """Model of the lines, where there are any."""
+        assert self.solved is not None
+        return self.solved.model
+
+    @cached_property
+    def pair_adjoints(self) -> tuple[dict[str, Adjoint], ...]:
+        """Adjoint states of each gear pair by outcome."""
+        return pair_adjoints(self.point)
+
+    @cached_property
+    def adjoints(self) -> tuple[Adjoint, ...]:
+        """Adjoint states of all outcomes of the gear pairs, and then of the lines."""
+        of_pairs = [state for pair in self.pair_adjoints for state in pair.values()]
+        return (*of_pairs, *(adjoint(self.point, self.model.by_static(line)) for line in self.lines))
+
+    @property
+    def outcomes(self) -> list[tuple[int, int]]:
+        """Row and column in `Influence.changes` of each adjoint state of a gear pair."""
+        return [(row, OUTCOMES.index(name)) for row, pair in enumerate(self.pair_adjoints) for name in pair]
+
+    def by_bearing_stiffness(self, bearing: str) -> Influence:
+        """Influence of a factor on a bearing's stiffness."""
+        step = _Step(reference=1.0)
+        return self._influence(
+            bearing,
+            "bearing stiffness",
+            step,
+            [state.by_bearing_stiffness(bearing) for state in self.adjoints],
+            [self.model.by_bearing_stiffness(line, bearing) for line in self.lines],
+            [self.model.stepped_bearing_stiffness(line, bearing, step.size) for line in self.lines],
+            [self.model.stepped_bearing_stiffness(line, bearing, -step.size) for line in self.lines],
+        )
+
+    def by_bearing_position(self, bearing: str) -> Influence:
+        """Influence of a bearing's position along its shaft."""
+        step = _Step(reference=None)
+        return self._influence(
+            bearing,
+            "bearing position",
+            step,
+            [state.by_bearing_position(bearing) for state in self.adjoints],
+            [self.model.by_bearing_position(line, bearing) for line in self.lines],
+            [self.model.stepped_bearing_position(line, bearing, step.size) for line in self.lines],
+            [self.model.stepped_bearing_position(line, bearing, -step.size) for line in self.lines],
+        )
+
+    def by_housing(self, fields: StaticSensitivity, changes: Sequence[HousingChange]) -> list[Influence]:
+        """Influences of parameters of the housing.
+
+        Parameters
+        ----------
+        fields : StaticSensitivity
+            Displacements of the housing at the operating point and in all adjoint states.
+        changes : sequence of HousingChange
+        """
+        slopes = slopes_of(changes)
+        by_equilibrium = by_changes(fields, changes)
+        rates = None if self.solved is None else self.solved.rates(fields, changes)
+        by_response = np.zeros((len(self.lines), len(changes)))
+        if rates is not None:
+            by_response = np.array([self.model.by_housing(line, rates) for line in self.lines]) / slopes
+        found = []
+        for number, change in enumerate(changes):
+            step = _Step(change.reference, change.thickness)
+            # Derivatives of the housing are by the parameter's coordinate.
+            in_coordinate = step.size / change.slope
+            stepped, reverse = (
+                [] if rates is None else [self.model.stepped_housing(line, rates, number, size) for line in self.lines]
+                for size in (in_coordinate, -in_coordinate)
+            )
+            found.append(
+                self._influence(
+                    change.parameter,
+                    change.kind,
+                    step,
+                    by_equilibrium[:, number],
+                    by_response[:, number],
+                    stepped,
+                    reverse,
+                )
+            )
+        return found
+
+    def _influence(
+        self,
+        parameter: str,
+        kind: str,
+        step: _Step,
+        by_equilibrium: Sequence[float] | FloatArray,
+        by_response: Sequence[float] | FloatArray,
+        stepped: Sequence[float],
+        reverse: Sequence[float],
+    ) -> Influence:
+        """Join the change of gear pairs and lines through the equilibrium with that of the lines' own responses.
+
+        Parameters
+        ----------
+        parameter, kind : str
+        step : _Step
+        by_equilibrium : sequence of float, shape (n_adjoints,)
+            Derivatives of all outcomes through the equilibrium [outcome/SI].
+        by_response : sequence of float, shape (n_lines,)
+            Derivatives of the lines at the same equilibrium.
+        stepped, reverse : sequence of float, shape (n_lines,)
+            Changes of the lines by the step and by its reverse at the same equilibrium, their responses solved again.
+        """
+        derivatives = np.asarray(by_equilibrium)
+        changes = np.full((len(self.point.pairs), len(OUTCOMES)), np.nan)
+        for place, derivative in zip(self.outcomes, derivatives, strict=False):
+            changes[place] = step.size * derivative
+        static = step.size * derivatives[len(self.outcomes) :]
+        return Influence(
+            parameter,
+            kind,
+            step.shown,
+            step.reference is None,
+            changes,
+            static + step.size * np.asarray(by_response),
+            static + np.asarray(stepped),
+            np.asarray(reverse) - static if step.has_reverse else np.full(len(self.lines), np.nan),
+            is_thickness=step.thickness is not None,
+        )
+
+    def densities(
+        self, fields: StaticSensitivity, sensor_line: int, sound_line: int | None
+    ) -> tuple[FloatArray, FloatArray | None, FloatArray | None]:
+        """Return the changes by material added on the housing's surface, by its thickness and area.
+
+        Parameters
+        ----------
+        fields : StaticSensitivity
+            As for :meth:`by_housing`.
+        sensor_line : int
+            Number of the sensor's line.
+        sound_line : int or None
+            Number of the sound's line; None for the A-weighted sum of all.
+
+        Returns
+        -------
+        misalignments : ndarray, shape (n_pairs, n_nodes)
+            [rad/m³].
+        amplitude : ndarray, shape (n_nodes,), or None
+            Of the sensor's line [(m/s²)/m³].
+        power : ndarray, shape (n_nodes,), or None
+            Of the sound [W/m³].
+        """
+        by_equilibrium = fields.surface_density()
+        misalignments = by_equilibrium[[n for n, (_, outcome) in enumerate(self.outcomes) if outcome == 0]]
+        if self.solved is None:
+            return misalignments, None, None
+        by_equilibrium = by_equilibrium[len(self.outcomes) :]
+        amplitude, power = None, None
+        if self.solved.of_sensors:
+            amplitude = by_equilibrium[sensor_line] + self._response_density(fields, self.lines[sensor_line])
+        if self.solved.sound:
+            power = np.zeros(len(fields.mesh.points))
+            weights = sound_weights(self.solved.sound, sound_line)
+            for number, weight in enumerate(weights, start=len(self.solved.of_sensors)):
+                if weight > 0.0:
+                    density = by_equilibrium[number] + self._response_density(fields, self.lines[number])
+                    power += weight * density
+        return misalignments, amplitude, power
+
+    def _response_density(self, fields: StaticSensitivity, line: Line) -> FloatArray:
+        """Change of a line by material added on the surface at the same equilibrium, shape (n_nodes,)."""
+        assert self.solved is not None
+        motion, adjoint_motion = self.solved.field(line.motion), self.solved.field(line.adjoint)
+        return harmonic_surface_density(fields.mesh, fields.constants, motion, adjoint_motion, line.frequency)
+
+
+def solve_load_sensitivity(
+    case: Case,
+    machine: Machine,
+    point: OperatingPoint,
+    housing: SolvedHousing | None,
+    progress: Progress = silent,
+    *,
+    line: str | None = None,
+) -> LoadSensitivity:
+    """Compute the gradients of an operating point, and of the sensors' lines and the sound about it, ranked.
+
+    Parameters
+    ----------
+    case : Case
+    machine : Machine
+        Of the case.
+    point : OperatingPoint
+        Of the machine.
+    housing : SolvedHousing or None
+        That the machine stands in.
+    progress : callable
+    line : str, optional
+        The line that is ranked and drawn, such as ``roof``, ``roof@1377`` or ``sound@1377``; by default the highest of
+        a sensor, and the A-weighted power of the sound.
+
+    Raises
+    ------
+    CaseError
+        Where there is no such line, or the radiating surface cannot be made.
+    housing.HousingError
+        Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
+    """
+    solved = solve_lines(case, machine, point, housing, progress)
+    sensor_line, sound_line = _chosen(line, solved)
+    progress("adjoint states of gear pairs and lines")
+    ranking = Ranking(point, solved)
+    influences = []
+    for bearing in point.bearings:
+        influences += [ranking.by_bearing_stiffness(bearing.name), ranking.by_bearing_position(bearing.name)]
+    density, line_density, sound_density, note = None, None, None, None
+    if ranking.adjoints and housing is not None and point.housing is not None:
+        progress("gradients by the housing")
+        fields = housing_fields(case, housing, point, ranking.adjoints)
+        density, line_density, sound_density = ranking.densities(fields, sensor_line, sound_line)
+        changes, note = housing_changes(case, fields.mesh)
+        influences += ranking.by_housing(fields, changes)
+    widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
+    influences.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
+    return LoadSensitivity(
+        tuple(influences), density, note, solved, sensor_line, line_density, sound_line, sound_density
+    )
+
+
+def _chosen(text: str | None, solved: SolvedLines | None) -> tuple[int, int | None]:
+    """Return the numbers of the sensor's line and of the sound's line, None for several, that a text chooses.
+
+    It is a sensor's name or ``sound``, alone or with ``@`` and a frequency [Hz].
+    """
+    together = 0 if solved is not None and len(solved.sound) == 1 else None
+    if text is None:
+        return 0, together
+    names: dict[str, tuple[int, int | None]] = {}
+    for n, line in enumerate(() if solved is None else solved.of_sensors):
+        assert isinstance(line.output, SensorAmplitude)
+        names.setdefault(line.output.sensor, (n, together))
+        names.setdefault(f"{line.output.sensor}@{line.frequency / _TWO_PI:.0f}", (n, together))
+    for n, one in enumerate(() if solved is None else solved.sound):
+        names.setdefault(_SOUND, (0, together))
+        names.setdefault(f"{_SOUND}@{one.line.frequency / _TWO_PI:.0f}", (0, n))
+    if text not in names:
+        known = ", ".join(repr(name) for name in names) or "none: no mesh drives a sensor or a sound"
+        raise CaseError([Problem("--line", text, f"one of the highest lines: {known}")])
+    return names[text]
