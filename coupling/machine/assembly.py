@@ -439,18 +439,12 @@ def _shuttling(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, contact: ContactConnector, force: float
 ) -> tuple[FloatArray, list[HarmonicLoad]]:
     """Moments of a contact's load about the middle of the face, see `shuttling_loads`."""
-    push, axial = _push(mesh, sense)
+    line = mesh.line_of_action(sense)
     tilting = np.zeros(coordinates.size)
-    for mounted, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+    for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
         rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
-        tilting += side * coordinates.rows(mounted.rotor, push[0] * rows[4] - push[1] * rows[3])
-    return shuttling_loads(contact.contact, mesh.geometry, force, axial, tilting, contact.phase, contact.rate)
-
-
-def _push(mesh: GearMesh, sense: int) -> tuple[tuple[float, float], float]:
-    """Return the line of action: unit vector e in the x-y plane along which the driver pushes, and the axial part."""
-    angle = mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense)
-    return (float(np.cos(angle)), float(np.sin(angle))), -sense * float(np.tan(mesh.geometry.driver.base_helix_angle))
+        tilting += coordinates.rows(mounted.rotor, flank.tilting(rows))
+    return shuttling_loads(contact.contact, mesh.geometry, force, line.axial, tilting, contact.phase, contact.rate)
 
 
 def _require_thrust_carried(
@@ -497,43 +491,28 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
         [(gear.rotor, gear.at) for gear in (mesh.driver, mesh.driven)],
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
-        mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense),
-        sense,
+        mesh.line_of_action(sense),
     )
 
 
 def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple[FloatArray, FloatArray]:
     """Direction of compression and the harmonics of the runout error on one side of the teeth.
 
-    With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
-    whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
+    Of the compression δ of :mod:`coupling.machine.mesh_kinematics` the runout error e_err is taken off. A gear whose
+    centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
     e_err = -e (ε_k - ε_i): the same first-order runout as
     :func:`coupling.gears.geometry.pitch_deviations.runout_error`.
-
-    A helical driver of hand h (+1 for a right-hand helix) that moves along z leaves the contact as if it had turned
-    back by z tan β_b / R_k, so δ gains -s h tan β_b (w_k - w_i), w the axial motions where the teeth touch: at the
-    pitch point, r from a gear's centre, w = z + φ_x r_y - φ_y r_x with the tilts φ. The force has its axial part and
-    tilting moment from the same rows.
     """
-    driver, driven = mesh.driver, mesh.driven
-    line = np.subtract(driven.axis, driver.axis)
-    push, thrust = _push(mesh, sense)
-    angle = np.arctan2(push[1], push[0])
-    towards = line / np.hypot(*line) if np.any(line) else line
+    line = mesh.line_of_action(sense)
     direction = np.zeros(coordinates.size)
     errors = []
-    sides = ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0))
-    for (mounted, gear, side), radius in zip(sides, mesh.geometry.working_pitch_radii, strict=True):
+    sides = ((mesh.driver, mesh.geometry.driver, line.driver), (mesh.driven, mesh.geometry.driven, line.driven))
+    for mounted, gear, flank in sides:
         rotor = coordinates.rotor(mounted.rotor)
-        motion = sense * gear.base_radius * rotor.rotation(mounted.at)
-        for axis in (0, 1):
-            motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)
-        if thrust != 0.0:
-            rows = rotor.motions(mounted.at)
-            x, y = side * radius * towards
-            motion = motion + side * thrust * (rows[2] + y * rows[3] - x * rows[4])
-        direction += coordinates.rows(mounted.rotor, motion)
+        motions = rotor.motions(mounted.at)
+        compression = flank.turning(rotor.rotation(mounted.at)) + flank.across(motions) + flank.axial(motions)
+        direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]
-            errors.append([-side * gear.eccentricity, speed, gear.eccentricity_phase - angle])
+            errors.append([-flank.side * gear.eccentricity, speed, gear.eccentricity_phase - line.angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)

@@ -32,7 +32,9 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry, ToothContact
 from coupling.gears.contact.sliding_friction import SlidingFriction
+from coupling.gears.geometry.pair import pair_label
 from coupling.machine.components import RotorComponent
+from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from rotors import Bearing
 from rotors.rolling_bearings import FourPointRow, RollerRow, RollingBearing, RollingState
 
@@ -89,6 +91,8 @@ class RollingLaw:
 class GapLaw:
     """Radial gap law of a ring around the shaft: beyond the gap the force is F (penetration / depth)^n.
 
+    :mod:`coupling.time.bearing_kernels` has its compiled form.
+
     Attributes
     ----------
     force : float
@@ -122,18 +126,34 @@ class GapLaw:
         """Displacement at which the search for equilibrium begins: the centre, shape (5,)."""
         return np.zeros(5)
 
-    def tangent(self, load: npt.ArrayLike) -> FloatArray:
-        """Tangent stiffness over x, y [N/m] under a radial load (2,) [N]; zero without a load.
+    def at(self, place: npt.ArrayLike) -> tuple[float, FloatArray, FloatArray]:
+        """Energy [J], force of the shaft on the ring (2,) [N] and tangent (2, 2) [N/m] at a radial place (2,) [m]."""
+        position = np.asarray(place, dtype=np.float64)
+        radius = float(np.hypot(*position))
+        beyond = radius - self.gap
+        if beyond <= 0.0:
+            return 0.0, np.zeros(2), self.tangent(np.zeros(2))
+        size, away = self.force * (beyond / self.depth) ** self.exponent, position / radius
+        return size * beyond / (self.exponent + 1.0), size * away, self._loaded_tangent(size, beyond, away)
 
-        With F the load's size and r = gap + depth (F / force)^(1/n) the shaft's radial position: n F / (r - gap) along
-        the load, F / r across it.
+    def tangent(self, load: npt.ArrayLike) -> FloatArray:
+        """Tangent stiffness over x, y [N/m] under a radial load (2,) [N].
+
+        Without a load that within the gap: zero, but for a linear spring without a gap.
         """
         push = np.asarray(load, dtype=np.float64)
         size = float(np.hypot(*push))
         if size == 0.0:
             return np.zeros((2, 2)) if self.gap > 0.0 or self.exponent > 1.0 else self.force / self.depth * np.eye(2)
         beyond = self.depth * (size / self.force) ** (1.0 / self.exponent)
-        along = np.outer(push, push) / size**2
+        return self._loaded_tangent(size, beyond, push / size)
+
+    def _loaded_tangent(self, size: float, beyond: float, away: FloatArray) -> FloatArray:
+        """Tangent at a force F of this size: with r the radial place, n F / (r - gap) along it and F / r across it.
+
+        ``beyond`` is r - gap, ``away`` the unit vector of the place.
+        """
+        along = np.outer(away, away)
         across = size / (self.gap + beyond)
         return np.asarray(self.exponent * size / beyond * along + across * (np.eye(2) - along))
 
@@ -221,12 +241,21 @@ class GearMesh:
     @property
     def centre_line_angle(self) -> float:
         """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
-        return atan2(self.driven.axis[1] - self.driver.axis[1], self.driven.axis[0] - self.driver.axis[0])
+        x, y = self._centre_line
+        return atan2(y, x)
+
+    @property
+    def _centre_line(self) -> tuple[float, float]:
+        return self.driven.axis[0] - self.driver.axis[0], self.driven.axis[1] - self.driver.axis[1]
+
+    def line_of_action(self, sense: int) -> LineOfAction:
+        """Line of action of the flanks that the driver closes by a rotation of this sense, 1 or -1."""
+        return line_of_action(self.geometry, self._centre_line, sense)
 
     @property
     def label(self) -> str:
         """The pair's name in messages."""
-        return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
+        return pair_label(self.driver.name, self.driven.name)
 
 
 _JUST_AFTER = 1e-9  # mesh periods

@@ -47,7 +47,6 @@ from coupling.machine.parts import (
     ShaftGear,
     carrying_length,
     inertia_with_discs,
-    pair_label,
     require_names,
     require_seats,
     require_stations,
@@ -128,7 +127,7 @@ class Machine:
         _ = self.speeds, self.pair_geometries, self.constant_torques
         for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
             places = [self.shaft(one.shaft).start + one.at for one in self._gears_of(pair)]
-            require_one_plane(pair_label(pair), places, geometry.face_width)
+            require_one_plane(pair.label, places, geometry.face_width)
         self._require_power_flow()
         self._require_thrust_carried()
 
@@ -151,7 +150,7 @@ class Machine:
     def speeds(self) -> dict[str, float]:
         """Signed speed of each shaft [rad/s]."""
         names = [shaft.name for shaft in self.shafts]
-        ratios = self.train.require_turning(names, [pair_label(pair) for pair in self.gear_pairs])
+        ratios = self.train.require_turning(names, [pair.label for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
 
     @cached_property
@@ -374,7 +373,7 @@ class Machine:
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
         point = self.operating_point(gravity) if point is None else point
-        gaps = point.flank_gaps([pair_label(pair) for pair in self.gear_pairs if pair.misalignment is None])
+        gaps = point.flank_gaps([pair.label for pair in self.gear_pairs if pair.misalignment is None])
         pairs = [
             replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
             if pair.misalignment is None
@@ -556,12 +555,12 @@ class Machine:
         ):
             if flank == "driven":
                 raise CouplingError(
-                    f"{pair_label(pair)}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
+                    f"{pair.label}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
                     "expected power to flow from driver to driven; swap the two names"
                 )
             if flank == "back" and pair.backlash_of(geometry) is None:
                 raise CouplingError(
-                    f"{pair_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by "
+                    f"{pair.label}: expected a backlash: the torque is negative, so the driven gear drives by "
                     "the back flanks, which never meet without one"
                 )
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Shaft, SpeedProfile, Torque
+from coupling.gears.geometry.pair import pair_label
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
 from coupling.machine.components import HousingComponent, RotorComponent, housing_component
@@ -236,9 +237,7 @@ def solve_pairs(
     if not case.gear_pair:
         return ()
     point = point or point_of_pairs(case, housing, progress)
-    unaligned = [
-        f"gear pair {pair.driver!r} -> {pair.driven!r}" for pair in case.gear_pair if case.finds_misalignment(pair)
-    ]
+    unaligned = [pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.finds_misalignment(pair)]
     return solve_gears(case, progress, {} if point is None else point.flank_gaps(unaligned))
 
 
