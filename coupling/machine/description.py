@@ -28,7 +28,6 @@ from coupling.machine.components import HousingComponent, RotorComponent, compon
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
     LARGEST_OFFSET,
-    AppliedTorque,
     GearedShafts,
     GearTrain,
     Output,
@@ -181,14 +180,12 @@ class Machine:
                 )
         require_balanced_outputs(self.train, self.torque, self.outputs)
         ends = {shaft.name: shaft.rotor.length for shaft in self.shafts}
-        applied = self.train.applied_torques(self.torque, self.speed, self.outputs, self.torque_at)
-        return tuple(Torque(one.shaft, ends[one.shaft] if one.at is None else one.at, one.torque) for one in applied)
+        return self.train.applied_torques(self.torque, self.speed, self.outputs, self.torque_at, ends=ends)
 
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
         """Mean torque that each pair takes off its driver [N m], positive where power flows to the driven gear."""
-        applied = [AppliedTorque(one.rotor, one.at, one.value) for one in self.constant_torques]
-        return self.train.mean_pair_torques(applied, self.speed)
+        return self.train.mean_pair_torques(self.constant_torques, self.speed)
 
     @cached_property
     def axial_locations(self) -> tuple[AxialLocation, ...]:
