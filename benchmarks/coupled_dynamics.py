@@ -32,6 +32,7 @@ from coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     Torque,
@@ -88,8 +89,10 @@ def two_shafts(modes: int, *, corners: bool, friction: float = 0.0) -> CoupledMa
         speeds={"input": SPEED, "output": -SPEED},
         bearings=bearings,
         meshes=[GearMesh(mounted[0], mounted[1], pair, contact, friction=friction)],
-        unbalances=[Unbalance("input", LENGTH / 2, UNBALANCE, 0.0)],
-        torques=[Torque("input", 0.0, TORQUE), Torque("output", LENGTH, TORQUE)],
+        loads=MachineLoads(
+            unbalances=[Unbalance("input", LENGTH / 2, UNBALANCE, 0.0)],
+            torques=[Torque("input", 0.0, TORQUE), Torque("output", LENGTH, TORQUE)],
+        ),
     )
 
 

@@ -306,7 +306,7 @@ def unbalance_response(
     CouplingError
         Where the rotor has no unbalance, or a speed is 0.
     """
-    if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.unbalances):
+    if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.loads.unbalances):
         raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
     at_speeds = [machine.at_speed(float(speed)) for speed in speeds]
     frequencies = np.array([one.speeds[rotor] for one in at_speeds])

@@ -41,14 +41,11 @@ from coupling.machine.connectors import (
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing
 from coupling.machine.loads import (
+    UNLOADED,
     AnyTorque,
-    BaseMotion,
-    BowReactions,
-    Drive,
-    Loads,
+    CoordinateLoads,
     MachineCoordinates,
-    ShaftForce,
-    Unbalance,
+    MachineLoads,
     base_loads,
     constant_torques,
     gravity_load,
@@ -81,10 +78,11 @@ class CoupledMachine:
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
         couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
-    unbalances, bows, torques, drives, base, gravity, forces
-        The loads in the system.
+    loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         In the rotors' couplings.
+    speed_range : tuple of float
+        Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -92,14 +90,9 @@ class CoupledMachine:
     bearings: tuple[MountedBearing, ...]
     meshes: tuple[GearMesh, ...]
     system: CoupledSystem
-    unbalances: tuple[Unbalance, ...] = ()
-    bows: tuple[BowReactions, ...] = ()
-    torques: tuple[AnyTorque, ...] = ()
-    drives: tuple[Drive, ...] = ()
-    base: BaseMotion | None = None
-    gravity: tuple[float, ...] | None = None
+    loads: MachineLoads = UNLOADED
     dashpots: tuple[ShaftDashpots, ...] = ()
-    forces: tuple[ShaftForce, ...] = ()
+    speed_range: tuple[float, float] = (1.0, 1.0)
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -158,8 +151,9 @@ class CoupledMachine:
     def at_speed(self, speed: float) -> "CoupledMachine":
         """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
 
-        Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; the components
-        keep their modes, which are a basis at any speed.
+        Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; slopes of
+        torques and the speeds between which the machine runs stay the same in rad/s. The components keep their modes,
+        which are a basis at any speed.
 
         Raises
         ------
@@ -177,14 +171,9 @@ class CoupledMachine:
             speeds={name: value * (speed / present) for name, value in self.speeds.items()},
             bearings=self.bearings,
             meshes=self.meshes,
-            unbalances=self.unbalances,
-            bows=self.bows,
-            torques=self.torques,
-            drives=self.drives,
-            base=self.base,
-            gravity=self.gravity,
+            loads=self.loads.at_speed_ratio(speed / present),
             dashpots=self.dashpots,
-            forces=self.forces,
+            speed_range=_about(self.speed_range, speed / present),
         )
 
 
@@ -195,15 +184,9 @@ def assemble_machine(
     speeds: dict[str, float],
     bearings: Sequence[MountedBearing] = (),
     meshes: Sequence[GearMesh] = (),
-    unbalances: Sequence[Unbalance] = (),
-    bows: Sequence[BowReactions] = (),
-    torques: Sequence[AnyTorque] = (),
-    drives: Sequence[Drive] = (),
-    base: BaseMotion | None = None,
-    gravity: Sequence[float] | None = None,
-    rates: tuple[float, float] = (1.0, 1.0),
+    loads: MachineLoads = UNLOADED,
     dashpots: Sequence[ShaftDashpots] = (),
-    forces: Sequence[ShaftForce] = (),
+    speed_range: tuple[float, float] = (1.0, 1.0),
 ) -> CoupledMachine:
     """Assemble the coupled system of components that exist already; :class:`coupling.Machine` makes them of its parts.
 
@@ -213,20 +196,15 @@ def assemble_machine(
         The components.
     speeds : dict of str to float
         Signed speed of each rotor [rad/s].
-    bearings, meshes, unbalances, bows, torques, forces
-        Connectors and loads.
-    drives
-        Stations of the torques that accelerate a train, see
-        :meth:`coupling.machine.loads.MachineCoordinates.acceleration_load`.
-    base
-        Motion of the ground: under bearings, pedestals and the housing's supports alike.
-    gravity
-        Acceleration of free fall along x, y, z [m/s²]; none by default.
+    bearings, meshes
+        Connectors.
+    loads : MachineLoads
+        None by default.
     dashpots
         In the rotors' couplings.
-    rates
-        The least and the highest speed that the machine will run at, as parts of ``speeds``: bearings' tables over
-        speed are followed between them.
+    speed_range : tuple of float
+        Lowest and highest speed that the machine runs at, as parts of ``speeds``: bearings' tables over speed are
+        followed between them.
 
     Raises
     ------
@@ -252,13 +230,13 @@ def assemble_machine(
     coordinates = MachineCoordinates(components, speeds)
 
     require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
-    require_balance(meshes, torques, speeds)
-    _require_thrust_carried(rotors, speeds, bearings, meshes, torques)
+    require_balance(meshes, loads.torques, speeds)
+    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques)
     feet = {foot.name: foot for foot in pedestals}
-    held = [_bearing(coordinates, housing, feet, mounted, rates) for mounted in bearings]
+    held = [_bearing(coordinates, housing, feet, mounted, speed_range) for mounted in bearings]
     within = []
     for given in dashpots:
-        rows, law = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], rates)
+        rows, law = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], speed_range)
         within.append(replace(law, directions=coordinates.rows(given.rotor, rows).T))
 
     senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
@@ -274,22 +252,20 @@ def assemble_machine(
     contacts = [_contact(coordinates, *side) for side in sides]
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
-    loads = _loads(coordinates, bearings, unbalances, bows, torques, base, gravity)
-    for force in forces:
-        coordinates.add_force(loads, force)
+    acting = _coordinate_loads(coordinates, bearings, loads)
     for linear, _ in held:
         if linear.offset is not None:
-            loads.constant -= linear.directions @ linear.offset
+            acting.constant -= linear.directions @ linear.offset
     system = CoupledSystem(
         components=components,
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
-        linear=(*(linear for linear, _ in held), *within, *loads.dashpots),
+        linear=(*(linear for linear, _ in held), *within, *acting.dashpots),
         contacts=tuple(contacts),
-        load=loads.constant,
-        harmonic_loads=tuple(loads.harmonic),
-        timed_loads=tuple(loads.timed),
+        load=acting.constant,
+        harmonic_loads=tuple(acting.harmonic),
+        timed_loads=tuple(acting.timed),
         acceleration_load=coordinates.acceleration_load(
-            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives
+            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], loads.drives
         ),
         nonlinear=tuple(own for _, own in held if own is not None),
     )
@@ -302,15 +278,18 @@ def assemble_machine(
         tuple(bearings),
         tuple(meshes),
         system,
-        tuple(unbalances),
-        tuple(bows),
-        tuple(torques),
-        tuple(drives),
-        base,
-        None if gravity is None else tuple(gravity),
+        loads,
         tuple(dashpots),
-        tuple(forces),
+        speed_range,
     )
+
+
+def _about(speed_range: tuple[float, float], ratio: float) -> tuple[float, float]:
+    """Return the same range of speeds as parts of ``ratio`` times the nominal ones, with those among them."""
+    low, high = speed_range
+    if low == high or ratio == 0.0:
+        return 1.0, 1.0
+    return min(low / abs(ratio), 1.0), max(high / abs(ratio), 1.0)
 
 
 def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:
@@ -324,12 +303,12 @@ def _bearing(
     housing: HousingComponent | None,
     feet: dict[str, PedestalComponent],
     mounted: MountedBearing,
-    rates: tuple[float, float],
+    speed_range: tuple[float, float],
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
     """Assemble a bearing between shaft and seat, pedestal or ground: its 5x5 stiffness and damping, or its own law."""
     rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
     law = mounted.bearing.at_speed(speed)
-    table = _over_speed(mounted.bearing, speed, rates)
+    table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
     held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
     held = np.union1d(held, [0, 1])
@@ -386,37 +365,33 @@ def _contact(
     )
 
 
-def _loads(
-    coordinates: MachineCoordinates,
-    bearings: Sequence[MountedBearing],
-    unbalances: Sequence[Unbalance],
-    bows: Sequence[BowReactions],
-    torques: Sequence[AnyTorque],
-    base: BaseMotion | None,
-    gravity: Sequence[float] | None,
-) -> Loads:
-    """All loads on the coordinates."""
-    loads = Loads(np.zeros(coordinates.size))
-    for torque in torques:
-        coordinates.add_torque(loads, torque)
-    for unbalance in unbalances:
-        coordinates.add_unbalance(loads, unbalance)
-    for bow in bows:
-        coordinates.add_bow(loads, bow)
+def _coordinate_loads(
+    coordinates: MachineCoordinates, bearings: Sequence[MountedBearing], loads: MachineLoads
+) -> CoordinateLoads:
+    """All loads on the coordinates but those that accelerate the trains."""
+    found = CoordinateLoads(np.zeros(coordinates.size))
+    for torque in loads.torques:
+        coordinates.add_torque(found, torque)
+    for unbalance in loads.unbalances:
+        coordinates.add_unbalance(found, unbalance)
+    for bow in loads.bows:
+        coordinates.add_bow(found, bow)
     places = {
         mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
         for mounted in bearings
         for rotor in [coordinates.rotor(mounted.rotor)]
     }
     components = coordinates.components
-    if base is not None:
+    if loads.base is not None:
         speeds = [coordinates.speeds.get(part.name, 0.0) for part in components]
-        harmonic, timed = base_loads(components, speeds, base, places)
-        loads.harmonic += harmonic
-        loads.timed += timed
-    if gravity is not None:
-        loads.constant += gravity_load(components, gravity, places)
-    return loads
+        harmonic, timed = base_loads(components, speeds, loads.base, places)
+        found.harmonic += harmonic
+        found.timed += timed
+    if loads.gravity is not None:
+        found.constant += gravity_load(components, loads.gravity, places)
+    for force in loads.forces:
+        coordinates.add_force(found, force)
+    return found
 
 
 def _with_shuttling(
@@ -465,16 +440,17 @@ def _require_thrust_carried(
         require_thrust_carried(pairs, bearings, speeds, constant_torques(torques), movable)
 
 
-def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:
+def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:
     """Tabulate a bearing's law between two speeds, parts of a nominal one [rad/s]; None where it is constant.
 
     Its monotone cubic is cut into straight pieces.
     """
-    if bearing.speeds is None or rates[0] == rates[1] or speed == 0.0:
+    low, high = speed_range
+    if bearing.speeds is None or low == high or speed == 0.0:
         return None
     table = bearing.speeds / abs(speed)
-    knots = np.unique([*rates, *(knot for knot in [1.0, *table] if rates[0] < knot < rates[1])])
-    cuts = [np.linspace(low, high, _PER_GAP, endpoint=False) for low, high in pairwise(knots)]
+    knots = np.unique([low, high, *(knot for knot in [1.0, *table] if low < knot < high)])
+    cuts = [np.linspace(*ends, _PER_GAP, endpoint=False) for ends in pairwise(knots)]
     at = np.append(np.concatenate(cuts), knots[-1])
     laws = [bearing.at_speed(float(rate) * speed) for rate in at]
     return SpeedTable(

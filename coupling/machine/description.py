@@ -38,7 +38,7 @@ from coupling.machine.gear_train import (
     require_balanced_outputs,
     require_one_plane,
 )
-from coupling.machine.loads import BowReactions, ShaftForce, Torque, Unbalance, constant_torques
+from coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, constant_torques
 from coupling.machine.parts import (
     CONSTANT,
     Driving,
@@ -266,12 +266,7 @@ class Machine:
             for shaft in self.shafts
             if shaft.bow is not None
         ]
-        return assemble_machine(
-            components,
-            self.housing_component,
-            speeds=self.speeds,
-            bearings=self.bearings,
-            meshes=[self._mesh(pair) for pair in pairs],
+        loads = MachineLoads(
             unbalances=[
                 Unbalance(shaft.name, one.at, one.moment, one.phase)
                 for shaft in self.shafts
@@ -280,11 +275,19 @@ class Machine:
             bows=bows,
             torques=self.constant_torques if driving.torques is None else driving.torques,
             drives=driving.drives,
-            rates=driving.rates,
             base=driving.base,
             gravity=driving.gravity,
-            dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
             forces=self.forces,
+        )
+        return assemble_machine(
+            components,
+            self.housing_component,
+            speeds=self.speeds,
+            bearings=self.bearings,
+            meshes=[self._mesh(pair) for pair in pairs],
+            loads=loads,
+            dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
+            speed_range=driving.rates,
         )
 
     def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:

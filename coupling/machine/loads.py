@@ -11,7 +11,7 @@ dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, b
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -129,6 +129,13 @@ class TorqueSlope:
     rates: FloatArray
     slopes: FloatArray
 
+    def at_speed_ratio(self, ratio: float) -> "TorqueSlope":
+        """Return the same slope over speed, about ``ratio`` times the nominal speed."""
+        if ratio == 0.0:
+            # Speeds have no ratio to one of 0, about which the slope is that of standstill.
+            return replace(self, rates=np.ones(1), slopes=np.array([np.interp(0.0, self.rates, self.slopes)]))
+        return replace(self, rates=self.rates / abs(ratio))
+
 
 AnyTorque = Torque | TorqueHistory | TorqueRipple | TorqueSlope
 
@@ -156,8 +163,43 @@ class Drive:
     at: float
 
 
+@dataclass(frozen=True)
+class MachineLoads:
+    """Loads on the parts of a machine.
+
+    Attributes
+    ----------
+    unbalances : sequence of Unbalance
+    bows : sequence of BowReactions
+    torques : sequence of AnyTorque
+    drives : sequence of Drive
+        Stations of the torques that accelerate a train, see :meth:`MachineCoordinates.acceleration_load`.
+    base : BaseMotion, optional
+        Motion of the ground: under bearings, pedestals and the housing's supports alike.
+    gravity : sequence of float, optional
+        Acceleration of free fall along x, y, z [m/s²].
+    forces : sequence of ShaftForce
+    """
+
+    unbalances: Sequence[Unbalance] = ()
+    bows: Sequence[BowReactions] = ()
+    torques: Sequence[AnyTorque] = ()
+    drives: Sequence[Drive] = ()
+    base: "BaseMotion | None" = None
+    gravity: Sequence[float] | None = None
+    forces: Sequence[ShaftForce] = ()
+
+    def at_speed_ratio(self, ratio: float) -> "MachineLoads":
+        """Return the same loads on the machine at ``ratio`` times its nominal speeds."""
+        torques = [one.at_speed_ratio(ratio) if isinstance(one, TorqueSlope) else one for one in self.torques]
+        return replace(self, torques=tuple(torques))
+
+
+UNLOADED = MachineLoads()
+
+
 @dataclass
-class Loads:
+class CoordinateLoads:
     """Loads on the n coordinates, collected while the machine is assembled.
 
     Attributes
@@ -216,7 +258,7 @@ class MachineCoordinates:
         x, y = self.rows(name, self.rotor(name).motions(at)[:2])
         return np.asarray(x - 1j * y)
 
-    def add_unbalance(self, loads: Loads, unbalance: Unbalance) -> None:
+    def add_unbalance(self, loads: CoordinateLoads, unbalance: Unbalance) -> None:
         """Add an unbalance m e Ω² (cos, sin)(Ω t + phase): y lags x by a quarter turn, in the sense of rotation."""
         speed = self.speeds[unbalance.rotor]
         rotating = self.rotating_force(unbalance.rotor, unbalance.at)
@@ -225,14 +267,14 @@ class MachineCoordinates:
         force = unbalance.moment * speed**2 * np.exp(1j * unbalance.phase)
         loads.harmonic.append(HarmonicLoad(speed, force * rotating, follows="unbalance"))
 
-    def add_bow(self, loads: Loads, bow: BowReactions) -> None:
+    def add_bow(self, loads: CoordinateLoads, bow: BowReactions) -> None:
         """K b e^{iΩs} of a bow b: the shaft resists its motion u beside the bow by K (u - b e^{iΩs})."""
         force = np.zeros_like(loads.constant, dtype=np.complex128)
         for at, value in zip(bow.at.tolist(), bow.forces, strict=True):
             force = force + value * self.rotating_force(bow.rotor, at)
         loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
 
-    def add_force(self, loads: Loads, given: ShaftForce) -> None:
+    def add_force(self, loads: CoordinateLoads, given: ShaftForce) -> None:
         """Add a constant force on a section of a rotor.
 
         Raises
@@ -248,7 +290,7 @@ class MachineCoordinates:
             )
         loads.constant += np.array(given.force) @ self.rows(given.rotor, rotor.motions(given.at)[:3])
 
-    def add_torque(self, loads: Loads, torque: AnyTorque) -> None:
+    def add_torque(self, loads: CoordinateLoads, torque: AnyTorque) -> None:
         """Add a torque: constant, tabled over time, harmonic, or a slope over the speed."""
         row = self.rotation(torque.rotor, torque.at)
         match torque:

@@ -12,6 +12,7 @@ from coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     Torque,
@@ -131,8 +132,10 @@ def machine(
         speeds={"input": sense * SPEED, "output": -sense * SPEED / PAIR.ratio},
         bearings=bearings,
         meshes=[mesh],
-        unbalances=unbalances,
-        torques=[Torque("input", 0.0, sense * torque), Torque("output", LENGTH, sense * torque * PAIR.ratio)],
+        loads=MachineLoads(
+            unbalances=unbalances,
+            torques=[Torque("input", 0.0, sense * torque), Torque("output", LENGTH, sense * torque * PAIR.ratio)],
+        ),
     )
 
 
@@ -349,7 +352,7 @@ def test_wrong_names() -> None:
             both_rotors(), rigid_housing({}), speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")]
         )
     with pytest.raises(CouplingError, match="no rotor is named 'middle'"):
-        assemble_machine(both_rotors(), None, speeds=speeds, torques=[Torque("middle", 0.0, 1.0)])
+        assemble_machine(both_rotors(), None, speeds=speeds, loads=MachineLoads(torques=[Torque("middle", 0.0, 1.0)]))
     with pytest.raises(CouplingError, match="no speed for output"):
         assemble_machine(both_rotors(), None, speeds={"input": 1.0})
     with pytest.raises(CouplingError, match="expected each name once"):

@@ -12,6 +12,7 @@ from coupling import (
     CoupledSystem,
     CouplingError,
     GapLaw,
+    MachineLoads,
     MountedBearing,
     PeriodicError,
     RollingLaw,
@@ -259,7 +260,7 @@ def machine(speed: float = SPEED) -> CoupledMachine:
         None,
         speeds={"shaft": speed},
         bearings=[MountedBearing(bearing, "shaft", None, RollingLaw(state)) for bearing in bearings],
-        gravity=(0.0, -9.81, 0.0),
+        loads=MachineLoads(gravity=(0.0, -9.81, 0.0)),
     )
 
 

@@ -16,6 +16,7 @@ from coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     PeriodicError,
@@ -80,7 +81,9 @@ def machine(friction: float, *, sense: int = 1, psi: float = 0.4, backlash: floa
         speeds={"input": sense * SPEED, "output": -sense * SPEED / PAIR.ratio},
         bearings=bearings,
         meshes=[GearMesh(gears[0], gears[1], PAIR, CONTACT, backlash, friction)],
-        torques=[Torque("input", 0.0, sense * TORQUE), Torque("output", 0.2, sense * TORQUE * PAIR.ratio)],
+        loads=MachineLoads(
+            torques=[Torque("input", 0.0, sense * TORQUE), Torque("output", 0.2, sense * TORQUE * PAIR.ratio)]
+        ),
     )
 
 
