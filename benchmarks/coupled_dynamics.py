@@ -151,7 +151,7 @@ class Compiled:
         assert isinstance(unbalance, HarmonicLoad)
         stiffness, damping, load = system.stiffness, system.damping, system.load
         cosine, sine, frequency = unbalance.amplitude.real.copy(), unbalance.amplitude.imag.copy(), unbalance.frequency
-        direction, phase, rate = contact.direction, contact.phase, contact.rate
+        direction, phase, rate = contact.direction, contact.phase, contact.mesh_frequency
         law = tuple(
             np.ascontiguousarray(a) if isinstance(a, np.ndarray) else a for a in contact.contact.kernel_arguments
         )

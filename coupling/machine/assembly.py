@@ -109,7 +109,7 @@ class CoupledMachine:
         """Number of the contact of each mesh that carries the mean load: its drive flanks, or back flanks if braked."""
         contacts = self.system.contacts
         return tuple(
-            number if back is None or not contacts[back].drives else back
+            number if back is None or not contacts[back].loaded else back
             for number, back in enumerate(_back_contacts(self.meshes))
         )
 
@@ -131,14 +131,14 @@ class CoupledMachine:
         backs = _back_contacts(self.meshes)
         return (number, False) if number < len(self.meshes) else (backs.index(number), True)
 
-    def shuttling(self, number: int, law: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
-        """Moments of load shuttling of a contact with another law of its flanks, as a constant load and harmonics.
+    def shuttling(self, number: int, contact: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
+        """Moments of load shuttling of flanks with another tooth contact, as a constant load and harmonics.
 
         Parameters
         ----------
         number : int
             Of the contact in the system.
-        law : ToothContact
+        contact : ToothContact
         force : float
             Mean mesh force, above 0 [N].
         """
@@ -146,7 +146,7 @@ class CoupledMachine:
         mesh = self.meshes[place]
         sense = (1 if self.speeds[mesh.driver.rotor] >= 0.0 else -1) * (-1 if back else 1)
         coordinates = MachineCoordinates(self.system.components, self.speeds)
-        return _shuttling(coordinates, mesh, sense, replace(self.system.contacts[number], contact=law), force)
+        return _shuttling(coordinates, mesh, sense, replace(self.system.contacts[number], contact=contact), force)
 
     def at_speed(self, speed: float) -> "CoupledMachine":
         """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
@@ -232,12 +232,12 @@ def assemble_machine(
     require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
     require_balance(meshes, loads.torques, speeds)
     _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques)
-    feet = {foot.name: foot for foot in pedestals}
-    held = [_bearing(coordinates, housing, feet, mounted, speed_range) for mounted in bearings]
+    pedestals_by_name = {pedestal.name: pedestal for pedestal in pedestals}
+    held = [_bearing(coordinates, housing, pedestals_by_name, mounted, speed_range) for mounted in bearings]
     within = []
     for given in dashpots:
-        rows, law = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], speed_range)
-        within.append(replace(law, directions=coordinates.rows(given.rotor, rows).T))
+        rows, dashpot = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], speed_range)
+        within.append(replace(dashpot, directions=coordinates.rows(given.rotor, rows).T))
 
     senses = [1 if speeds[mesh.driver.rotor] >= 0.0 else -1 for mesh in meshes]
     phases = mesh_phases(
@@ -301,16 +301,17 @@ def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:
 def _bearing(
     coordinates: MachineCoordinates,
     housing: HousingComponent | None,
-    feet: dict[str, PedestalComponent],
+    pedestals_by_name: dict[str, PedestalComponent],
     mounted: MountedBearing,
     speed_range: tuple[float, float],
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
     """Assemble a bearing between shaft and seat, pedestal or ground: its 5x5 stiffness and damping, or its own law."""
     rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
-    law = mounted.bearing.at_speed(speed)
+    bearing = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
-    held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
+    stiffness, damping = bearing.spatial_stiffness, bearing.spatial_damping
+    held = np.flatnonzero(np.any(stiffness != 0.0, axis=1) | np.any(damping != 0.0, axis=1))
     held = np.union1d(held, [0, 1])
     if isinstance(mounted.law, RollingLaw):
         # Its tangent may vanish where its force does not stay zero. The ring of a floating one slides along z.
@@ -321,23 +322,23 @@ def _bearing(
     relative = coordinates.rows(rotor.name, rotor.motions(at))
     if mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:
-            raise CouplingError(f"bearing {law.name!r}: no seat {mounted.seat!r} in the housing")
+            raise CouplingError(f"bearing {bearing.name!r}: no seat {mounted.seat!r} in the housing")
         relative = relative - coordinates.rows(housing.name, housing.seat_motions(mounted.seat, rotor.start + at))
-    elif law.pedestal is not None:
-        relative[:2] -= coordinates.rows(law.name, feet[law.name].motion)
+    elif bearing.pedestal is not None:
+        relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
     nonlinear = None
     if mounted.law is not None:
         moving = held[np.any(relative[held] != 0.0, axis=1)]
-        tangent = law.spatial_stiffness[np.ix_(moving, moving)]
-        nonlinear = NonlinearConnector(law.name, relative[moving].T, moving, mounted.law, tangent, speed)
+        tangent = stiffness[np.ix_(moving, moving)]
+        nonlinear = NonlinearConnector(bearing.name, relative[moving].T, moving, mounted.law, tangent, speed)
     if table is not None:
-        table = SpeedTable(table.rates, *(part[:, held[:, None], held] for part in (table.stiffness, table.damping)))
+        parts = (part[:, held[:, None], held] for part in (table.stiffness, table.damping))
+        table = SpeedTable(table.speed_ratios, *parts)
     among = np.ix_(held, held)
-    stiffness, damping = law.spatial_stiffness[among], law.spatial_damping[among]
     axes = tuple(held.tolist())
     # A law of its own has its force from the elements.
     offset = None if mounted.offset is None or mounted.law is not None else mounted.offset[held]
-    linear = LinearConnector(law.name, relative[held].T, stiffness, damping, table, axes, offset)
+    linear = LinearConnector(bearing.name, relative[held].T, stiffness[among], damping[among], table, axes, offset)
     return linear, nonlinear
 
 
@@ -345,22 +346,22 @@ def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
     """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
-    rate = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
-    name, law, clearance = mesh.name, mesh.contact, 0.0
+    frequency = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
+    name, contact, clearance = mesh.name, mesh.contact, 0.0
     if back:
-        name, law, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
-        sense, rate, phase = -sense, -rate, mesh.contact.back_flank_offset - phase
+        name, contact, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
+        sense, frequency, phase = -sense, -frequency, mesh.contact.back_flank_offset - phase
     direction, errors = _flank(coordinates, mesh, sense)
     return ContactConnector(
         name,
         direction,
-        law,
+        contact,
         phase,
-        rate,
+        frequency,
         errors,
         clearance,
-        drives=not back,
-        sliding=_sliding(coordinates, mesh, law, sense),
+        loaded=not back,
+        sliding=_sliding(coordinates, mesh, contact, sense),
         compression_limit=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
     )
 
@@ -419,7 +420,9 @@ def _shuttling(
     for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
         rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
         tilting += coordinates.rows(mounted.rotor, flank.tilting(rows))
-    return shuttling_loads(contact.contact, mesh.geometry, force, line.axial, tilting, contact.phase, contact.rate)
+    return shuttling_loads(
+        contact.contact, mesh.geometry, force, line.axial, tilting, contact.phase, contact.mesh_frequency
+    )
 
 
 def _require_thrust_carried(
@@ -441,7 +444,7 @@ def _require_thrust_carried(
 
 
 def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:
-    """Tabulate a bearing's law between two speeds, parts of a nominal one [rad/s]; None where it is constant.
+    """Tabulate a bearing over speed between two parts of a nominal one [rad/s]; None where it is constant.
 
     Its monotone cubic is cut into straight pieces.
     """
@@ -452,9 +455,9 @@ def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]
     knots = np.unique([low, high, *(knot for knot in [1.0, *table] if low < knot < high)])
     cuts = [np.linspace(*ends, _PER_GAP, endpoint=False) for ends in pairwise(knots)]
     at = np.append(np.concatenate(cuts), knots[-1])
-    laws = [bearing.at_speed(float(rate) * speed) for rate in at]
+    bearings = [bearing.at_speed(float(ratio) * speed) for ratio in at]
     return SpeedTable(
-        at, np.array([law.spatial_stiffness for law in laws]), np.array([law.spatial_damping for law in laws])
+        at, np.array([one.spatial_stiffness for one in bearings]), np.array([one.spatial_damping for one in bearings])
     )
 
 

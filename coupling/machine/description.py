@@ -149,7 +149,7 @@ class Machine:
     def speeds(self) -> dict[str, float]:
         """Signed speed of each shaft [rad/s]."""
         names = [shaft.name for shaft in self.shafts]
-        ratios = self.train.require_turning(names, [pair.label for pair in self.gear_pairs])
+        ratios = self.train.turning_ratios(names, [pair.label for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
 
     @cached_property
@@ -287,7 +287,7 @@ class Machine:
             meshes=[self._mesh(pair) for pair in pairs],
             loads=loads,
             dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
-            speed_range=driving.rates,
+            speed_range=driving.speed_range,
         )
 
     def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:
@@ -383,7 +383,7 @@ class Machine:
         return replace(self, bearings=[one.linearised for one in point.bearings], gear_pairs=pairs)
 
     @cached_property
-    def _resolved(self) -> "Machine":
+    def _linearised(self) -> "Machine":
         return self.at_operating_point() if self.needs_operating_point else self
 
     @cached_property
@@ -392,7 +392,7 @@ class Machine:
 
         About the operating point, where something is left to it.
         """
-        return self._resolved.assemble()
+        return self._linearised.assemble()
 
     def modes(self) -> CoupledModes:
         """Complex natural modes about the mean contact, see :func:`coupling.coupled_modes`.
@@ -499,7 +499,7 @@ class Machine:
         if self.speed == 0.0:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
-        coupled = self.assembled if driving is CONSTANT else self._resolved.assemble(driving=driving)
+        coupled = self.assembled if driving is CONSTANT else self._linearised.assemble(driving=driving)
         settings = TransientSettings(
             duration=revolutions * period,
             record_from=discard * period,
@@ -553,7 +553,7 @@ class Machine:
         for pair, geometry, torque, flank in zip(
             self.gear_pairs, self.pair_geometries, self.pair_torques, flanks, strict=True
         ):
-            if flank == "driven":
+            if flank == "reversed":
                 raise CouplingError(
                     f"{pair.label}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
                     "expected power to flow from driver to driven; swap the two names"
@@ -575,12 +575,15 @@ class Machine:
             limit = None if limit is None else limit_factor * limit
             count = None if count is None else round(limit_factor * count)
         gears = self._gears_on(shaft.name)
-        # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
-        pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
         forces = [one for one in self.forces if one.rotor == shaft.name]
-        laws = [(one.bearing.at, one.law) for one in held]
-        thrusts_at = [*pushed_at, *(at for at, law in laws if isinstance(law, RollingLaw) and not law.floats)]
-        pushed_at += [at for at, law in laws if isinstance(law, RollingLaw)]
+        moments_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
+        thrusts_at = [*moments_at, *(one.at for one in forces if one.force[2] != 0.0)]
+        # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
+        for mounted in held:
+            if isinstance(mounted.law, RollingLaw):
+                moments_at.append(mounted.bearing.at)
+                if not mounted.law.floats:
+                    thrusts_at.append(mounted.bearing.at)
         modal = modal_rotor(
             self.rotor(shaft.name),
             [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in held],
@@ -588,8 +591,8 @@ class Machine:
             count=count,
             gears_at=[gear.at for gear in gears],
             forces_at=[*(one.at for one in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
-            moments_at=pushed_at,
-            thrusts_at=[*thrusts_at, *(one.at for one in forces if one.force[2] != 0.0)],
+            moments_at=moments_at,
+            thrusts_at=thrusts_at,
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 

@@ -119,7 +119,7 @@ class GearTrain:
         drivers = {pair.driver for pair in self.pairs}
         return tuple(shaft for shaft in self.ratios if shaft not in drivers)
 
-    def require_turning(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
+    def turning_ratios(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
         """Speed ratios of a train in which every shaft turns.
 
         Parameters
@@ -370,7 +370,7 @@ def imbalances_of_shafts(torque: float, outputs: Sequence[Output]) -> Iterator[S
             yield ShaftImbalance(place, shaft, entering, leaving)
 
 
-def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Literal["drive", "back", "driven"] | None]:
+def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Literal["drive", "back", "reversed"] | None]:
     """Flanks that carry the mean torque of each gear pair.
 
     Parameters
@@ -383,15 +383,22 @@ def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Litera
     Returns
     -------
     list
-        "drive"; "back" where the torque brakes, so that the driven gear drives by the back flanks; "driven" where
+        "drive"; "back" where the torque brakes, so that the driven gear drives by the back flanks; "reversed" where
         power flows against the input, from driven gear to driver; None where the pair carries no torque.
     """
     least = _NO_TORQUE * abs(torque)
     sense = math.copysign(1.0, torque)
-    return [
-        None if abs(one) <= least else "driven" if sense * one < 0.0 else "drive" if one > 0.0 else "back"
-        for one in pair_torques
-    ]
+    found: list[Literal["drive", "back", "reversed"] | None] = []
+    for one in pair_torques:
+        if abs(one) <= least:
+            found.append(None)
+        elif sense * one < 0.0:
+            found.append("reversed")
+        elif one > 0.0:
+            found.append("drive")
+        else:
+            found.append("back")
+    return found
 
 
 def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], speeds: Mapping[str, float]) -> None:

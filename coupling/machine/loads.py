@@ -6,7 +6,7 @@ base.
 With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where P = ∫ φ R
 dm is their participation and a the acceleration, three components along and three about x, y and z. Rotations of the
 base are small: terms quadratic in them, and Coriolis forces on the vibration, are neglected. The gyroscopic moment of a
-shaft that rotates at Ω on a base that tilts at the rates ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on the x plane and Ω ∫ β
+shaft that rotates at Ω on a base that tilts at the speeds ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on the x plane and Ω ∫ β
 dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
 """
 
@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 Point = tuple[float, float, float]
-_RATE_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
+_VELOCITY_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class TorqueSlope:
 
     Attributes
     ----------
-    rates : ndarray, shape (t,)
+    speed_ratios : ndarray, shape (t,)
         Speeds as parts of the nominal one, ascending.
     slopes : ndarray, shape (t,)
         dT/dω there: negative for most motors, whose torque then damps departures from the nominal speed.
@@ -126,15 +126,16 @@ class TorqueSlope:
     name: str
     rotor: str
     at: float
-    rates: FloatArray
+    speed_ratios: FloatArray
     slopes: FloatArray
 
     def at_speed_ratio(self, ratio: float) -> "TorqueSlope":
         """Return the same slope over speed, about ``ratio`` times the nominal speed."""
         if ratio == 0.0:
             # Speeds have no ratio to one of 0, about which the slope is that of standstill.
-            return replace(self, rates=np.ones(1), slopes=np.array([np.interp(0.0, self.rates, self.slopes)]))
-        return replace(self, rates=self.rates / abs(ratio))
+            at_rest = np.interp(0.0, self.speed_ratios, self.slopes)
+            return replace(self, speed_ratios=np.ones(1), slopes=np.array([at_rest]))
+        return replace(self, speed_ratios=self.speed_ratios / abs(ratio))
 
 
 AnyTorque = Torque | TorqueHistory | TorqueRipple | TorqueSlope
@@ -344,7 +345,7 @@ def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
     """Replace a torque's slope over speed by a dashpot of minus the slope."""
     damping = -slope.slopes.reshape(-1, 1, 1)
     none = np.zeros_like(damping)
-    table = SpeedTable(slope.rates, none, damping) if np.ptp(slope.slopes) > 0.0 else None
+    table = SpeedTable(slope.speed_ratios, none, damping) if np.ptp(slope.slopes) > 0.0 else None
     middle = none[0], damping[0]
     if table is not None:
         middle = table.at(1.0)
@@ -426,13 +427,13 @@ def base_loads(
     timed: list[TimedLoad] = []
     for part in base.parts:
         if isinstance(part, BaseHarmonic):
-            rate = part.amplitude / (1j * part.frequency)
-            harmonic.append(HarmonicLoad(part.frequency, tilting @ rate - held @ part.amplitude))
+            velocity = part.amplitude / (1j * part.frequency)
+            harmonic.append(HarmonicLoad(part.frequency, tilting @ velocity - held @ part.amplitude))
             continue
         moved = np.flatnonzero(np.any(part.values != 0.0, axis=0))
         timed += [TimedLoad(part.times, part.values[:, k], -held[:, k]) for k in moved]
-        times, rates = _rates(part)
-        timed += [TimedLoad(times, rates[:, k], tilting[:, k]) for k in moved if np.any(tilting[:, k])]
+        times, velocities = _velocities(part)
+        timed += [TimedLoad(times, velocities[:, k], tilting[:, k]) for k in moved if np.any(tilting[:, k])]
     return harmonic, timed
 
 
@@ -480,7 +481,7 @@ def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
     if held is None:
         raise CouplingError(f"{rotor.name}: expected its participation in the motions of its base")
     m, (x, y) = rotor.modal.lateral.count, np.subtract(rotor.axis, point[:2])
-    shift, tilt = rotor.mixture.T @ held.displacement, rotor.mixture.T @ held.tilt
+    shift, tilt = rotor.plane_basis.T @ held.displacement, rotor.plane_basis.T @ held.tilt
     tilt = tilt + (rotor.start - point[2]) * shift
     whole = np.zeros((rotor.size, 6))
     whole[:m, 0], whole[:m, 4], whole[:m, 5] = shift, tilt, -y * shift
@@ -498,15 +499,15 @@ def _gyroscopic(components: Sequence[Component], speeds: Sequence[float]) -> Flo
         whole = np.zeros((component.size, 6))
         if isinstance(component, RotorComponent) and component.modal.participation is not None:
             m = component.modal.lateral.count
-            moment = speed * component.mixture.T @ component.modal.participation.spin
+            moment = speed * component.plane_basis.T @ component.modal.participation.spin
             whole[:m, 3], whole[m : 2 * m, 4] = moment, moment
         rows.append(whole)
     return np.vstack(rows)
 
 
-def _rates(part: BaseHistory) -> tuple[FloatArray, FloatArray]:
+def _velocities(part: BaseHistory) -> tuple[FloatArray, FloatArray]:
     """Velocities from a table of accelerations, at rest at its first time."""
-    gaps = np.arange(_RATE_PIECES) / _RATE_PIECES
+    gaps = np.arange(_VELOCITY_PIECES) / _VELOCITY_PIECES
     times = np.append((part.times[:-1, None] + np.diff(part.times)[:, None] * gaps).ravel(), part.times[-1])
     values = np.column_stack([np.interp(times, part.times, column) for column in part.values.T])
     gained = 0.5 * (values[1:] + values[:-1]) * np.diff(times)[:, None]

@@ -113,7 +113,7 @@ class Driving:
         In place of the constant torques that follow from the machine's torque; with stations on their rotors.
     drives : sequence of Drive
         Stations of the torques that accelerate a train.
-    rates : tuple of float
+    speed_range : tuple of float
         Lowest and highest speed of the run, as parts of the machine's speed.
     base : BaseMotion, optional
         Motion of the ground.
@@ -123,7 +123,7 @@ class Driving:
 
     torques: Sequence[AnyTorque] | None = None
     drives: Sequence[Drive] = ()
-    rates: tuple[float, float] = (1.0, 1.0)
+    speed_range: tuple[float, float] = (1.0, 1.0)
     base: BaseMotion | None = None
     gravity: Sequence[float] | None = None
 

@@ -74,7 +74,7 @@ class AxialForces:
 
 
 def axially_held(bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str]) -> set[str]:
-    """Rotors ``among`` those given that a bearing with axial stiffness holds at their speeds [rad/s]."""
+    """Those of the given rotors ``among`` that a bearing with axial stiffness holds at their speeds [rad/s]."""
     return {
         mounted.rotor
         for mounted in bearings
@@ -207,7 +207,7 @@ def shuttling_loads(
     axial: float,
     tilting: FloatArray,
     phase: float,
-    rate: float,
+    mesh_frequency: float,
 ) -> tuple[FloatArray, list[HarmonicLoad]]:
     """Moments of a mesh's load about the middle of the face, as a constant load and harmonics of the mesh frequency.
 
@@ -223,8 +223,8 @@ def shuttling_loads(
         Compression of the mesh by each coordinate, for each metre that the load is off the middle of the face.
     phase : float
         Mesh phase at t = 0 [mesh periods].
-    rate : float
-        Mesh frequency [Hz]; negative for flanks met in the opposite order.
+    mesh_frequency : float
+        [Hz]; negative for flanks met in the opposite order.
 
     Returns
     -------
@@ -234,7 +234,7 @@ def shuttling_loads(
     nothing = np.zeros_like(tilting)
     if contact.faces is None or not np.any(tilting):
         return nothing, []
-    phases = np.arange(_POINTS) / _POINTS if rate != 0.0 else np.array([phase])
+    phases = np.arange(_POINTS) / _POINTS if mesh_frequency != 0.0 else np.array([phase])
     try:
         arm = load_arms(contact, geometry, force, phases) @ [1.0, -axial]
     except GearError:
@@ -244,13 +244,13 @@ def shuttling_loads(
     found = np.fft.rfft(arm) / len(arm)
     orders = np.arange(1, min(_HARMONICS, len(found) - 1) + 1)
     amplitudes = 2.0 * found[orders]
-    if rate < 0.0:
+    if mesh_frequency < 0.0:
         amplitudes = amplitudes.conj()
-    amplitudes = amplitudes * np.exp(2j * np.pi * np.sign(rate) * orders * phase)
+    amplitudes = amplitudes * np.exp(2j * np.pi * np.sign(mesh_frequency) * orders * phase)
     heard = np.abs(amplitudes) > max(_SMALL * np.abs(amplitudes).max(initial=0.0), _NO_ARM * contact.faces.face_width)
     # On the coordinates acts minus the force times the compression's gradient.
     harmonics = [
-        HarmonicLoad(2.0 * np.pi * order * abs(rate), -force * amplitude * tilting, follows="turning")
+        HarmonicLoad(2.0 * np.pi * order * abs(mesh_frequency), -force * amplitude * tilting, follows="turning")
         for order, amplitude in zip(orders[heard].tolist(), amplitudes[heard], strict=True)
     ]
     return -force * found[0].real * tilting, harmonics

@@ -65,14 +65,18 @@ def sliding_flanks(
 
 
 def friction_of(
-    contact: ContactConnector, nominal_time: FloatArray, rates: FloatArray, compression: FloatArray, force: FloatArray
+    contact: ContactConnector,
+    nominal_time: FloatArray,
+    speed_ratios: FloatArray,
+    compression: FloatArray,
+    force: FloatArray,
 ) -> FloatArray:
     """Friction force of a contact and the power it takes, sample by sample; zeros without friction.
 
     Parameters
     ----------
     contact : ContactConnector
-    nominal_time, rates : ndarray, shape (s,)
+    nominal_time, speed_ratios : ndarray, shape (s,)
         Nominal time [s], and speed as a part of the nominal one.
     compression, force : ndarray, shape (s,)
         Of the contact [m], [N].
@@ -90,7 +94,7 @@ def friction_of(
     friction, nominal = contact.sliding.friction, contact.sliding.nominal
     law, by_slices = contact.friction_law
     shares = friction_history(
-        contact.phase + contact.rate * nominal_time,
+        contact.phase + contact.mesh_frequency * nominal_time,
         np.ascontiguousarray(compression),
         law,
         by_slices,
@@ -99,7 +103,7 @@ def friction_of(
     )
     pushed = friction.coefficient * force
     # A pair slides one way before the pitch point and the other way behind it, so the sense of rotation cancels here.
-    power = np.sign(nominal[1]) * pushed * (shares @ nominal) * rates
+    power = np.sign(nominal[1]) * pushed * (shares @ nominal) * speed_ratios
     return np.column_stack([pushed * shares[:, 0], power])
 
 

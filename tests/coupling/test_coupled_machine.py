@@ -362,7 +362,7 @@ def test_wrong_names() -> None:
 def test_linear_analyses_stand_on_the_flanks_that_the_torque_presses() -> None:
     """A machine that coasts is linear about its back flanks, under the same force along the mirrored line."""
     reverse = machine(torque=-90.0, backlash=BACKLASH)
-    assert [contact.drives for contact in reverse.system.contacts] == [False, True]
+    assert [contact.loaded for contact in reverse.system.contacts] == [False, True]
     force = 90.0 / PAIR.driver.base_radius
     state = mean_contact(reverse.system)
     np.testing.assert_allclose(state.stiffness, [0.0, MESH_STIFFNESS], rtol=1e-12)

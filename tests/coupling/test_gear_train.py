@@ -98,7 +98,7 @@ def test_any_pair_in_mesh_is_taken_and_any_slip_refused(
     a = pair.working_centre_distance
     axis = (a * math.cos(angle), a * math.sin(angle))
     machine = built(shaft, pair=pair, axis=axis, start=shift, speeds=(speed, -speed * teeth[0] / teeth[1]))
-    assert machine.system.contacts[0].rate == pytest.approx(abs(speed) * teeth[0] / (2.0 * math.pi))
+    assert machine.system.contacts[0].mesh_frequency == pytest.approx(abs(speed) * teeth[0] / (2.0 * math.pi))
     with pytest.raises(CouplingError, match="turns at"):
         built(shaft, pair=pair, axis=axis, start=shift, speeds=(speed, -speed * (1.0 + wrong) * teeth[0] / teeth[1]))
 

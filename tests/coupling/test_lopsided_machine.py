@@ -162,7 +162,7 @@ def test_a_machine_at_another_speed_is_the_one_built_there(speed: float) -> None
         for field in fields(one):
             np.testing.assert_allclose(getattr(one, field.name), getattr(other, field.name), rtol=1e-12)
     for one, other in zip(turned.system.contacts, built.system.contacts, strict=True):
-        assert (one.rate, one.phase) == pytest.approx((other.rate, other.phase))
+        assert (one.mesh_frequency, one.phase) == pytest.approx((other.mesh_frequency, other.phase))
         np.testing.assert_allclose(one.errors, other.errors, rtol=1e-12)
         np.testing.assert_allclose(one.direction, other.direction, rtol=1e-12)
     assert (turned.system.acceleration_load is None) == (built.system.acceleration_load is None)

@@ -98,7 +98,7 @@ def test_forces_and_moments_are_those_of_the_flanks(sense: int, phase: float) ->
     """On each shaft the normal force along the line of action, ±Q across it and the moments of the static analysis."""
     parts = machine(COEFFICIENT, sense=sense)
     system, (contact,) = parts.system, parts.system.contacts
-    time = (phase - contact.phase) / contact.rate
+    time = (phase - contact.phase) / contact.mesh_frequency
     q = static_equilibrium(system, time)
     found = force_of(contact, system, q)
     compression = float(contact.direction @ q)
@@ -282,7 +282,7 @@ def test_steps_are_of_second_order_through_the_pitch_points(damping: float) -> N
 
 
 def settled(parts: CoupledMachine, periods: int = 12) -> TransientResult:
-    period = 1.0 / parts.system.contacts[0].rate
+    period = 1.0 / parts.system.contacts[0].mesh_frequency
     chosen = TransientSettings(periods * period, 0.0, period / 64, period / 16, tolerance=1e-3)
     return simulate(parts.system, chosen, transient_outputs(parts))
 
