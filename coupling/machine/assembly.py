@@ -40,6 +40,7 @@ from coupling.machine.connectors import (
 )
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing
+from coupling.machine.load_shuttling import shuttling_loads
 from coupling.machine.loads import (
     UNLOADED,
     AnyTorque,
@@ -50,7 +51,7 @@ from coupling.machine.loads import (
     constant_torques,
     gravity_load,
 )
-from coupling.machine.thrust import ThrustPair, require_thrust_carried, shuttling_loads
+from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from coupling.statics.mean_mesh import mean_meshes
 from coupling.statics.static_equilibrium import with_loaded_flanks

@@ -9,7 +9,7 @@ from helical_pairs import couple_pairs, helical
 from coupling import static_equilibrium
 from coupling.gears import SquareStiffness, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
-from coupling.machine.thrust import load_arms
+from coupling.machine.load_shuttling import load_arms
 
 FORCE = 4000.0
 
