@@ -32,6 +32,7 @@ from coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     Torque,
@@ -88,8 +89,10 @@ def two_shafts(modes: int, *, corners: bool, friction: float = 0.0) -> CoupledMa
         speeds={"input": SPEED, "output": -SPEED},
         bearings=bearings,
         meshes=[GearMesh(mounted[0], mounted[1], pair, contact, friction=friction)],
-        unbalances=[Unbalance("input", LENGTH / 2, UNBALANCE, 0.0)],
-        torques=[Torque("input", 0.0, TORQUE), Torque("output", LENGTH, TORQUE)],
+        loads=MachineLoads(
+            unbalances=[Unbalance("input", LENGTH / 2, UNBALANCE, 0.0)],
+            torques=[Torque("input", 0.0, TORQUE), Torque("output", LENGTH, TORQUE)],
+        ),
     )
 
 
@@ -148,7 +151,7 @@ class Compiled:
         assert isinstance(unbalance, HarmonicLoad)
         stiffness, damping, load = system.stiffness, system.damping, system.load
         cosine, sine, frequency = unbalance.amplitude.real.copy(), unbalance.amplitude.imag.copy(), unbalance.frequency
-        direction, phase, rate = contact.direction, contact.phase, contact.rate
+        direction, phase, rate = contact.direction, contact.phase, contact.mesh_frequency
         law = tuple(
             np.ascontiguousarray(a) if isinstance(a, np.ndarray) else a for a in contact.contact.kernel_arguments
         )

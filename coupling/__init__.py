@@ -45,6 +45,7 @@ from coupling.machine.coupled_system import CoupledSystem as CoupledSystem
 from coupling.machine.description import Machine as Machine
 from coupling.machine.gear_train import Output as Output
 from coupling.machine.loads import BaseMotion as BaseMotion
+from coupling.machine.loads import MachineLoads as MachineLoads
 from coupling.machine.loads import ShaftForce as ShaftForce
 from coupling.machine.loads import Torque as Torque
 from coupling.machine.loads import Unbalance as Unbalance

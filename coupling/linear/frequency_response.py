@@ -306,7 +306,7 @@ def unbalance_response(
     CouplingError
         Where the rotor has no unbalance, or a speed is 0.
     """
-    if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.unbalances):
+    if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.loads.unbalances):
         raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
     at_speeds = [machine.at_speed(float(speed)) for speed in speeds]
     frequencies = np.array([one.speeds[rotor] for one in at_speeds])
@@ -463,8 +463,8 @@ def _sensor_responses(
 
 def _excitations(machine: CoupledMachine) -> FloatArray:
     """Return unit loads, shape (e, n): along each line of action; without gears, at each bearing."""
-    drives = [contact.direction for contact in machine.system.contacts if contact.drives]
-    if drives:
-        return np.array(drives)
+    loaded = [contact.direction for contact in machine.system.contacts if contact.loaded]
+    if loaded:
+        return np.array(loaded)
     across = [connector.directions[:, :2].T for connector in machine.system.linear[: len(machine.bearings)]]
     return np.concatenate(across) if across else np.zeros((0, machine.system.size))

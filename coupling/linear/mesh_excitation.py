@@ -87,7 +87,9 @@ class MeshHarmonicModel:
         """Numbers of the contacts that carry a mean force and turn."""
         force = self.contact.force
         contacts = self.machine.system.contacts
-        return tuple(n for n, one in enumerate(contacts) if force is not None and force[n] > 0.0 and one.rate != 0.0)
+        return tuple(
+            n for n, one in enumerate(contacts) if force is not None and force[n] > 0.0 and one.mesh_frequency != 0.0
+        )
 
     def responses(self, limit: float) -> tuple[Response, ...]:
         """Solve the motions at the mesh harmonics up to a limit [rad/s], ascending."""
@@ -126,13 +128,13 @@ class MeshHarmonicModel:
         """
         contact = self.machine.system.contacts[number]
         found = transmission_error_phasors(mesh, count, hunting_period)
-        found = found.conj() if contact.rate < 0.0 else found
+        found = found.conj() if contact.mesh_frequency < 0.0 else found
         orders = np.arange(1, count + 1)
-        return np.asarray(found * np.exp(2j * np.pi * np.sign(contact.rate) * orders * contact.phase))
+        return np.asarray(found * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * orders * contact.phase))
 
     def shuttling_loads(self, number: int, law: ToothContact, force: float) -> dict[int, ComplexArray]:
         """Moments of load shuttling by harmonic, of a contact with some flanks under a force [N], shape (n,) each."""
-        rate = abs(self.machine.system.contacts[number].rate)
+        rate = abs(self.machine.system.contacts[number].mesh_frequency)
         loads = self.machine.shuttling(number, law, force)[1]
         return {round(load.frequency / (2.0 * np.pi * rate)): load.amplitude for load in loads}
 
@@ -148,7 +150,7 @@ class MeshHarmonicModel:
         """Frequencies of the mesh harmonics up to a limit [rad/s], ascending, and the meshes that drive each."""
         found: list[tuple[float, tuple[tuple[int, int], ...]]] = []
         every = [
-            (2.0 * np.pi * h * abs(self.machine.system.contacts[n].rate), (n, h))
+            (2.0 * np.pi * h * abs(self.machine.system.contacts[n].mesh_frequency), (n, h))
             for n in self.loaded
             for h in range(1, HARMONICS + 1)
         ]

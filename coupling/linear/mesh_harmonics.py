@@ -294,7 +294,7 @@ class LineModel(MeshHarmonicModel):
         assert law.faces is not None
         assert self.contact.force is not None
         system, faces = self.machine.system, law.faces
-        rate, force = abs(system.contacts[number].rate), float(self.contact.force[number])
+        rate, force = abs(system.contacts[number].mesh_frequency), float(self.contact.force[number])
         compression = force / float(self.contact.stiffness[number])
         over = lagrange(face_stations(faces.face_width), faces.z)
         stiffness = np.zeros(FACE_STATIONS)

@@ -115,7 +115,7 @@ class SensorLevel:
         loads = np.stack([machine.sensor_rows[self.sensor], contact.direction], axis=1)
         found = {}
         for n in self.weights:
-            w = 2.0 * np.pi * n * abs(contact.rate)
+            w = 2.0 * np.pi * n * abs(contact.mesh_frequency)
             by_sensor, by_contact = linalg.solve(self.model.dynamic_stiffness(w).T, loads).T
             found[n] = (w, by_sensor, by_contact)
         return found

@@ -40,20 +40,18 @@ from coupling.machine.connectors import (
 )
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
+from coupling.machine.load_shuttling import shuttling_loads
 from coupling.machine.loads import (
+    UNLOADED,
     AnyTorque,
-    BaseMotion,
-    BowReactions,
-    Drive,
-    Loads,
+    CoordinateLoads,
     MachineCoordinates,
-    ShaftForce,
-    Unbalance,
+    MachineLoads,
     base_loads,
     constant_torques,
     gravity_load,
 )
-from coupling.machine.thrust import ThrustPair, require_thrust_carried, shuttling_loads
+from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from coupling.statics.mean_mesh import mean_meshes
 from coupling.statics.static_equilibrium import with_loaded_flanks
@@ -81,10 +79,11 @@ class CoupledMachine:
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
         couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
-    unbalances, bows, torques, drives, base, gravity, forces
-        The loads in the system.
+    loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         In the rotors' couplings.
+    speed_range : tuple of float
+        Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -92,14 +91,9 @@ class CoupledMachine:
     bearings: tuple[MountedBearing, ...]
     meshes: tuple[GearMesh, ...]
     system: CoupledSystem
-    unbalances: tuple[Unbalance, ...] = ()
-    bows: tuple[BowReactions, ...] = ()
-    torques: tuple[AnyTorque, ...] = ()
-    drives: tuple[Drive, ...] = ()
-    base: BaseMotion | None = None
-    gravity: tuple[float, ...] | None = None
+    loads: MachineLoads = UNLOADED
     dashpots: tuple[ShaftDashpots, ...] = ()
-    forces: tuple[ShaftForce, ...] = ()
+    speed_range: tuple[float, float] = (1.0, 1.0)
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -116,7 +110,7 @@ class CoupledMachine:
         """Number of the contact of each mesh that carries the mean load: its drive flanks, or back flanks if braked."""
         contacts = self.system.contacts
         return tuple(
-            number if back is None or not contacts[back].drives else back
+            number if back is None or not contacts[back].loaded else back
             for number, back in enumerate(_back_contacts(self.meshes))
         )
 
@@ -138,14 +132,14 @@ class CoupledMachine:
         backs = _back_contacts(self.meshes)
         return (number, False) if number < len(self.meshes) else (backs.index(number), True)
 
-    def shuttling(self, number: int, law: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
-        """Moments of load shuttling of a contact with another law of its flanks, as a constant load and harmonics.
+    def shuttling(self, number: int, contact: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
+        """Moments of load shuttling of flanks with another tooth contact, as a constant load and harmonics.
 
         Parameters
         ----------
         number : int
             Of the contact in the system.
-        law : ToothContact
+        contact : ToothContact
         force : float
             Mean mesh force, above 0 [N].
         """
@@ -153,13 +147,14 @@ class CoupledMachine:
         mesh = self.meshes[place]
         sense = _senses(self.meshes, self.speeds)[place] * (-1 if back else 1)
         coordinates = MachineCoordinates(self.system.components, self.speeds)
-        return _shuttling(coordinates, mesh, sense, replace(self.system.contacts[number], contact=law), force)
+        return _shuttling(coordinates, mesh, sense, replace(self.system.contacts[number], contact=contact), force)
 
     def at_speed(self, speed: float) -> "CoupledMachine":
         """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
 
-        Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; the components
-        keep their modes, which are a basis at any speed.
+        Gyroscopic terms, bearings with tables over speed, unbalance forces and mesh frequencies follow; slopes of
+        torques and the speeds between which the machine runs stay the same in rad/s. The components keep their modes,
+        which are a basis at any speed.
 
         Raises
         ------
@@ -177,14 +172,9 @@ class CoupledMachine:
             speeds={name: value * (speed / present) for name, value in self.speeds.items()},
             bearings=self.bearings,
             meshes=self.meshes,
-            unbalances=self.unbalances,
-            bows=self.bows,
-            torques=self.torques,
-            drives=self.drives,
-            base=self.base,
-            gravity=self.gravity,
+            loads=self.loads.at_speed_ratio(speed / present),
             dashpots=self.dashpots,
-            forces=self.forces,
+            speed_range=_about(self.speed_range, speed / present),
         )
 
 
@@ -195,15 +185,9 @@ def assemble_machine(
     speeds: dict[str, float],
     bearings: Sequence[MountedBearing] = (),
     meshes: Sequence[GearMesh] = (),
-    unbalances: Sequence[Unbalance] = (),
-    bows: Sequence[BowReactions] = (),
-    torques: Sequence[AnyTorque] = (),
-    drives: Sequence[Drive] = (),
-    base: BaseMotion | None = None,
-    gravity: Sequence[float] | None = None,
-    rates: tuple[float, float] = (1.0, 1.0),
+    loads: MachineLoads = UNLOADED,
     dashpots: Sequence[ShaftDashpots] = (),
-    forces: Sequence[ShaftForce] = (),
+    speed_range: tuple[float, float] = (1.0, 1.0),
 ) -> CoupledMachine:
     """Assemble the coupled system of components that exist already; :class:`coupling.Machine` makes them of its parts.
 
@@ -213,20 +197,15 @@ def assemble_machine(
         The components.
     speeds : dict of str to float
         Signed speed of each rotor [rad/s]; at rest see :func:`coupling.machine.gear_train.turning_senses`.
-    bearings, meshes, unbalances, bows, torques, forces
-        Connectors and loads.
-    drives
-        Stations of the torques that accelerate a train, see
-        :meth:`coupling.machine.loads.MachineCoordinates.acceleration_load`.
-    base
-        Motion of the ground: under bearings, pedestals and the housing's supports alike.
-    gravity
-        Acceleration of free fall along x, y, z [m/s²]; none by default.
+    bearings, meshes
+        Connectors.
+    loads : MachineLoads
+        None by default.
     dashpots
         In the rotors' couplings.
-    rates
-        The least and the highest speed that the machine will run at, as parts of ``speeds``: bearings' tables over
-        speed are followed between them.
+    speed_range : tuple of float
+        Lowest and highest speed that the machine runs at, as parts of ``speeds``: bearings' tables over speed are
+        followed between them.
 
     Raises
     ------
@@ -252,14 +231,14 @@ def assemble_machine(
     coordinates = MachineCoordinates(components, speeds)
 
     require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
-    require_balance(meshes, torques, speeds)
-    _require_thrust_carried(rotors, speeds, bearings, meshes, torques)
-    feet = {foot.name: foot for foot in pedestals}
-    held = [_bearing(coordinates, housing, feet, mounted, rates) for mounted in bearings]
+    require_balance(meshes, loads.torques, speeds)
+    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques)
+    pedestals_by_name = {pedestal.name: pedestal for pedestal in pedestals}
+    held = [_bearing(coordinates, housing, pedestals_by_name, mounted, speed_range) for mounted in bearings]
     within = []
     for given in dashpots:
-        rows, law = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], rates)
-        within.append(replace(law, directions=coordinates.rows(given.rotor, rows).T))
+        rows, dashpot = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], speed_range)
+        within.append(replace(dashpot, directions=coordinates.rows(given.rotor, rows).T))
 
     senses = _senses(meshes, speeds)
     phases = mesh_phases(
@@ -274,22 +253,20 @@ def assemble_machine(
     contacts = [_contact(coordinates, *side) for side in sides]
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
-    loads = _loads(coordinates, bearings, unbalances, bows, torques, base, gravity)
-    for force in forces:
-        coordinates.add_force(loads, force)
+    acting = _coordinate_loads(coordinates, bearings, loads)
     for linear, _ in held:
         if linear.offset is not None:
-            loads.constant -= linear.directions @ linear.offset
+            acting.constant -= linear.directions @ linear.offset
     system = CoupledSystem(
         components=components,
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
-        linear=(*(linear for linear, _ in held), *within, *loads.dashpots),
+        linear=(*(linear for linear, _ in held), *within, *acting.dashpots),
         contacts=tuple(contacts),
-        load=loads.constant,
-        harmonic_loads=tuple(loads.harmonic),
-        timed_loads=tuple(loads.timed),
+        load=acting.constant,
+        harmonic_loads=tuple(acting.harmonic),
+        timed_loads=tuple(acting.timed),
         acceleration_load=coordinates.acceleration_load(
-            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], drives
+            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], loads.drives
         ),
         nonlinear=tuple(own for _, own in held if own is not None),
     )
@@ -302,20 +279,23 @@ def assemble_machine(
         tuple(bearings),
         tuple(meshes),
         system,
-        tuple(unbalances),
-        tuple(bows),
-        tuple(torques),
-        tuple(drives),
-        base,
-        None if gravity is None else tuple(gravity),
+        loads,
         tuple(dashpots),
-        tuple(forces),
+        speed_range,
     )
 
 
 def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float]) -> list[int]:
     """Sense of rotation of the driver of each mesh."""
     return turning_senses([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], speeds)
+
+
+def _about(speed_range: tuple[float, float], ratio: float) -> tuple[float, float]:
+    """Return the same range of speeds as parts of ``ratio`` times the nominal ones, with those among them."""
+    low, high = speed_range
+    if low == high or ratio == 0.0:
+        return 1.0, 1.0
+    return min(low / abs(ratio), 1.0), max(high / abs(ratio), 1.0)
 
 
 def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:
@@ -327,16 +307,17 @@ def _back_contacts(meshes: Sequence[GearMesh]) -> list[int | None]:
 def _bearing(
     coordinates: MachineCoordinates,
     housing: HousingComponent | None,
-    feet: dict[str, PedestalComponent],
+    pedestals_by_name: dict[str, PedestalComponent],
     mounted: MountedBearing,
-    rates: tuple[float, float],
+    speed_range: tuple[float, float],
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
     """Assemble a bearing between shaft and seat, pedestal or ground: its 5x5 stiffness and damping, or its own law."""
     rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
-    law = mounted.bearing.at_speed(speed)
-    table = _over_speed(mounted.bearing, speed, rates)
+    bearing = mounted.bearing.at_speed(speed)
+    table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
-    held = np.flatnonzero(np.any(law.spatial_stiffness != 0.0, axis=1) | np.any(law.spatial_damping != 0.0, axis=1))
+    stiffness, damping = bearing.spatial_stiffness, bearing.spatial_damping
+    held = np.flatnonzero(np.any(stiffness != 0.0, axis=1) | np.any(damping != 0.0, axis=1))
     held = np.union1d(held, [0, 1])
     if isinstance(mounted.law, RollingLaw):
         # Its tangent may vanish where its force does not stay zero. The ring of a floating one slides along z.
@@ -347,23 +328,23 @@ def _bearing(
     relative = coordinates.rows(rotor.name, rotor.motions(at))
     if mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:
-            raise CouplingError(f"bearing {law.name!r}: no seat {mounted.seat!r} in the housing")
+            raise CouplingError(f"bearing {bearing.name!r}: no seat {mounted.seat!r} in the housing")
         relative = relative - coordinates.rows(housing.name, housing.seat_motions(mounted.seat, rotor.start + at))
-    elif law.pedestal is not None:
-        relative[:2] -= coordinates.rows(law.name, feet[law.name].motion)
+    elif bearing.pedestal is not None:
+        relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
     nonlinear = None
     if mounted.law is not None:
         moving = held[np.any(relative[held] != 0.0, axis=1)]
-        tangent = law.spatial_stiffness[np.ix_(moving, moving)]
-        nonlinear = NonlinearConnector(law.name, relative[moving].T, moving, mounted.law, tangent, speed)
+        tangent = stiffness[np.ix_(moving, moving)]
+        nonlinear = NonlinearConnector(bearing.name, relative[moving].T, moving, mounted.law, tangent, speed)
     if table is not None:
-        table = SpeedTable(table.rates, *(part[:, held[:, None], held] for part in (table.stiffness, table.damping)))
+        parts = (part[:, held[:, None], held] for part in (table.stiffness, table.damping))
+        table = SpeedTable(table.speed_ratios, *parts)
     among = np.ix_(held, held)
-    stiffness, damping = law.spatial_stiffness[among], law.spatial_damping[among]
     axes = tuple(held.tolist())
     # A law of its own has its force from the elements.
     offset = None if mounted.offset is None or mounted.law is not None else mounted.offset[held]
-    linear = LinearConnector(law.name, relative[held].T, stiffness, damping, table, axes, offset)
+    linear = LinearConnector(bearing.name, relative[held].T, stiffness[among], damping[among], table, axes, offset)
     return linear, nonlinear
 
 
@@ -371,57 +352,53 @@ def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
     """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
-    rate = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
-    name, law, clearance = mesh.name, mesh.contact, 0.0
+    frequency = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
+    name, contact, clearance = mesh.name, mesh.contact, 0.0
     if back:
-        name, law, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
-        sense, rate, phase = -sense, -rate, mesh.contact.back_flank_offset - phase
+        name, contact, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
+        sense, frequency, phase = -sense, -frequency, mesh.contact.back_flank_offset - phase
     direction, errors = _flank(coordinates, mesh, sense)
     return ContactConnector(
         name,
         direction,
-        law,
+        contact,
         phase,
-        rate,
+        frequency,
         errors,
         clearance,
-        drives=not back,
-        sliding=_sliding(coordinates, mesh, law, sense),
+        loaded=not back,
+        sliding=_sliding(coordinates, mesh, contact, sense),
         compression_limit=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
     )
 
 
-def _loads(
-    coordinates: MachineCoordinates,
-    bearings: Sequence[MountedBearing],
-    unbalances: Sequence[Unbalance],
-    bows: Sequence[BowReactions],
-    torques: Sequence[AnyTorque],
-    base: BaseMotion | None,
-    gravity: Sequence[float] | None,
-) -> Loads:
-    """All loads on the coordinates."""
-    loads = Loads(np.zeros(coordinates.size))
-    for torque in torques:
-        coordinates.add_torque(loads, torque)
-    for unbalance in unbalances:
-        coordinates.add_unbalance(loads, unbalance)
-    for bow in bows:
-        coordinates.add_bow(loads, bow)
+def _coordinate_loads(
+    coordinates: MachineCoordinates, bearings: Sequence[MountedBearing], loads: MachineLoads
+) -> CoordinateLoads:
+    """All loads on the coordinates but those that accelerate the trains."""
+    found = CoordinateLoads(np.zeros(coordinates.size))
+    for torque in loads.torques:
+        coordinates.add_torque(found, torque)
+    for unbalance in loads.unbalances:
+        coordinates.add_unbalance(found, unbalance)
+    for bow in loads.bows:
+        coordinates.add_bow(found, bow)
     places = {
         mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
         for mounted in bearings
         for rotor in [coordinates.rotor(mounted.rotor)]
     }
     components = coordinates.components
-    if base is not None:
+    if loads.base is not None:
         speeds = [coordinates.speeds.get(part.name, 0.0) for part in components]
-        harmonic, timed = base_loads(components, speeds, base, places)
-        loads.harmonic += harmonic
-        loads.timed += timed
-    if gravity is not None:
-        loads.constant += gravity_load(components, gravity, places)
-    return loads
+        harmonic, timed = base_loads(components, speeds, loads.base, places)
+        found.harmonic += harmonic
+        found.timed += timed
+    if loads.gravity is not None:
+        found.constant += gravity_load(components, loads.gravity, places)
+    for force in loads.forces:
+        coordinates.add_force(found, force)
+    return found
 
 
 def _with_shuttling(
@@ -444,18 +421,14 @@ def _shuttling(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, contact: ContactConnector, force: float
 ) -> tuple[FloatArray, list[HarmonicLoad]]:
     """Moments of a contact's load about the middle of the face, see `shuttling_loads`."""
-    push, axial = _push(mesh, sense)
+    line = mesh.line_of_action(sense)
     tilting = np.zeros(coordinates.size)
-    for mounted, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+    for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
         rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
-        tilting += side * coordinates.rows(mounted.rotor, push[0] * rows[4] - push[1] * rows[3])
-    return shuttling_loads(contact.contact, mesh.geometry, force, axial, tilting, contact.phase, contact.rate)
-
-
-def _push(mesh: GearMesh, sense: int) -> tuple[tuple[float, float], float]:
-    """Return the line of action: unit vector e in the x-y plane along which the driver pushes, and the axial part."""
-    angle = mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense)
-    return (float(np.cos(angle)), float(np.sin(angle))), -sense * float(np.tan(mesh.geometry.driver.base_helix_angle))
+        tilting += coordinates.rows(mounted.rotor, flank.tilting(rows))
+    return shuttling_loads(
+        contact.contact, mesh.geometry, force, line.axial, tilting, contact.phase, contact.mesh_frequency
+    )
 
 
 def _require_thrust_carried(
@@ -476,20 +449,21 @@ def _require_thrust_carried(
         require_thrust_carried(pairs, bearings, speeds, constant_torques(torques), movable)
 
 
-def _over_speed(bearing: Bearing, speed: float, rates: tuple[float, float]) -> SpeedTable | None:
-    """Tabulate a bearing's law between two speeds, parts of a nominal one [rad/s]; None where it is constant.
+def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:
+    """Tabulate a bearing over speed between two parts of a nominal one [rad/s]; None where it is constant.
 
     Its monotone cubic is cut into straight pieces.
     """
-    if bearing.speeds is None or rates[0] == rates[1] or speed == 0.0:
+    low, high = speed_range
+    if bearing.speeds is None or low == high or speed == 0.0:
         return None
     table = bearing.speeds / abs(speed)
-    knots = np.unique([*rates, *(knot for knot in [1.0, *table] if rates[0] < knot < rates[1])])
-    cuts = [np.linspace(low, high, _PER_GAP, endpoint=False) for low, high in pairwise(knots)]
+    knots = np.unique([low, high, *(knot for knot in [1.0, *table] if low < knot < high)])
+    cuts = [np.linspace(*ends, _PER_GAP, endpoint=False) for ends in pairwise(knots)]
     at = np.append(np.concatenate(cuts), knots[-1])
-    laws = [bearing.at_speed(float(rate) * speed) for rate in at]
+    bearings = [bearing.at_speed(float(ratio) * speed) for ratio in at]
     return SpeedTable(
-        at, np.array([law.spatial_stiffness for law in laws]), np.array([law.spatial_damping for law in laws])
+        at, np.array([one.spatial_stiffness for one in bearings]), np.array([one.spatial_damping for one in bearings])
     )
 
 
@@ -502,43 +476,28 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
         [(gear.rotor, gear.at) for gear in (mesh.driver, mesh.driven)],
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
-        mesh.geometry.line_of_action_angle(mesh.centre_line_angle, sense),
-        sense,
+        mesh.line_of_action(sense),
     )
 
 
 def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple[FloatArray, FloatArray]:
     """Direction of compression and the harmonics of the runout error on one side of the teeth.
 
-    With e the unit vector along which the driver pushes, δ = s (R_k θ_k + R_i θ_i) + e (u_k - u_i) - e_err. A gear
-    whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
+    Of the compression δ of :mod:`coupling.machine.mesh_kinematics` the runout error e_err is taken off. A gear whose
+    centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
     e_err = -e (ε_k - ε_i): the same first-order runout as
     :func:`coupling.gears.geometry.pitch_deviations.runout_error`.
-
-    A helical driver of hand h (+1 for a right-hand helix) that moves along z leaves the contact as if it had turned
-    back by z tan β_b / R_k, so δ gains -s h tan β_b (w_k - w_i), w the axial motions where the teeth touch: at the
-    pitch point, r from a gear's centre, w = z + φ_x r_y - φ_y r_x with the tilts φ. The force has its axial part and
-    tilting moment from the same rows.
     """
-    driver, driven = mesh.driver, mesh.driven
-    line = np.subtract(driven.axis, driver.axis)
-    push, thrust = _push(mesh, sense)
-    angle = np.arctan2(push[1], push[0])
-    towards = line / np.hypot(*line) if np.any(line) else line
+    line = mesh.line_of_action(sense)
     direction = np.zeros(coordinates.size)
     errors = []
-    sides = ((driver, mesh.geometry.driver, 1.0), (driven, mesh.geometry.driven, -1.0))
-    for (mounted, gear, side), radius in zip(sides, mesh.geometry.working_pitch_radii, strict=True):
+    sides = ((mesh.driver, mesh.geometry.driver, line.driver), (mesh.driven, mesh.geometry.driven, line.driven))
+    for mounted, gear, flank in sides:
         rotor = coordinates.rotor(mounted.rotor)
-        motion = sense * gear.base_radius * rotor.rotation(mounted.at)
-        for axis in (0, 1):
-            motion = motion + side * push[axis] * rotor.direction(mounted.at, axis)
-        if thrust != 0.0:
-            rows = rotor.motions(mounted.at)
-            x, y = side * radius * towards
-            motion = motion + side * thrust * (rows[2] + y * rows[3] - x * rows[4])
-        direction += coordinates.rows(mounted.rotor, motion)
+        motions = rotor.motions(mounted.at)
+        compression = flank.turning(rotor.rotation(mounted.at)) + flank.across(motions) + flank.axial(motions)
+        direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]
-            errors.append([-side * gear.eccentricity, speed, gear.eccentricity_phase - angle])
+            errors.append([-flank.side * gear.eccentricity, speed, gear.eccentricity_phase - line.angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)

@@ -104,7 +104,7 @@ class RotorComponent(Component):
         Its planar modes on averaged supports are the basis in both planes; the torsional ones are free.
     start : float
         z of the rotor's left end [m].
-    mixture : ndarray, shape (m, m)
+    plane_basis : ndarray, shape (m, m)
         The plane's coordinates in terms of the planar modes, orthogonal: columns diagonalise the free shaft.
     axis : tuple of float
         x and y of the shaft's line [m].
@@ -112,7 +112,7 @@ class RotorComponent(Component):
 
     modal: ModalRotor
     start: float
-    mixture: FloatArray
+    plane_basis: FloatArray
     axis: tuple[float, float] = (0.0, 0.0)
 
     def direction(self, at: float, axis: int) -> FloatArray:
@@ -133,7 +133,7 @@ class RotorComponent(Component):
         if at not in self._sections:
             rows, m = self.modal.motions(at), self.modal.lateral.count
             for plane in (slice(0, m), slice(m, 2 * m)):
-                rows[:, plane] = rows[:, plane] @ self.mixture
+                rows[:, plane] = rows[:, plane] @ self.plane_basis
             self._sections[at] = np.vstack([rows, self.modal.rotation(at)])
             self._sections[at].setflags(write=False)
         return self._sections[at]
@@ -308,12 +308,12 @@ def rotor_component(
     """
     lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
     m, n = lateral.count, modal.size
-    values, mixture = np.linalg.eigh(lateral.free_stiffness)
+    values, plane_basis = np.linalg.eigh(lateral.free_stiffness)
     # Motions of the whole shaft have no stiffness; what rounding leaves of it is taken off.
     values = np.where(np.abs(values) < 1e-9 * values[-1], 0.0, np.maximum(values, 0.0))
     squared = np.concatenate([values, values, modal.torsional.frequencies**2, along**2])
     gyroscopic = np.zeros((n, n))
-    gyroscopic[: 2 * m, : 2 * m] = gyroscopic_matrix(mixture.T @ lateral.polar_inertia_matrix @ mixture)
+    gyroscopic[: 2 * m, : 2 * m] = gyroscopic_matrix(plane_basis.T @ lateral.polar_inertia_matrix @ plane_basis)
     return RotorComponent(
         name=name,
         kinds=("rotor",) * (2 * m) + ("torsion",) * modal.torsional.count + ("axial",) * len(along),
@@ -322,6 +322,6 @@ def rotor_component(
         gyroscopic=gyroscopic,
         modal=modal,
         start=start,
-        mixture=mixture,
+        plane_basis=plane_basis,
         axis=axis,
     )

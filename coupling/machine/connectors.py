@@ -1,7 +1,7 @@
 r"""Connectors between components: bearings (5x5 stiffness), nonlinear bearing laws, shaft couplings, tooth contacts.
 
 A connector is a matrix of directions D, shape (n, d), that turns the n coordinates of the whole system into
-relative deflections δ = Dᵀ q, and a law that turns deflections, rates and phase into forces f. It adds -D f to the
+relative deflections δ = Dᵀ q, and a law that turns deflections, velocities and phase into forces f. It adds -D f to the
 equations of motion, so the two sides feel equal and opposite forces, whatever the law.
 
 The law of a linear bearing is its stiffness and damping matrix, at most 5x5 over x, y, z and the rotations about x and
@@ -13,7 +13,7 @@ of the shaft against its seat (x, y, z and the rotations about x and y) into the
 
 Dashpots of flexible shaft couplings are internal damping, which rotates with the shaft. A coupling of length L yields
 by the sway of its right end over its left one, δ = u_r - u_l - L (φ_l + φ_r)/2 across the axis, by the tilt φ_r - φ_l,
-and along and about the axis by the differences of its ends. Dashpots resist the rates of these in the rotating shaft.
+and along and about the axis by the differences of its ends. Dashpots resist their velocities in the rotating shaft.
 Across the axis that is, in the frame at rest and at a speed Ω,
 
     f = c (δ' + Ω (δ_y, -δ_x)),
@@ -32,7 +32,9 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry, ToothContact
 from coupling.gears.contact.sliding_friction import SlidingFriction
+from coupling.gears.geometry.pair import pair_label
 from coupling.machine.components import RotorComponent
+from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from rotors import Bearing
 from rotors.rolling_bearings import FourPointRow, RollerRow, RollingBearing, RollingState
 
@@ -89,6 +91,8 @@ class RollingLaw:
 class GapLaw:
     """Radial gap law of a ring around the shaft: beyond the gap the force is F (penetration / depth)^n.
 
+    :mod:`coupling.time.bearing_kernels` has its compiled form.
+
     Attributes
     ----------
     force : float
@@ -122,18 +126,34 @@ class GapLaw:
         """Displacement at which the search for equilibrium begins: the centre, shape (5,)."""
         return np.zeros(5)
 
-    def tangent(self, load: npt.ArrayLike) -> FloatArray:
-        """Tangent stiffness over x, y [N/m] under a radial load (2,) [N]; zero without a load.
+    def at(self, place: npt.ArrayLike) -> tuple[float, FloatArray, FloatArray]:
+        """Energy [J], force of the shaft on the ring (2,) [N] and tangent (2, 2) [N/m] at a radial place (2,) [m]."""
+        position = np.asarray(place, dtype=np.float64)
+        radius = float(np.hypot(*position))
+        beyond = radius - self.gap
+        if beyond <= 0.0:
+            return 0.0, np.zeros(2), self.tangent(np.zeros(2))
+        size, away = self.force * (beyond / self.depth) ** self.exponent, position / radius
+        return size * beyond / (self.exponent + 1.0), size * away, self._loaded_tangent(size, beyond, away)
 
-        With F the load's size and r = gap + depth (F / force)^(1/n) the shaft's radial position: n F / (r - gap) along
-        the load, F / r across it.
+    def tangent(self, load: npt.ArrayLike) -> FloatArray:
+        """Tangent stiffness over x, y [N/m] under a radial load (2,) [N].
+
+        Without a load that within the gap: zero, but for a linear spring without a gap.
         """
         push = np.asarray(load, dtype=np.float64)
         size = float(np.hypot(*push))
         if size == 0.0:
             return np.zeros((2, 2)) if self.gap > 0.0 or self.exponent > 1.0 else self.force / self.depth * np.eye(2)
         beyond = self.depth * (size / self.force) ** (1.0 / self.exponent)
-        along = np.outer(push, push) / size**2
+        return self._loaded_tangent(size, beyond, push / size)
+
+    def _loaded_tangent(self, size: float, beyond: float, away: FloatArray) -> FloatArray:
+        """Tangent at a force F of this size: with r the radial place, n F / (r - gap) along it and F / r across it.
+
+        ``beyond`` is r - gap, ``away`` the unit vector of the place.
+        """
+        along = np.outer(away, away)
         across = size / (self.gap + beyond)
         return np.asarray(self.exponent * size / beyond * along + across * (np.eye(2) - along))
 
@@ -221,12 +241,21 @@ class GearMesh:
     @property
     def centre_line_angle(self) -> float:
         """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
-        return atan2(self.driven.axis[1] - self.driver.axis[1], self.driven.axis[0] - self.driver.axis[0])
+        x, y = self._centre_line
+        return atan2(y, x)
+
+    @property
+    def _centre_line(self) -> tuple[float, float]:
+        return self.driven.axis[0] - self.driver.axis[0], self.driven.axis[1] - self.driver.axis[1]
+
+    def line_of_action(self, sense: int) -> LineOfAction:
+        """Line of action of the flanks that the driver closes by a rotation of this sense, 1 or -1."""
+        return line_of_action(self.geometry, self._centre_line, sense)
 
     @property
     def label(self) -> str:
         """The pair's name in messages."""
-        return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
+        return pair_label(self.driver.name, self.driven.name)
 
 
 _JUST_AFTER = 1e-9  # mesh periods
@@ -275,7 +304,7 @@ class SpeedTable:
 
     Attributes
     ----------
-    rates : ndarray, shape (t,)
+    speed_ratios : ndarray, shape (t,)
         Speeds as parts of the nominal one, ascending.
     stiffness : ndarray, shape (t, d, d)
         K [N/m].
@@ -283,15 +312,16 @@ class SpeedTable:
         C [N s/m].
     """
 
-    rates: FloatArray
+    speed_ratios: FloatArray
     stiffness: FloatArray
     damping: FloatArray
 
-    def at(self, rate: float) -> tuple[FloatArray, FloatArray]:
-        """K and C at a speed."""
-        after = min(max(int(np.searchsorted(self.rates, rate)), 1), len(self.rates) - 1)
-        gap = self.rates[after] - self.rates[after - 1]
-        part = min(max(float((rate - self.rates[after - 1]) / gap), 0.0), 1.0)
+    def at(self, speed_ratio: float) -> tuple[FloatArray, FloatArray]:
+        """K and C at a part of the nominal speed."""
+        ratios = self.speed_ratios
+        after = min(max(int(np.searchsorted(ratios, speed_ratio)), 1), len(ratios) - 1)
+        gap = ratios[after] - ratios[after - 1]
+        part = min(max(float((speed_ratio - ratios[after - 1]) / gap), 0.0), 1.0)
         first, second = (
             matrix[after - 1] + part * (matrix[after] - matrix[after - 1]) for matrix in (self.stiffness, self.damping)
         )
@@ -361,8 +391,9 @@ class ContactConnector:
     Backlash is two one-sided contacts: a gear pair has one such connector for its drive flanks and, where it has a
     backlash, one for its back flanks with the backlash as ``clearance``.
 
-    With the mesh phase p(t) = phase + rate t and the runout error e(t) = Σ a cos(w t + c), the compression is
-    δ = dᵀ q - e(t) - clearance and the force is :func:`coupling.gears.contact.tooth_force_kernels.tooth_force`.
+    With the mesh phase p(t) = phase + f t at a mesh frequency f and the runout error e(t) = Σ a cos(w t + c), the
+    compression is δ = dᵀ q - e(t) - clearance and the force is
+    :func:`coupling.gears.contact.tooth_force_kernels.tooth_force`.
 
     Attributes
     ----------
@@ -372,28 +403,29 @@ class ContactConnector:
     contact : ToothContact
     phase : float
         At t = 0 [mesh periods].
-    rate : float
-        Mesh frequency [Hz]; negative for flanks met in the opposite order.
+    mesh_frequency : float
+        f [Hz]; negative for flanks met in the opposite order.
     errors : ndarray, shape (h, 3)
         a [m], w [rad/s] and c [rad] of each harmonic of the runout error.
     clearance : float
         Backlash, for the back flanks; 0 for the drive flanks [m].
-    drives : bool
+    loaded : bool
         Whether these flanks carry the mean load.
     compression_limit : float
         Largest compression that the teeth can follow [m]; a motion that exceeds it is refused.
     sliding : Sliding or None
-        Friction, which adds μ Σ ± F_j (a + x_j b) to what the pairs' forces F_j do along d; None for none.
+        Friction of the flanks; None without. To the generalised force d Σ F_j of the pairs j with forces F_j it adds
+        μ Σ ± F_j (a + x_j b), x_j their positions along the path of contact.
     """
 
     name: str
     direction: FloatArray
     contact: ToothContact
     phase: float
-    rate: float
+    mesh_frequency: float
     errors: FloatArray
     clearance: float = 0.0
-    drives: bool = True
+    loaded: bool = True
     sliding: Sliding | None = None
     compression_limit: float = np.inf
 
@@ -409,22 +441,22 @@ class ContactConnector:
 
     def phase_after(self, time: float) -> float:
         """Mesh phase just after a time [mesh periods]: a pair that enters contact then counts."""
-        return self.phase + self.rate * time + _JUST_AFTER
+        return self.phase + self.mesh_frequency * time + _JUST_AFTER
 
     def event_times(self, start: float, end: float) -> FloatArray:
         """Return times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
 
-        The force may jump at the former; at the latter its rate and the power of the rotating teeth do. With friction
+        The force may jump at the former; at the latter its slope and the power of the rotating teeth do. With friction
         also those at which a pair passes the pitch point.
         """
         turns = () if self.sliding is None else self.sliding.friction.event_phases
         marks = np.unique([*self.contact.event_phases, *self.contact.corner_phases, *turns])
-        if self.rate == 0.0 or not marks.size:
+        if self.mesh_frequency == 0.0 or not marks.size:
             return np.empty(0)
-        first, last = sorted((self.phase + self.rate * start, self.phase + self.rate * end))
+        first, last = sorted((self.phase + self.mesh_frequency * start, self.phase + self.mesh_frequency * end))
         whole = np.arange(np.floor(first) - 1.0, np.ceil(last) + 1.0)
         phases = (whole[:, None] + marks).ravel()
-        times = np.sort((phases - self.phase) / self.rate)
+        times = np.sort((phases - self.phase) / self.mesh_frequency)
         return np.asarray(times[(times > start) & (times < end)])
 
 
@@ -454,7 +486,7 @@ class ShaftDashpots:
 
 
 def shaft_dashpots(
-    given: ShaftDashpots, rotor: RotorComponent, speed: float, rates: tuple[float, float] = (1.0, 1.0)
+    given: ShaftDashpots, rotor: RotorComponent, speed: float, speed_range: tuple[float, float] = (1.0, 1.0)
 ) -> tuple[FloatArray, LinearConnector]:
     """Deflections of a coupling by its rotor's coordinates, shape (6, m), and the law over these as a connector.
 
@@ -462,7 +494,7 @@ def shaft_dashpots(
     ----------
     speed : float
         Ω, signed [rad/s].
-    rates : two of float
+    speed_range : tuple of float
         Lowest and highest speed of the run, as parts of Ω: the circulatory stiffness is proportional to the speed.
     """
     left, right = rotor.motions(given.left), rotor.motions(given.right)
@@ -477,7 +509,7 @@ def shaft_dashpots(
     for first, value in ((0, given.lateral), (2, given.tilt)):
         circulating[first, first + 1], circulating[first + 1, first] = speed * value, -speed * value
     table = None
-    if rates[0] != rates[1] and np.any(circulating):
-        ends = np.array(rates)
+    if speed_range[0] != speed_range[1] and np.any(circulating):
+        ends = np.array(speed_range)
         table = SpeedTable(ends, ends[:, None, None] * circulating, np.stack([damping, damping]))
     return rows, LinearConnector(given.name, rows.T, circulating, damping, over_speed=table)

@@ -157,18 +157,18 @@ class CoupledSystem:
         return self._blocks([speed * component.gyroscopic for component, speed in pairs])
 
     @cached_property
-    def connector_rates(self) -> FloatArray:
-        """Relative speeds between which the linear connectors change linearly, shape (t,)."""
-        tables = [connector.over_speed.rates for connector in self.linear if connector.over_speed is not None]
+    def connector_speed_ratios(self) -> FloatArray:
+        """Speeds, as parts of the nominal ones, between which the linear connectors change linearly, shape (t,)."""
+        tables = [connector.over_speed.speed_ratios for connector in self.linear if connector.over_speed is not None]
         return np.unique(np.concatenate(tables)) if tables else np.ones(1)
 
-    def connector_matrices(self, rate: float = 1.0) -> tuple[FloatArray, FloatArray]:
-        """Stiffness and damping of the linear connectors at a relative speed, shapes (n, n)."""
+    def connector_matrices(self, speed_ratio: float = 1.0) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping of the linear connectors at a part of the nominal speeds, shapes (n, n)."""
         stiffness, damping = np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
         for connector in self.linear:
             law = (connector.stiffness, connector.damping)
             if connector.over_speed is not None:
-                law = connector.over_speed.at(rate)
+                law = connector.over_speed.at(speed_ratio)
             for total, matrix in zip((stiffness, damping), law, strict=True):
                 total += connector.directions @ matrix @ connector.directions.T
         return stiffness, damping
@@ -184,26 +184,26 @@ class CoupledSystem:
         return not self.nonlinear and all(contact.sliding is None for contact in self.contacts)
 
     @cached_property
-    def drive_stiffness(self) -> FloatArray:
-        """Unloaded mean mesh stiffness of every carrying flank, 0 of the others [N/m], shape (c,)."""
+    def loaded_flank_stiffness(self) -> FloatArray:
+        """Unloaded mean mesh stiffness of the flanks that carry, 0 of the others [N/m], shape (c,)."""
         return np.array(
-            [one.contact.unloaded_mean_mesh_stiffness * one.drives for one in self.contacts], dtype=np.float64
+            [one.contact.unloaded_mean_mesh_stiffness * one.loaded for one in self.contacts], dtype=np.float64
         )
 
     @cached_property
-    def drive_damping(self) -> FloatArray:
-        """Mesh damping of every carrying flank, 0 of the others [N s/m], shape (c,)."""
-        return np.array([one.contact.damping * one.drives for one in self.contacts], dtype=np.float64)
+    def loaded_flank_damping(self) -> FloatArray:
+        """Mesh damping of the flanks that carry, 0 of the others [N s/m], shape (c,)."""
+        return np.array([one.contact.damping * one.loaded for one in self.contacts], dtype=np.float64)
 
     @cached_property
     def mean_stiffness(self) -> FloatArray:
-        """K with every carrying flank at its unloaded mean mesh stiffness [1/s²], shape (n, n)."""
-        return self.stiffness + (self.contact_directions * self.drive_stiffness) @ self.contact_directions.T
+        """K with the flanks that carry at their unloaded mean mesh stiffness [1/s²], shape (n, n)."""
+        return self.stiffness + (self.contact_directions * self.loaded_flank_stiffness) @ self.contact_directions.T
 
     @cached_property
     def mean_damping(self) -> FloatArray:
-        """C with every carrying flank's damping [1/s], shape (n, n)."""
-        return self.damping + (self.contact_directions * self.drive_damping) @ self.contact_directions.T
+        """C with the damping of the loaded flanks [1/s], shape (n, n)."""
+        return self.damping + (self.contact_directions * self.loaded_flank_damping) @ self.contact_directions.T
 
     @cached_property
     def highest_frequency(self) -> float:

@@ -28,7 +28,6 @@ from coupling.machine.components import HousingComponent, RotorComponent, compon
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
     LARGEST_OFFSET,
-    AppliedTorque,
     GearedShafts,
     GearTrain,
     Output,
@@ -39,7 +38,7 @@ from coupling.machine.gear_train import (
     require_balanced_outputs,
     require_one_plane,
 )
-from coupling.machine.loads import BowReactions, ShaftForce, Torque, Unbalance, constant_torques
+from coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, constant_torques
 from coupling.machine.parts import (
     CONSTANT,
     Driving,
@@ -47,7 +46,6 @@ from coupling.machine.parts import (
     ShaftGear,
     carrying_length,
     inertia_with_discs,
-    pair_label,
     require_names,
     require_seats,
     require_stations,
@@ -128,7 +126,7 @@ class Machine:
         _ = self.speeds, self.pair_geometries, self.constant_torques
         for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
             places = [self.shaft(one.shaft).start + one.at for one in self._gears_of(pair)]
-            require_one_plane(pair_label(pair), places, geometry.face_width)
+            require_one_plane(pair.label, places, geometry.face_width)
         self._require_power_flow()
         self._require_thrust_carried()
 
@@ -151,7 +149,7 @@ class Machine:
     def speeds(self) -> dict[str, float]:
         """Signed speed of each shaft [rad/s]."""
         names = [shaft.name for shaft in self.shafts]
-        ratios = self.train.require_turning(names, [pair_label(pair) for pair in self.gear_pairs])
+        ratios = self.train.turning_ratios(names, [pair.label for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
 
     @cached_property
@@ -182,14 +180,12 @@ class Machine:
                 )
         require_balanced_outputs(self.train, self.torque, self.outputs)
         ends = {shaft.name: shaft.rotor.length for shaft in self.shafts}
-        applied = self.train.applied_torques(self.torque, self.speed, self.outputs, self.torque_at)
-        return tuple(Torque(one.shaft, ends[one.shaft] if one.at is None else one.at, one.torque) for one in applied)
+        return self.train.applied_torques(self.torque, self.speed, self.outputs, self.torque_at, ends=ends)
 
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
         """Mean torque that each pair takes off its driver [N m], positive where power flows to the driven gear."""
-        applied = [AppliedTorque(one.rotor, one.at, one.value) for one in self.constant_torques]
-        return self.train.mean_pair_torques(applied, self.speed)
+        return self.train.mean_pair_torques(self.constant_torques, self.speed)
 
     @cached_property
     def axial_locations(self) -> tuple[AxialLocation, ...]:
@@ -270,12 +266,7 @@ class Machine:
             for shaft in self.shafts
             if shaft.bow is not None
         ]
-        return assemble_machine(
-            components,
-            self.housing_component,
-            speeds=self.speeds,
-            bearings=self.bearings,
-            meshes=[self._mesh(pair) for pair in pairs],
+        loads = MachineLoads(
             unbalances=[
                 Unbalance(shaft.name, one.at, one.moment, one.phase)
                 for shaft in self.shafts
@@ -284,11 +275,19 @@ class Machine:
             bows=bows,
             torques=self.constant_torques if driving.torques is None else driving.torques,
             drives=driving.drives,
-            rates=driving.rates,
             base=driving.base,
             gravity=driving.gravity,
-            dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
             forces=self.forces,
+        )
+        return assemble_machine(
+            components,
+            self.housing_component,
+            speeds=self.speeds,
+            bearings=self.bearings,
+            meshes=[self._mesh(pair) for pair in pairs],
+            loads=loads,
+            dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
+            speed_range=driving.speed_range,
         )
 
     def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:
@@ -373,7 +372,7 @@ class Machine:
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
         point = self.operating_point(gravity) if point is None else point
-        gaps = point.flank_gaps([pair_label(pair) for pair in self.gear_pairs if pair.misalignment is None])
+        gaps = point.flank_gaps([pair.label for pair in self.gear_pairs if pair.misalignment is None])
         pairs = [
             replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
             if pair.misalignment is None
@@ -383,7 +382,7 @@ class Machine:
         return replace(self, bearings=[one.linearised for one in point.bearings], gear_pairs=pairs)
 
     @cached_property
-    def _resolved(self) -> "Machine":
+    def _linearised(self) -> "Machine":
         return self.at_operating_point() if self.needs_operating_point else self
 
     @cached_property
@@ -392,7 +391,7 @@ class Machine:
 
         About the operating point, where something is left to it.
         """
-        return self._resolved.assemble()
+        return self._linearised.assemble()
 
     def modes(self) -> CoupledModes:
         """Complex natural modes about the mean contact, see :func:`coupling.coupled_modes`.
@@ -499,7 +498,7 @@ class Machine:
         if self.speed == 0.0:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
-        coupled = self.assembled if driving is CONSTANT else self._resolved.assemble(driving=driving)
+        coupled = self.assembled if driving is CONSTANT else self._linearised.assemble(driving=driving)
         settings = TransientSettings(
             duration=revolutions * period,
             record_from=discard * period,
@@ -553,14 +552,14 @@ class Machine:
         for pair, geometry, torque, flank in zip(
             self.gear_pairs, self.pair_geometries, self.pair_torques, flanks, strict=True
         ):
-            if flank == "driven":
+            if flank == "reversed":
                 raise CouplingError(
-                    f"{pair_label(pair)}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
+                    f"{pair.label}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
                     "expected power to flow from driver to driven; swap the two names"
                 )
             if flank == "back" and pair.backlash_of(geometry) is None:
                 raise CouplingError(
-                    f"{pair_label(pair)}: expected a backlash: the torque is negative, so the driven gear drives by "
+                    f"{pair.label}: expected a backlash: the torque is negative, so the driven gear drives by "
                     "the back flanks, which never meet without one"
                 )
 
@@ -575,12 +574,15 @@ class Machine:
             limit = None if limit is None else limit_factor * limit
             count = None if count is None else round(limit_factor * count)
         gears = self._gears_on(shaft.name)
-        # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
-        pushed_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
         forces = [one for one in self.forces if one.rotor == shaft.name]
-        laws = [(one.bearing.at, one.law) for one in held]
-        thrusts_at = [*pushed_at, *(at for at, law in laws if isinstance(law, RollingLaw) and not law.floats)]
-        pushed_at += [at for at, law in laws if isinstance(law, RollingLaw)]
+        moments_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
+        thrusts_at = [*moments_at, *(one.at for one in forces if one.force[2] != 0.0)]
+        # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
+        for mounted in held:
+            if isinstance(mounted.law, RollingLaw):
+                moments_at.append(mounted.bearing.at)
+                if not mounted.law.floats:
+                    thrusts_at.append(mounted.bearing.at)
         modal = modal_rotor(
             self.rotor(shaft.name),
             [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in held],
@@ -588,8 +590,8 @@ class Machine:
             count=count,
             gears_at=[gear.at for gear in gears],
             forces_at=[*(one.at for one in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
-            moments_at=pushed_at,
-            thrusts_at=[*thrusts_at, *(one.at for one in forces if one.force[2] != 0.0)],
+            moments_at=moments_at,
+            thrusts_at=thrusts_at,
         )
         return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
 

@@ -97,24 +97,6 @@ class Output:
 
 
 @dataclass(frozen=True)
-class AppliedTorque:
-    """A torque from outside on a shaft.
-
-    Attributes
-    ----------
-    shaft : str
-    at : float or None
-        Distance from the shaft's left end [m]; None: the left end for the input, the right end for an output.
-    torque : float
-        About z, positive counter-clockwise [N m].
-    """
-
-    shaft: str
-    at: float | None
-    torque: float
-
-
-@dataclass(frozen=True)
 class GearTrain:
     """Gear pairs followed from the first driver on; see :func:`gear_train`.
 
@@ -137,7 +119,7 @@ class GearTrain:
         drivers = {pair.driver for pair in self.pairs}
         return tuple(shaft for shaft in self.ratios if shaft not in drivers)
 
-    def require_turning(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
+    def turning_ratios(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
         """Speed ratios of a train in which every shaft turns.
 
         Parameters
@@ -195,8 +177,14 @@ class GearTrain:
         )
 
     def applied_torques(
-        self, torque: float, speed: float, outputs: Sequence[Output], at: float | None = None
-    ) -> tuple[AppliedTorque, ...]:
+        self,
+        torque: float,
+        speed: float,
+        outputs: Sequence[Output],
+        at: float = 0.0,
+        *,
+        ends: Mapping[str, float],
+    ) -> tuple[Torque, ...]:
         """Torques from outside: the input first, then the outputs; they balance through the gears.
 
         The input drives the first driver's shaft in its sense of rotation, or without pairs the first output's shaft;
@@ -209,36 +197,39 @@ class GearTrain:
         speed : float
             Signed speed of the first driver's shaft [rad/s].
         outputs : sequence of Output
-        at : float, optional
+        at : float
             Station of the input torque [m].
+        ends : mapping of str to float
+            Length of each shaft [m]: the station of an output without one of its own.
         """
         if torque == 0.0 or not (self.pairs or outputs):
             return ()
         first = self.pairs[0].driver if self.pairs else outputs[0].shaft
         sense = math.copysign(1.0, speed)
-        applied = [AppliedTorque(first, at, sense * torque)]
+        applied = [Torque(first, at, sense * torque)]
         for output, taken in shared_torques(self, torque, outputs):
             against = -sense * math.copysign(1.0, self.ratios[output.shaft])
-            applied.append(AppliedTorque(output.shaft, output.at, against * taken))
+            place = ends[output.shaft] if output.at is None else output.at
+            applied.append(Torque(output.shaft, place, against * taken))
         return tuple(applied)
 
     def mesh_frequencies(self, speed: float) -> tuple[float, ...]:
         """Tooth-mesh frequency of each pair [Hz] at a speed of the first driver's shaft [rad/s]."""
         return tuple(mesh_frequency(speed * float(self.ratios[pair.driver]), pair.teeth[0]) for pair in self.pairs)
 
-    def mean_pair_torques(self, applied: Sequence[AppliedTorque], speed: float) -> tuple[float, ...]:
+    def mean_pair_torques(self, applied: Sequence[Torque], speed: float) -> tuple[float, ...]:
         """Mean torque that each pair takes from its driver [N m], under torques about z; see :meth:`pair_torques`.
 
         Parameters
         ----------
-        applied : sequence of AppliedTorque
+        applied : sequence of Torque
         speed : float
             Signed speed of the first driver's shaft [rad/s].
         """
         sense = math.copysign(1.0, speed)
         along = dict.fromkeys(self.ratios, 0.0)
         for one in applied:
-            along[one.shaft] += one.torque * sense * math.copysign(1.0, self.ratios[one.shaft])
+            along[one.rotor] += one.value * sense * math.copysign(1.0, self.ratios[one.rotor])
         return self.pair_torques(along)
 
 
@@ -379,7 +370,7 @@ def imbalances_of_shafts(torque: float, outputs: Sequence[Output]) -> Iterator[S
             yield ShaftImbalance(place, shaft, entering, leaving)
 
 
-def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Literal["drive", "back", "driven"] | None]:
+def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Literal["drive", "back", "reversed"] | None]:
     """Flanks that carry the mean torque of each gear pair.
 
     Parameters
@@ -392,15 +383,22 @@ def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Litera
     Returns
     -------
     list
-        "drive"; "back" where the torque brakes, so that the driven gear drives by the back flanks; "driven" where
+        "drive"; "back" where the torque brakes, so that the driven gear drives by the back flanks; "reversed" where
         power flows against the input, from driven gear to driver; None where the pair carries no torque.
     """
     least = _NO_TORQUE * abs(torque)
     sense = math.copysign(1.0, torque)
-    return [
-        None if abs(one) <= least else "driven" if sense * one < 0.0 else "drive" if one > 0.0 else "back"
-        for one in pair_torques
-    ]
+    found: list[Literal["drive", "back", "reversed"] | None] = []
+    for one in pair_torques:
+        if abs(one) <= least:
+            found.append(None)
+        elif sense * one < 0.0:
+            found.append("reversed")
+        elif one > 0.0:
+            found.append("drive")
+        else:
+            found.append("back")
+    return found
 
 
 def turning_senses(pairs: Sequence[tuple[str, str]], speeds: Mapping[str, float]) -> list[int]:

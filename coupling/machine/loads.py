@@ -6,12 +6,12 @@ base.
 With u = q + R s, R the six rigid motions of the base about a point, the coordinates are loaded by -P a, where P = ∫ φ R
 dm is their participation and a the acceleration, three components along and three about x, y and z. Rotations of the
 base are small: terms quadratic in them, and Coriolis forces on the vibration, are neglected. The gyroscopic moment of a
-shaft that rotates at Ω on a base that tilts at the rates ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on the x plane and Ω ∫ β
+shaft that rotates at Ω on a base that tilts at the speeds ω_x and ω_y is kept: Ω ∫ β dI_p ω_x on the x plane and Ω ∫ β
 dI_p ω_y on the y plane, at the nominal speed. Gravity loads the same masses, by P g.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 Point = tuple[float, float, float]
-_RATE_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
+_VELOCITY_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class TorqueSlope:
 
     Attributes
     ----------
-    rates : ndarray, shape (t,)
+    speed_ratios : ndarray, shape (t,)
         Speeds as parts of the nominal one, ascending.
     slopes : ndarray, shape (t,)
         dT/dω there: negative for most motors, whose torque then damps departures from the nominal speed.
@@ -126,8 +126,16 @@ class TorqueSlope:
     name: str
     rotor: str
     at: float
-    rates: FloatArray
+    speed_ratios: FloatArray
     slopes: FloatArray
+
+    def at_speed_ratio(self, ratio: float) -> "TorqueSlope":
+        """Return the same slope over speed, about ``ratio`` times the nominal speed."""
+        if ratio == 0.0:
+            # Speeds have no ratio to one of 0, about which the slope is that of standstill.
+            at_rest = np.interp(0.0, self.speed_ratios, self.slopes)
+            return replace(self, speed_ratios=np.ones(1), slopes=np.array([at_rest]))
+        return replace(self, speed_ratios=self.speed_ratios / abs(ratio))
 
 
 AnyTorque = Torque | TorqueHistory | TorqueRipple | TorqueSlope
@@ -156,8 +164,43 @@ class Drive:
     at: float
 
 
+@dataclass(frozen=True)
+class MachineLoads:
+    """Loads on the parts of a machine.
+
+    Attributes
+    ----------
+    unbalances : sequence of Unbalance
+    bows : sequence of BowReactions
+    torques : sequence of AnyTorque
+    drives : sequence of Drive
+        Stations of the torques that accelerate a train, see :meth:`MachineCoordinates.acceleration_load`.
+    base : BaseMotion, optional
+        Motion of the ground: under bearings, pedestals and the housing's supports alike.
+    gravity : sequence of float, optional
+        Acceleration of free fall along x, y, z [m/s²].
+    forces : sequence of ShaftForce
+    """
+
+    unbalances: Sequence[Unbalance] = ()
+    bows: Sequence[BowReactions] = ()
+    torques: Sequence[AnyTorque] = ()
+    drives: Sequence[Drive] = ()
+    base: "BaseMotion | None" = None
+    gravity: Sequence[float] | None = None
+    forces: Sequence[ShaftForce] = ()
+
+    def at_speed_ratio(self, ratio: float) -> "MachineLoads":
+        """Return the same loads on the machine at ``ratio`` times its nominal speeds."""
+        torques = [one.at_speed_ratio(ratio) if isinstance(one, TorqueSlope) else one for one in self.torques]
+        return replace(self, torques=tuple(torques))
+
+
+UNLOADED = MachineLoads()
+
+
 @dataclass
-class Loads:
+class CoordinateLoads:
     """Loads on the n coordinates, collected while the machine is assembled.
 
     Attributes
@@ -216,7 +259,7 @@ class MachineCoordinates:
         x, y = self.rows(name, self.rotor(name).motions(at)[:2])
         return np.asarray(x - 1j * y)
 
-    def add_unbalance(self, loads: Loads, unbalance: Unbalance) -> None:
+    def add_unbalance(self, loads: CoordinateLoads, unbalance: Unbalance) -> None:
         """Add an unbalance m e Ω² (cos, sin)(Ω t + phase): y lags x by a quarter turn, in the sense of rotation."""
         speed = self.speeds[unbalance.rotor]
         rotating = self.rotating_force(unbalance.rotor, unbalance.at)
@@ -225,14 +268,14 @@ class MachineCoordinates:
         force = unbalance.moment * speed**2 * np.exp(1j * unbalance.phase)
         loads.harmonic.append(HarmonicLoad(speed, force * rotating, follows="unbalance"))
 
-    def add_bow(self, loads: Loads, bow: BowReactions) -> None:
+    def add_bow(self, loads: CoordinateLoads, bow: BowReactions) -> None:
         """K b e^{iΩs} of a bow b: the shaft resists its motion u beside the bow by K (u - b e^{iΩs})."""
         force = np.zeros_like(loads.constant, dtype=np.complex128)
         for at, value in zip(bow.at.tolist(), bow.forces, strict=True):
             force = force + value * self.rotating_force(bow.rotor, at)
         loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
 
-    def add_force(self, loads: Loads, given: ShaftForce) -> None:
+    def add_force(self, loads: CoordinateLoads, given: ShaftForce) -> None:
         """Add a constant force on a section of a rotor.
 
         Raises
@@ -248,7 +291,7 @@ class MachineCoordinates:
             )
         loads.constant += np.array(given.force) @ self.rows(given.rotor, rotor.motions(given.at)[:3])
 
-    def add_torque(self, loads: Loads, torque: AnyTorque) -> None:
+    def add_torque(self, loads: CoordinateLoads, torque: AnyTorque) -> None:
         """Add a torque: constant, tabled over time, harmonic, or a slope over the speed."""
         row = self.rotation(torque.rotor, torque.at)
         match torque:
@@ -302,7 +345,7 @@ def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
     """Replace a torque's slope over speed by a dashpot of minus the slope."""
     damping = -slope.slopes.reshape(-1, 1, 1)
     none = np.zeros_like(damping)
-    table = SpeedTable(slope.rates, none, damping) if np.ptp(slope.slopes) > 0.0 else None
+    table = SpeedTable(slope.speed_ratios, none, damping) if np.ptp(slope.slopes) > 0.0 else None
     middle = none[0], damping[0]
     if table is not None:
         middle = table.at(1.0)
@@ -384,13 +427,13 @@ def base_loads(
     timed: list[TimedLoad] = []
     for part in base.parts:
         if isinstance(part, BaseHarmonic):
-            rate = part.amplitude / (1j * part.frequency)
-            harmonic.append(HarmonicLoad(part.frequency, tilting @ rate - held @ part.amplitude))
+            velocity = part.amplitude / (1j * part.frequency)
+            harmonic.append(HarmonicLoad(part.frequency, tilting @ velocity - held @ part.amplitude))
             continue
         moved = np.flatnonzero(np.any(part.values != 0.0, axis=0))
         timed += [TimedLoad(part.times, part.values[:, k], -held[:, k]) for k in moved]
-        times, rates = _rates(part)
-        timed += [TimedLoad(times, rates[:, k], tilting[:, k]) for k in moved if np.any(tilting[:, k])]
+        times, velocities = _velocities(part)
+        timed += [TimedLoad(times, velocities[:, k], tilting[:, k]) for k in moved if np.any(tilting[:, k])]
     return harmonic, timed
 
 
@@ -438,7 +481,7 @@ def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
     if held is None:
         raise CouplingError(f"{rotor.name}: expected its participation in the motions of its base")
     m, (x, y) = rotor.modal.lateral.count, np.subtract(rotor.axis, point[:2])
-    shift, tilt = rotor.mixture.T @ held.displacement, rotor.mixture.T @ held.tilt
+    shift, tilt = rotor.plane_basis.T @ held.displacement, rotor.plane_basis.T @ held.tilt
     tilt = tilt + (rotor.start - point[2]) * shift
     whole = np.zeros((rotor.size, 6))
     whole[:m, 0], whole[:m, 4], whole[:m, 5] = shift, tilt, -y * shift
@@ -456,15 +499,15 @@ def _gyroscopic(components: Sequence[Component], speeds: Sequence[float]) -> Flo
         whole = np.zeros((component.size, 6))
         if isinstance(component, RotorComponent) and component.modal.participation is not None:
             m = component.modal.lateral.count
-            moment = speed * component.mixture.T @ component.modal.participation.spin
+            moment = speed * component.plane_basis.T @ component.modal.participation.spin
             whole[:m, 3], whole[m : 2 * m, 4] = moment, moment
         rows.append(whole)
     return np.vstack(rows)
 
 
-def _rates(part: BaseHistory) -> tuple[FloatArray, FloatArray]:
+def _velocities(part: BaseHistory) -> tuple[FloatArray, FloatArray]:
     """Velocities from a table of accelerations, at rest at its first time."""
-    gaps = np.arange(_RATE_PIECES) / _RATE_PIECES
+    gaps = np.arange(_VELOCITY_PIECES) / _VELOCITY_PIECES
     times = np.append((part.times[:-1, None] + np.diff(part.times)[:, None] * gaps).ravel(), part.times[-1])
     values = np.column_stack([np.interp(times, part.times, column) for column in part.values.T])
     gained = 0.5 * (values[1:] + values[:-1]) * np.diff(times)[:, None]

@@ -113,7 +113,7 @@ class Driving:
         In place of the constant torques that follow from the machine's torque; with stations on their rotors.
     drives : sequence of Drive
         Stations of the torques that accelerate a train.
-    rates : tuple of float
+    speed_range : tuple of float
         Lowest and highest speed of the run, as parts of the machine's speed.
     base : BaseMotion, optional
         Motion of the ground.
@@ -123,7 +123,7 @@ class Driving:
 
     torques: Sequence[AnyTorque] | None = None
     drives: Sequence[Drive] = ()
-    rates: tuple[float, float] = (1.0, 1.0)
+    speed_range: tuple[float, float] = (1.0, 1.0)
     base: BaseMotion | None = None
     gravity: Sequence[float] | None = None
 
@@ -235,11 +235,6 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     return inertia if inertia > 0.0 else gear.gear.polar_inertia
 
 
-def pair_label(pair: GearPair) -> str:
-    """Name of a gear pair in messages."""
-    return f"gear pair {pair.driver!r} -> {pair.driven!r}"
-
-
 def require_names(machine: MachineParts) -> None:
     """Refuse names given twice, unknown names, and gears that are a pair twice or with themselves."""
     kinds: Mapping[str, Sequence[str]] = {
@@ -255,7 +250,7 @@ def require_names(machine: MachineParts) -> None:
         raise CouplingError("a machine without shafts; expected at least one")
     needed = [(f"bearing {one.bearing.name!r}", "shaft", one.rotor) for one in machine.bearings]
     needed += [(f"gear {one.name!r}", "shaft", one.shaft) for one in machine.gears]
-    needed += [(pair_label(pair), "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
+    needed += [(pair.label, "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
     needed += [("an output", "shaft", one.shaft) for one in machine.outputs]
     needed += [("a force", "shaft", one.rotor) for one in machine.forces]
     for where, kind, name in needed:
@@ -265,10 +260,10 @@ def require_names(machine: MachineParts) -> None:
     gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
     for number, pair in enumerate(machine.gear_pairs):
         if any({pair.driver, pair.driven} == {one.driver, one.driven} for one in machine.gear_pairs[:number]):
-            raise CouplingError(f"{pair_label(pair)} is given twice; expected gears that are not yet a pair")
+            raise CouplingError(f"{pair.label} is given twice; expected gears that are not yet a pair")
         if gear_shafts[pair.driver] == gear_shafts[pair.driven]:
             raise CouplingError(
-                f"{pair_label(pair)}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
+                f"{pair.label}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
                 "another"
             )
 

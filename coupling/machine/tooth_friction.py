@@ -26,6 +26,7 @@ from coupling.gears.contact.sliding_friction import SlidingFriction
 from coupling.machine.connectors import ContactConnector, Sliding
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.machine.loads import MachineCoordinates
+from coupling.machine.mesh_kinematics import LineOfAction
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -35,8 +36,7 @@ def sliding_flanks(
     places: Sequence[tuple[str, float]],
     geometry: GearPairGeometry,
     friction: SlidingFriction,
-    angle: float,
-    sense: int,
+    line: LineOfAction,
 ) -> Sliding:
     """Sliding velocity of the flanks of a gear pair by the coordinates and the nominal rotation.
 
@@ -47,19 +47,16 @@ def sliding_flanks(
         Rotor of the driver and of the driven gear, and the distance from its left end [m].
     geometry : GearPairGeometry
     friction : SlidingFriction
-    angle : float
-        From x to the line of action along which the driver pushes [rad].
-    sense : int
-        +1 where the driver turns counter-clockwise as it pushes so, -1 where clockwise.
+    line : LineOfAction
     """
-    across = sense * np.array([-np.sin(angle), np.cos(angle)])
+    across = line.sense * np.array([-line.push[1], line.push[0]])
     gears = (geometry.driver, geometry.driven)
     rolls = (geometry.driver_roll_angle, geometry.driven_roll_angle)
     directions = np.zeros((coordinates.size, 2))
     nominal = np.zeros(2)
     for (name, at), gear, roll, side in zip(places, gears, rolls, (1.0, -1.0), strict=True):
         rotor = coordinates.rotor(name)
-        begin, end = sense * gear.base_radius * roll(np.array([0.0, 1.0]))
+        begin, end = line.sense * gear.base_radius * roll(np.array([0.0, 1.0]))
         moved = side * (across[0] * rotor.direction(at, 0) + across[1] * rotor.direction(at, 1))
         rotation = rotor.rotation(at)
         directions += coordinates.rows(name, np.array([moved + begin * rotation, (end - begin) * rotation])).T
@@ -68,14 +65,18 @@ def sliding_flanks(
 
 
 def friction_of(
-    contact: ContactConnector, nominal_time: FloatArray, rates: FloatArray, compression: FloatArray, force: FloatArray
+    contact: ContactConnector,
+    nominal_time: FloatArray,
+    speed_ratios: FloatArray,
+    compression: FloatArray,
+    force: FloatArray,
 ) -> FloatArray:
     """Friction force of a contact and the power it takes, sample by sample; zeros without friction.
 
     Parameters
     ----------
     contact : ContactConnector
-    nominal_time, rates : ndarray, shape (s,)
+    nominal_time, speed_ratios : ndarray, shape (s,)
         Nominal time [s], and speed as a part of the nominal one.
     compression, force : ndarray, shape (s,)
         Of the contact [m], [N].
@@ -93,7 +94,7 @@ def friction_of(
     friction, nominal = contact.sliding.friction, contact.sliding.nominal
     law, by_slices = contact.friction_law
     shares = friction_history(
-        contact.phase + contact.rate * nominal_time,
+        contact.phase + contact.mesh_frequency * nominal_time,
         np.ascontiguousarray(compression),
         law,
         by_slices,
@@ -102,7 +103,7 @@ def friction_of(
     )
     pushed = friction.coefficient * force
     # A pair slides one way before the pitch point and the other way behind it, so the sense of rotation cancels here.
-    power = np.sign(nominal[1]) * pushed * (shares @ nominal) * rates
+    power = np.sign(nominal[1]) * pushed * (shares @ nominal) * speed_ratios
     return np.column_stack([pushed * shares[:, 0], power])
 
 

@@ -398,7 +398,7 @@ def add_contacts(
             touching = False
             for i in range(ORDER):
                 force = trace.force[element, i, a]
-                power = contacts.rate[a] * trace.phase_slope[element, i, a]
+                power = contacts.mesh_frequency[a] * trace.phase_slope[element, i, a]
                 for m in range(contacts.errors.shape[1]):
                     w = contacts.errors[a, m, 1]
                     angle = w * (trace.start[element] + h * PLACES[i]) + contacts.errors[a, m, 2]

@@ -220,8 +220,8 @@ class LinearPart:
             source=np.concatenate([self.left[:, half:] @ directions / self.rate_unit, own]),
             displacement=real_rows(np.concatenate(displacement, axis=1)),
             rate=real_rows(np.concatenate(rate, axis=1)),
-            stiffness=self.system.drive_stiffness,
-            damping=self.system.drive_damping,
+            stiffness=self.system.loaded_flank_stiffness,
+            damping=self.system.loaded_flank_damping,
             full_damping=np.array([contact.contact.damping for contact in contacts], dtype=np.float64),
         )
 
@@ -256,7 +256,7 @@ def linear_part(
         Where the reference has a load at an undamped natural frequency, or eigenvectors that do not separate.
     """
     directions = system.contact_directions
-    k_mean, c_mean = system.drive_stiffness, system.drive_damping
+    k_mean, c_mean = system.loaded_flank_stiffness, system.loaded_flank_damping
     stiffness, damping = system.mean_stiffness, system.mean_damping
     same = like is not None and all(map(np.array_equal, like.matrices, (stiffness, damping)))
     if like is not None and (same or _splits(like, stiffness, damping, directions)):

@@ -241,7 +241,7 @@ def event_times(system: CoupledSystem, nodes: FloatArray) -> FloatArray:
 
 def coarsest_element(system: CoupledSystem, period: float) -> float:
     """Coarsest size of an element [s]."""
-    rates = [abs(contact.rate) for contact in system.contacts]
+    rates = [abs(contact.mesh_frequency) for contact in system.contacts]
     rates += [abs(load.frequency) / (2.0 * np.pi) for load in system.harmonic_loads]
     return min(period, 1.0 / max([*rates, 1.0 / period])) / _PER_CYCLE
 

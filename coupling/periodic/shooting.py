@@ -54,8 +54,8 @@ def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
     """
     found = {}
     for contact in system.contacts:
-        if contact.rate != 0.0 and _varies(contact.contact):
-            found[f"contact {contact.name!r}"] = abs(contact.rate) / contact.contact.hunting_period
+        if contact.mesh_frequency != 0.0 and _varies(contact.contact):
+            found[f"contact {contact.name!r}"] = abs(contact.mesh_frequency) / contact.contact.hunting_period
         for number, (amplitude, frequency, _) in enumerate(contact.errors):
             if amplitude != 0.0 and frequency != 0.0:
                 found[f"runout {number + 1} of {contact.name!r}"] = abs(frequency) / (2.0 * np.pi)
@@ -201,7 +201,7 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
 
 def _segments(system: CoupledSystem, period: float) -> int:
     """Count the segments of multiple shooting: a mesh period each, or several where there are many."""
-    cycles = round(period * max([abs(contact.rate) for contact in system.contacts], default=0.0))
+    cycles = round(period * max([abs(contact.mesh_frequency) for contact in system.contacts], default=0.0))
     return max(1, math.ceil(cycles / math.ceil(cycles / _MOST_SEGMENTS))) if cycles else 1
 
 

@@ -234,12 +234,12 @@ def superposed_response(
         common_period(system)  # says that nothing varies
     means = []
     for contact, mean in zip(system.contacts, mean_meshes(system), strict=True):
-        if contact.drives and (mean is None or mean.force <= 0.0):
+        if contact.loaded and (mean is None or mean.force <= 0.0):
             raise PeriodicError(
                 f"mesh {contact.name!r} carries no mean force, so its flanks part and it is not linear about a mean; "
                 "expected a torque through every mesh, or a time integration until the motion is steady"
             )
-        means.append(MeanMesh(0.0, 0.0, 0.0, 0.0) if mean is None or not contact.drives else mean)
+        means.append(MeanMesh(0.0, 0.0, 0.0, 0.0) if mean is None or not contact.loaded else mean)
     linear = tuple(_linear_mesh(contact, mean) for contact, mean in zip(system.contacts, means, strict=True))
     rest = _rest_position(replace(system, contacts=linear))
     motions = []
@@ -252,9 +252,9 @@ def superposed_response(
 
 def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
     """Each varying mesh, the fastest first, then each frequency of loads and runout errors, the highest first."""
-    drives = [i for i, contact in enumerate(system.contacts) if contact.drives]
-    meshes = [i for i in drives if driving_frequencies(_driven_by(system, ExcitationGroup((i,))))]
-    meshes.sort(key=lambda i: -abs(system.contacts[i].rate))
+    loaded = [i for i, contact in enumerate(system.contacts) if contact.loaded]
+    meshes = [i for i in loaded if driving_frequencies(_driven_by(system, ExcitationGroup((i,))))]
+    meshes.sort(key=lambda i: -abs(system.contacts[i].mesh_frequency))
     given = [abs(load.frequency) for load in system.harmonic_loads if np.any(load.amplitude != 0.0)]
     given += [abs(row[1]) for contact in system.contacts for row in contact.errors if row[0] != 0.0]
     frequencies: list[float] = []
@@ -292,14 +292,14 @@ def _among(frequency: float, frequencies: Sequence[float]) -> bool:
 
 def _linear_mesh(contact: ContactConnector, mean: MeanMesh) -> ContactConnector:
     """Linearise a contact: spring and dashpot through its mean force and deflection; back flanks stay apart."""
-    stiffness = mean.stiffness if contact.drives else contact.contact.unloaded_mean_mesh_stiffness
+    stiffness = mean.stiffness if contact.loaded else contact.contact.unloaded_mean_mesh_stiffness
     law = ToothContact(
         1.0, piecewise.constant(stiffness, 1.0), piecewise.constant(0.0, 1.0), damping=contact.contact.damping
     )
     clearance = contact.clearance
-    if contact.drives:
+    if contact.loaded:
         clearance += mean.deflection - mean.force / stiffness
-    return replace(contact, contact=law, phase=0.5, rate=0.0, clearance=clearance)
+    return replace(contact, contact=law, phase=0.5, mesh_frequency=0.0, clearance=clearance)
 
 
 def _rest_position(linear: CoupledSystem) -> FloatArray:
@@ -313,7 +313,7 @@ def _rest_position(linear: CoupledSystem) -> FloatArray:
 def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
     """Name of a group, of its excitations."""
     names = [f"mesh {system.contacts[i].name}" for i in group.meshes]
-    rates = [2.0 * np.pi * abs(system.contacts[i].rate) for i in group.meshes]
+    rates = [2.0 * np.pi * abs(system.contacts[i].mesh_frequency) for i in group.meshes]
     for frequency in group.frequencies:
         # Harmonics of a mesh, such as those of load shuttling, are not listed.
         if any(

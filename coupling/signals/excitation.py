@@ -175,7 +175,9 @@ def line_names(
         raise CouplingError(f"names of lines within {tolerance} Hz; expected more than 0")
     shaft_frequency = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
     highest = max(frequencies, default=0.0)
-    meshes = [abs(contact.rate) for contact in machine.system.contacts if contact.drives and contact.rate]
+    meshes = [
+        abs(contact.mesh_frequency) for contact in machine.system.contacts if contact.loaded and contact.mesh_frequency
+    ]
     excited = excitation_lines(
         machine,
         shaft_orders=range(1, _SHAFT_ORDERS + 1),

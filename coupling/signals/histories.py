@@ -7,7 +7,7 @@ A component's own coordinates are those of the shaft freed of its bearings. The 
 are those on averaged supports: x = Σ A_i φ_i, y = Σ B_i φ_i, and for torsion θ = Σ D_i φ_t,i (Eq. 11) of the free
 shaft. Both span the same motions. With the component's lateral coordinates q, whose shapes are the columns of Φᵀ V,
 
-    A = V q,    V = `RotorComponent.mixture`, orthogonal,
+    A = V q,    V = `RotorComponent.plane_basis`, orthogonal,
 
 so a row of V, at the position of the rotor's coordinates, is a row of :class:`coupling.TransientOutputs`. The housing's
 coordinates are those of its modes.
@@ -306,9 +306,9 @@ def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatAr
     force = np.zeros_like(deflection) if connector.offset is None else np.tile(connector.offset, (len(deflection), 1))
     if table is None:
         return np.asarray(force + deflection @ connector.stiffness.T + velocity @ connector.damping.T)
-    for row in range(len(table.rates)):
+    for row in range(len(table.speed_ratios)):
         # Weight of each speed of the table in the linear interpolation.
-        share = np.interp(rates, table.rates, np.eye(len(table.rates))[row])
+        share = np.interp(rates, table.speed_ratios, np.eye(len(table.speed_ratios))[row])
         held = np.flatnonzero(share)
         push = deflection[held] @ table.stiffness[row].T + velocity[held] @ table.damping[row].T
         force[held] += share[held, None] * push
@@ -349,7 +349,7 @@ def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
     lateral, torsional = part.modal.lateral, part.modal.torsional
     planar, twisting = lateral.certificate.found, torsional.certificate.found
     own = np.eye(part.size)
-    x, y = (part.mixture[:planar] @ own[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1))
+    x, y = (part.plane_basis[:planar] @ own[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1))
     torsion = own[2 * lateral.count : 2 * lateral.count + twisting]
     return ModalRows(*(machine.rows(rotor, rows) for rows in (x, y, torsion)))
 

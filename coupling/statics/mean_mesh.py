@@ -83,7 +83,7 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     while others carry it has no force and no stiffness.
     """
     without_force: list[MeanMesh | None] = [None] * len(system.contacts)
-    driving = [number for number, contact in enumerate(system.contacts) if contact.drives]
+    driving = [number for number, contact in enumerate(system.contacts) if contact.loaded]
     if not driving or not np.any(system.load) or not load_balances(system):
         return without_force
     rigid, stiffest = system.rigid_body_motions
@@ -161,7 +161,7 @@ def mean_contact(system: CoupledSystem) -> ContactState:
 
 def unloaded_contact(system: CoupledSystem) -> ContactState:
     """Drive flanks at their mean stiffness with all pairs on the path of contact touching, the back flanks apart."""
-    return ContactState(system.drive_stiffness, system.drive_damping)
+    return ContactState(system.loaded_flank_stiffness, system.loaded_flank_damping)
 
 
 def contact_at(system: CoupledSystem, time: float) -> ContactState:
@@ -207,9 +207,9 @@ def time_of_phase(system: CoupledSystem, phase: float, contact: int = 0) -> floa
             f"contact number {contact} of {len(system.contacts)}; expected 0 or more, below their count"
         )
     chosen = system.contacts[contact]
-    if chosen.rate == 0.0:
+    if chosen.mesh_frequency == 0.0:
         raise CouplingError(f"{chosen.name} does not turn, so it has no phase but its own; expected a speed")
-    return float(((np.sign(chosen.rate) * (phase - chosen.phase)) % 1.0) / abs(chosen.rate))
+    return float(((np.sign(chosen.mesh_frequency) * (phase - chosen.phase)) % 1.0) / abs(chosen.mesh_frequency))
 
 
 def linear_matrices(system: CoupledSystem, contact: ContactState) -> tuple[FloatArray, FloatArray]:

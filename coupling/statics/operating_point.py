@@ -516,21 +516,15 @@ class _StaticModel:
         """
         stations = pair.contact.stations
         rows, twist = np.zeros((stations.size + 1, self.size)), np.zeros((stations.size + 1, self.size))
-        radii = pair.geometry.working_pitch_radii
-        gears = ((pair.driver, pair.geometry.driver, 1.0), (pair.driven, pair.geometry.driven, -1.0))
-        for (gear, made, side), radius in zip(gears, radii, strict=True):
-            x, y = (side * radius * part for part in pair.towards)
+        for gear, flank in ((pair.driver, pair.line.driver), (pair.driven, pair.line.driven)):
             middle = self._section(gear.shaft, gear.at)
-            tilt = side * (pair.push[0] * middle[4] - pair.push[1] * middle[3])
-            axial = side * pair.axial * (middle[2] + y * middle[3] - x * middle[4])
+            axial = flank.axial(middle)
             for number, (carrier, arm) in enumerate(zip(gear.carriers.tolist(), gear.arms.tolist(), strict=True)):
                 section = self._section(gear.shaft, carrier)
-                x_moved, y_moved = section[0] + arm * section[4], section[1] - arm * section[3]
-                across = side * (pair.push[0] * x_moved + pair.push[1] * y_moved)
-                turned = pair.sense * made.base_radius
-                rows[number] += across + turned * section[5] + axial
-                twist[number] += turned * section[5]
-            rows[-1] += tilt
+                turned = flank.turning(section[5])
+                rows[number] += flank.across(section) + arm * flank.tilting(section) + turned + axial
+                twist[number] += turned
+            rows[-1] += flank.tilting(middle)
         return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:

@@ -55,7 +55,7 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     # open teeth the tangent would be singular.
     closing = np.zeros(system.size)
     for contact in system.contacts:
-        if contact.drives:
+        if contact.loaded:
             first_touch = float(contact.contact.pairs(contact.phase_after(time)).deviation.min())
             gap = first_touch + contact.clearance + contact.runout(time)
             closing += contact.contact.unloaded_mean_mesh_stiffness * gap * contact.direction
@@ -89,7 +89,7 @@ def _require_closed_flanks(system: CoupledSystem, penalty: FloatArray) -> None:
     q = np.linalg.solve(system.mean_stiffness + penalty, system.load)
     for contact in system.contacts:
         force = contact.contact.unloaded_mean_mesh_stiffness * float(contact.direction @ q)
-        if contact.drives and force < -_PUSHED * contact.contact.unloaded_mean_mesh_stiffness * float(
+        if contact.loaded and force < -_PUSHED * contact.contact.unloaded_mean_mesh_stiffness * float(
             np.abs(contact.direction) @ np.abs(q)
         ):
             raise CouplingError(
@@ -197,7 +197,7 @@ def mean_mesh_forces(system: CoupledSystem) -> FloatArray:
         return forces
     rigid, stiffest = system.rigid_body_motions
     q = np.linalg.solve(system.mean_stiffness + stiffest * rigid @ rigid.T, system.load)
-    stiffness = system.drive_stiffness
+    stiffness = system.loaded_flank_stiffness
     forces = stiffness * (system.contact_directions.T @ q)
     rounding = _NO_FORCE * stiffness * (np.abs(system.contact_directions.T) @ np.abs(q))
     return np.where(np.abs(forces) > rounding, forces, 0.0)
@@ -215,6 +215,6 @@ def with_loaded_flanks(system: CoupledSystem, backs: Sequence[int | None]) -> Co
         return system
     contacts: list[ContactConnector] = list(system.contacts)
     for number, back in exchanged:
-        contacts[number] = replace(contacts[number], drives=False)
-        contacts[back] = replace(contacts[back], drives=True)
+        contacts[number] = replace(contacts[number], loaded=False)
+        contacts[back] = replace(contacts[back], loaded=True)
     return replace(system, contacts=tuple(contacts))

@@ -17,6 +17,7 @@ from coupling.gears.loaded.face_load import FaceContact
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
 from coupling.machine.connectors import GapLaw, MountedBearing
+from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from rotors.analyses.static_stiffness import StaticShaft
 from rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
@@ -71,18 +72,9 @@ class RadialGapLaw:
 
     def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Energy, force and tangent."""
-        law, radial = self.law, deflection[:2]
         force, tangent = np.zeros(5), np.zeros((5, 5))
-        reach = float(np.hypot(*radial))
-        beyond = (reach - law.gap) / law.depth
-        if beyond <= 0.0:
-            return 0.0, force, tangent
-        push, away = law.force * beyond**law.exponent, radial / reach
-        along = np.outer(away, away)
-        force[:2] = push * away
-        rise = law.exponent * push / (beyond * law.depth)
-        tangent[:2, :2] = rise * along + push / reach * (np.eye(2) - along)
-        return push * beyond * law.depth / (law.exponent + 1.0), force, tangent
+        energy, force[:2], tangent[:2, :2] = self.law.at(deflection[:2])
+        return energy, force, tangent
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,14 +167,8 @@ class StaticPair:
         Of the loaded flanks.
     clearance : float
         Their gap without load [m]: 0, or the backlash where the back flanks carry.
-    push : tuple of float
-        Unit vector e in the x-y plane along which the driver pushes the driven gear.
-    axial : float
-        h, axial part of the force over its transverse part.
-    sense : int
-        Of the rotation by which the driver closes these flanks.
-    towards : tuple of float
-        Unit vector from the driver's centre to the driven gear's.
+    line : LineOfAction
+        Of these flanks.
     nominal : float
         Mean mesh stiffness for the search [N/m].
     """
@@ -193,11 +179,18 @@ class StaticPair:
     geometry: GearPairGeometry
     contact: FaceContact
     clearance: float
-    push: tuple[float, float]
-    axial: float
-    sense: int
-    towards: tuple[float, float]
+    line: LineOfAction
     nominal: float
+
+    @property
+    def push(self) -> tuple[float, float]:
+        """Unit vector in the x-y plane along which the driver pushes the driven gear."""
+        return self.line.push
+
+    @property
+    def axial(self) -> float:
+        """Axial part of the force on the driven gear over its transverse part."""
+        return self.line.axial
 
 
 def static_pair(
@@ -237,20 +230,15 @@ def static_pair(
     backwards = torque < 0.0
     sense = -rotation if backwards else rotation
     backlash = pair.backlash_of(geometry)
-    line = np.subtract(axes[1], axes[0])
-    angle = geometry.line_of_action_angle(float(np.arctan2(line[1], line[0])), sense)
-    axial = -sense * float(np.tan(geometry.driver.base_helix_angle))
+    line = line_of_action(geometry, (axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]), sense)
     own = contact.back_flanks if backwards else contact
     return StaticPair(
-        label=f"gear pair {pair.driver!r} -> {pair.driven!r}",
+        label=pair.label,
         driver=gears[0],
         driven=gears[1],
         geometry=geometry,
-        contact=FaceContact(own, geometry, face_stations(geometry.face_width), axial),
+        contact=FaceContact(own, geometry, face_stations(geometry.face_width), line.axial),
         clearance=(backlash or 0.0) if backwards else 0.0,
-        push=(float(np.cos(angle)), float(np.sin(angle))),
-        axial=axial,
-        sense=sense,
-        towards=(float(line[0] / np.hypot(*line)), float(line[1] / np.hypot(*line))) if np.any(line) else (0.0, 0.0),
+        line=line,
         nominal=own.unloaded_mean_mesh_stiffness,
     )

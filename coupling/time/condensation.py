@@ -75,7 +75,7 @@ def condensed(system: CoupledSystem) -> Condensed:
     So is a system whose connectors change with the speed: the condensation would have to change with them.
     """
     stiff = _stiff(system)
-    if not stiff.any() or len(system.connector_rates) > 1:
+    if not stiff.any() or len(system.connector_speed_ratios) > 1:
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     kept = ~stiff
     held, left = np.flatnonzero(stiff), np.flatnonzero(kept)

@@ -42,7 +42,7 @@ def evaluate_contact(
     contacts: Contacts, k: int, nominal_time: float, delta: float, rate: float, laws: FloatArray, row: int
 ) -> None:
     """Evaluate the contact law into a row of the laws' table."""
-    phase = contacts.phase[k] + contacts.rate[k] * nominal_time
+    phase = contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time
     law = tooth_force(phase, delta, rate, contacts.law, contacts.law_at[k])
     laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
     laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
@@ -52,7 +52,7 @@ def evaluate_contact(
 def penetration(contacts: Contacts, k: int, nominal_time: float, delta: float, rank: int) -> float:
     """Penetration of the ``rank``-th most compressed tooth pair of a contact [m]."""
     return ranked_penetration(
-        contacts.phase[k] + contacts.rate[k] * nominal_time, delta, contacts.law, contacts.law_at[k], rank
+        contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time, delta, contacts.law, contacts.law_at[k], rank
     )
 
 
@@ -66,7 +66,7 @@ def evaluate_friction(
     if laws[k, FORCE] > 0.0:
         by_slices = contacts.shares_at[k] >= 0
         a, b, a_slope, b_slope = friction_shares(
-            contacts.phase[k] + contacts.rate[k] * nominal_time,
+            contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time,
             delta,
             contacts.law,
             contacts.shares_at[k] if by_slices else contacts.law_at[k],

@@ -187,7 +187,7 @@ def exact_part(system: CoupledSystem, settings: TransientSettings, profile: Spee
 
 def steady_part(system: CoupledSystem) -> LinearPart:
     """Return the linear part, its rates in units of the fastest mesh, load or mode."""
-    rates = [2.0 * np.pi * abs(contact.rate) for contact in system.contacts]
+    rates = [2.0 * np.pi * abs(contact.mesh_frequency) for contact in system.contacts]
     rates += [abs(load.frequency) for load in system.harmonic_loads]
     return linear_part(system, max(rates, default=0.0) or system.highest_frequency or 1.0, repeats=False)
 

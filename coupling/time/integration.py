@@ -91,7 +91,7 @@ def _known_times(system: CoupledSystem, profile: SpeedProfile) -> Iterator[Float
     if len(profile.times) > 1:
         yield profile.times
         # Connectors change their slope over speed where these speeds are passed.
-        for rate in system.connector_rates if len(system.connector_rates) > 1 else ():
+        for rate in system.connector_speed_ratios if len(system.connector_speed_ratios) > 1 else ():
             before, after = profile.rates[:-1] - rate, profile.rates[1:] - rate
             crossing = before * after < 0.0
             part = before[crossing] / (before[crossing] - after[crossing])
@@ -375,7 +375,7 @@ class Integration:
         """Kinetic energy and strain energy of the springs that do not change with the speed [J]."""
         dynamics = self.arrays.dynamics
         energy = 0.5 * v @ v + 0.5 * q @ (dynamics.stiffness * q)
-        if len(dynamics.connector_rates) == 1:
+        if len(dynamics.connector_speed_ratios) == 1:
             deflection = dynamics.connectors @ q
             energy += 0.5 * deflection @ dynamics.connector_stiffness[0] @ deflection
         return float(energy)
@@ -383,7 +383,7 @@ class Integration:
     def _divergence(self, begin: float, last_touch: FloatArray, until: float) -> str:
         """Message about a motion that grows beyond bounds after the time ``begin`` [s]."""
         for contact, last in zip(self.system.contacts, last_touch, strict=True):
-            if contact.drives and (until - last) * abs(contact.rate) > _GONE:
+            if contact.loaded and (until - last) * abs(contact.mesh_frequency) > _GONE:
                 return (
                     f"the teeth of {contact.name} came apart at t = {last:.6g} s and did not meet again: nothing "
                     "holds them together; look at the torques in and out, and whether the driver leads"

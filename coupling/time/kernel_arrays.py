@@ -46,7 +46,7 @@ class Dynamics(NamedTuple):
     block_size: IntArray  # (g,)
     gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded
     connectors: FloatArray  # (r, n) Uᵀ, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
-    connector_rates: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
+    connector_speed_ratios: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
     connector_stiffness: FloatArray  # (t, r, r) K_t
     connector_damping: FloatArray  # (t, r, r) C_t
     has_skew: bool  # whether K_t is not symmetric
@@ -89,7 +89,7 @@ class Contacts(NamedTuple):
     law_at: IntArray  # (c,) offset of the law of each contact
     shares_at: IntArray  # (c,) the same of its friction law; -1 where its lines of contact slide as one
     phase: FloatArray  # (c,)
-    rate: FloatArray  # (c,)
+    mesh_frequency: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
     clearance: FloatArray  # (c,)
     friction_row: IntArray  # (c,) first of the two directions along which friction acts; -1: none

@@ -111,7 +111,7 @@ def stored_in(dynamics: Dynamics, stiffness: FloatArray, scratch: Scratch) -> fl
     ``stiffness`` (r, r) is K_t.
     """
     energy, tq = scratch.bearing_work[BEARING_ENERGY], scratch.tq
-    if dynamics.connector_rates.size > 1:
+    if dynamics.connector_speed_ratios.size > 1:
         for i in range(tq.size):
             for j in range(tq.size):
                 energy += 0.5 * tq[i] * stiffness[i, j] * tq[j]
@@ -151,7 +151,7 @@ def evaluate_powers(
                 lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
     rotating = scratch.bearing_work[BEARING_POWER] * speed
     for k in range(laws.shape[0]):
-        rotating += laws[k, PHASE_SLOPE] * contacts.rate[k] * speed - laws[k, FORCE] * scratch.slip[k]
+        rotating += laws[k, PHASE_SLOPE] * contacts.mesh_frequency[k] * speed - laws[k, FORCE] * scratch.slip[k]
         lost += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
     powers = scratch.powers
     powers[BY_LOADS], powers[BY_DAMPING], powers[BY_ROTATION] = given, lost, rotating

@@ -26,13 +26,13 @@ IntArray = npt.NDArray[np.int64]
 @inner()
 def connector_laws(dynamics: Dynamics, speed: float, stiffness: FloatArray, damping: FloatArray) -> None:
     """K_t and C_t at a speed, linear between those at which they are given, into two arrays (r, r)."""
-    rates, last = dynamics.connector_rates, dynamics.connector_rates.size - 1
+    ratios, last = dynamics.connector_speed_ratios, dynamics.connector_speed_ratios.size - 1
     at = 0
-    while at < last - 1 and speed > rates[at + 1]:
+    while at < last - 1 and speed > ratios[at + 1]:
         at += 1
     part = 0.0
     if last > 0:
-        part = min(max((speed - rates[at]) / (rates[at + 1] - rates[at]), 0.0), 1.0)
+        part = min(max((speed - ratios[at]) / (ratios[at + 1] - ratios[at]), 0.0), 1.0)
     after = min(at + 1, last)
     for i in range(stiffness.shape[0]):
         for j in range(stiffness.shape[0]):

@@ -182,11 +182,11 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     whole = system.own_stiffness, system.own_damping
     diagonals = [matrix.diagonal().copy() for matrix in whole]
     beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
-    rates = system.connector_rates
+    ratios = system.connector_speed_ratios
     matrices = [
         own + connector
-        for rate in rates
-        for own, connector in zip(beside, system.connector_matrices(float(rate)), strict=True)
+        for ratio in ratios
+        for own, connector in zip(beside, system.connector_matrices(float(ratio)), strict=True)
     ]
     directions, cores = common_span(matrices)
     connector_stiffness, connector_damping = np.array(cores[0::2]), np.array(cores[1::2])
@@ -203,7 +203,7 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
         block_size=sizes,
         gyroscopic=gyroscopic,
         connectors=np.ascontiguousarray(directions.T),
-        connector_rates=rates,
+        connector_speed_ratios=ratios,
         connector_stiffness=connector_stiffness,
         connector_damping=connector_damping,
         has_skew=bool(skew > 1e-12 * np.abs(connector_stiffness).max(initial=0.0)),
@@ -272,7 +272,7 @@ def contact_arrays(system: CoupledSystem) -> Contacts:
         law_at=law_at.astype(np.int64),
         shares_at=shares_at,
         phase=np.array([contact.phase for contact in system.contacts], dtype=np.float64),
-        rate=np.array([contact.rate for contact in system.contacts], dtype=np.float64),
+        mesh_frequency=np.array([contact.mesh_frequency for contact in system.contacts], dtype=np.float64),
         errors=errors,
         clearance=np.array([contact.clearance for contact in system.contacts], dtype=np.float64),
         friction_row=friction_row,
@@ -300,7 +300,7 @@ def stored_energy(
     rate : float
         s'.
     """
-    energy = _of_connectors(dynamics, q, rate) if dynamics.connector_rates.size > 1 else 0.0
+    energy = _of_connectors(dynamics, q, rate) if dynamics.connector_speed_ratios.size > 1 else 0.0
     c = contacts.phase.size
     delta, moved = contacts.direction @ q, contacts.direction[:c] @ v
     amplitude, w, phase = np.moveaxis(contacts.errors, 2, 0)
@@ -316,7 +316,7 @@ def stored_energy(
 
 def _of_connectors(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
     """½ qᵀ U K_t Uᵀ q, K_t linear between the speeds at which it is given."""
-    law = SpeedTable(dynamics.connector_rates, dynamics.connector_stiffness, dynamics.connector_damping)
+    law = SpeedTable(dynamics.connector_speed_ratios, dynamics.connector_stiffness, dynamics.connector_damping)
     deflection = dynamics.connectors @ q
     return float(0.5 * deflection @ law.at(rate)[0] @ deflection)
 
@@ -326,7 +326,7 @@ def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, nominal_
 
     energy = 0.0
     for k, at in enumerate(contacts.law_at):
-        phase = contacts.phase[k] + contacts.rate[k] * nominal_time
+        phase = contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time
         energy += tooth_force(phase, delta[k], moved[k], contacts.law, at)[3]
     return energy
 

@@ -478,7 +478,7 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     )
     flanks = carrying_flanks(pair_torques(case), operation.torque)
     for (index, pair), flank in zip(draft.gear_pairs, flanks, strict=True):
-        if flank == "driven":
+        if flank == "reversed":
             expected = "power to flow from driver to driven; swap the two names"
             yield Finding(("gear_pair", index), expected, UNSAID)
         elif flank == "back" and pair.backlash is None and not _has_designed_backlash(case, pair):

@@ -7,7 +7,6 @@ default. They are speeds of the rotor itself [rad/s], positive counter-clockwise
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,8 @@ from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
 
 if TYPE_CHECKING:
-    from coupling.machine.gear_train import AppliedTorque, GearTrain
+    from coupling.machine.gear_train import GearTrain
+    from coupling.machine.loads import Torque
 
 
 def gear_train_of(case: Case) -> GearTrain:
@@ -57,11 +57,12 @@ def mesh_frequencies(case: Case, speed: float | None = None) -> tuple[float, ...
     return gear_train_of(case).mesh_frequencies(_speed(case, speed))
 
 
-def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTorque, ...]:
+def applied_torques(case: Case, torque: float | None = None) -> tuple[Torque, ...]:
     """Return the torques from outside: the input first, then the outputs. They balance through the gears.
 
     They are those of :meth:`coupling.machine.gear_train.GearTrain.applied_torques`. Without an `at`, the input is at
-    the left end of its rotor, an output at the right end; in a case without rotors torques have no station.
+    the left end of its rotor, an output at the right end; in a case without rotors shafts have no length, and every
+    torque is at 0.
 
     Parameters
     ----------
@@ -80,13 +81,9 @@ def applied_torques(case: Case, torque: float | None = None) -> tuple[AppliedTor
     assert operation is not None
     entering = operation.torque if torque is None else torque
     outputs = [output.build() for output in operation.output]
-    applied = gear_train_of(case).applied_torques(entering, operation.speed, outputs, operation.at)
-    ends = {rotor.name: rotor.length for rotor in case.rotor}
-    defaults = [0.0, *(ends.get(one.shaft) for one in applied[1:])]
-    return tuple(
-        replace(one, at=None if not ends else default if one.at is None else one.at)
-        for one, default in zip(applied, defaults, strict=False)
-    )
+    train = gear_train_of(case)
+    ends = {rotor.name: rotor.length for rotor in case.rotor} or dict.fromkeys(train.ratios, 0.0)
+    return train.applied_torques(entering, operation.speed, outputs, operation.at or 0.0, ends=ends)
 
 
 def pair_torques(case: Case) -> tuple[float, ...]:

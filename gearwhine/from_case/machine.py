@@ -14,11 +14,11 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from coupling import BaseMotion, CoupledMachine, Machine, MountedBearing, Shaft, SpeedProfile, Torque
+from coupling.gears.geometry.pair import pair_label
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
 from coupling.machine.components import HousingComponent, RotorComponent, housing_component
 from coupling.machine.description import LATERAL_LIMIT_HZ
-from coupling.machine.gear_train import AppliedTorque
 from coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
 from coupling.machine.parts import Driving
 from coupling.statics.operating_point import OperatingPoint
@@ -236,9 +236,7 @@ def solve_pairs(
     if not case.gear_pair:
         return ()
     point = point or point_of_pairs(case, housing, progress)
-    unaligned = [
-        f"gear pair {pair.driver!r} -> {pair.driven!r}" for pair in case.gear_pair if case.finds_misalignment(pair)
-    ]
+    unaligned = [pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.finds_misalignment(pair)]
     return solve_gears(case, progress, {} if point is None else point.flank_gaps(unaligned))
 
 
@@ -427,11 +425,11 @@ def driving(case: Case, rotors: Sequence[RotorComponent]) -> CaseDriving:
         values = np.array([_torque(operation.load, rate * nominal) for rate in turning.rates])
         torques += [_history(share, turning.times, values) for share in shares]
     else:
-        torques += [Torque(one.shaft, _place(one), one.torque) for one in applied_torques(case)]
+        torques += applied_torques(case)
     if run is not None and run.free:
         torques += _slopes(case, shares)
     torques += _variations(case, shares)
-    drives = [Drive(shares[0].shaft, _place(shares[0]))] if shares else []
+    drives = [Drive(shares[0].rotor, shares[0].at)] if shares else []
     # The nominal speed is among those at which the machine is assembled.
     rates = np.array([1.0, *(() if turning is None else turning.rates)])
     return CaseDriving(
@@ -448,9 +446,9 @@ def train_inertia(case: Case, rotors: Sequence[RotorComponent]) -> float:
     """Polar inertia of the train, reduced to the first driver's rotor [kg m²]."""
     ratios = speed_ratios(case)
     shares = applied_torques(case, 1.0)
-    rotating = set(ratios) if case.gear_pair else {shares[0].shaft}
+    rotating = set(ratios) if case.gear_pair else {shares[0].rotor}
     inertias = {rotor.name: float(np.sum(rotor.turning**2)) for rotor in rotors}
-    first = float(ratios[shares[0].shaft])
+    first = float(ratios[shares[0].rotor])
     return sum(inertias[name] * (float(ratios[name]) / first) ** 2 for name in inertias if name in rotating)
 
 
@@ -458,16 +456,11 @@ def _torque(line: TorqueLine, speed: float) -> float:
     return float(np.interp(speed, line.speed, line.torque))
 
 
-def _place(applied: AppliedTorque) -> float:
-    assert applied.at is not None
-    return applied.at
+def _history(share: Torque, times: FloatArray, values: FloatArray) -> TorqueHistory:
+    return TorqueHistory(share.rotor, share.at, times, share.value * values)
 
 
-def _history(share: AppliedTorque, times: FloatArray, values: FloatArray) -> TorqueHistory:
-    return TorqueHistory(share.shaft, _place(share), times, share.torque * values)
-
-
-def _slopes(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[TorqueSlope]:
+def _slopes(case: Case, shares: Sequence[Torque]) -> Iterator[TorqueSlope]:
     """Slopes of the motor's and the load's torques over the deviation of a shaft from its nominal rotation.
 
     A line's torque T(ω) at the first driver stands for ±T share on a rotor of r times the speed, which changes by
@@ -476,16 +469,16 @@ def _slopes(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[TorqueSlope
     operation = case.operation
     assert operation is not None
     ratios = speed_ratios(case)
-    first = abs(float(ratios[shares[0].shaft]))
+    first = abs(float(ratios[shares[0].rotor]))
     for number, share in enumerate(shares):
         line = operation.load if number else operation.motor
         if line is None:
             continue
         rates, slopes = _slope_table(line, abs(operation.speed))
         sense = 1.0 if number == 0 else -1.0
-        factor = sense * abs(share.torque) * first / abs(float(ratios[share.shaft]))
-        name = f"load on {share.shaft}, {number}" if number else "motor"
-        yield TorqueSlope(name, share.shaft, _place(share), rates, factor * slopes)
+        factor = sense * abs(share.value) * first / abs(float(ratios[share.rotor]))
+        name = f"load on {share.rotor}, {number}" if number else "motor"
+        yield TorqueSlope(name, share.rotor, share.at, rates, factor * slopes)
 
 
 def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArray]:
@@ -496,7 +489,7 @@ def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArr
     return np.column_stack([corners - hair, corners + hair]).ravel(), np.repeat(steps, 2)[1:-1]
 
 
-def _variations(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[AnyTorque]:
+def _variations(case: Case, shares: Sequence[Torque]) -> Iterator[AnyTorque]:
     """Histories added to the torques and ripple about them, each in the sense of its torque."""
     operation = case.operation
     assert operation is not None
@@ -504,14 +497,14 @@ def _variations(case: Case, shares: Sequence[AppliedTorque]) -> Iterator[AnyTorq
         entering, leaving = shares[0], shares[1:]
     else:
         turning = math.copysign(1.0, operation.speed)
-        entering, leaving = AppliedTorque(case.rotor[0].name, operation.at or 0.0, turning), ()
+        entering, leaving = Torque(case.rotor[0].name, operation.at or 0.0, turning), ()
     own = [output.over_time for output in operation.output]
     if operation.over_time is not None:
-        yield operation.over_time.build(entering.shaft, _place(entering), math.copysign(1.0, entering.torque))
+        yield operation.over_time.build(entering.rotor, entering.at, math.copysign(1.0, entering.value))
         if not any(own):
-            yield from (operation.over_time.build(share.shaft, _place(share), share.torque) for share in leaving)
-    yield from (ripple.build(entering.shaft, _place(entering), entering.torque) for ripple in operation.ripple)
+            yield from (operation.over_time.build(share.rotor, share.at, share.value) for share in leaving)
+    yield from (ripple.build(entering.rotor, entering.at, entering.value) for ripple in operation.ripple)
     for output, share in zip(operation.output, leaving, strict=False):
         if output.over_time is not None:
-            yield output.over_time.build(share.shaft, _place(share), math.copysign(1.0, share.torque))
-        yield from (ripple.build(share.shaft, _place(share), share.torque) for ripple in output.ripple)
+            yield output.over_time.build(share.rotor, share.at, math.copysign(1.0, share.value))
+        yield from (ripple.build(share.rotor, share.at, share.value) for ripple in output.ripple)

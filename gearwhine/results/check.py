@@ -213,11 +213,12 @@ OPERATION = (
     Quantity("torque_n_m", lambda case: case.operation.torque),
     Rows(
         "torques",
-        applied_torques,
+        # Without rotors torques have no station.
+        lambda case: [(torque, torque.at if case.rotor else None) for torque in applied_torques(case)],
         (
-            Quantity("rotor", lambda torque: torque.shaft),
-            Quantity("at_m", lambda torque: torque.at),
-            Quantity("torque_n_m", lambda torque: torque.torque),
+            Quantity("rotor", lambda torque: torque[0].rotor),
+            Quantity("at_m", lambda torque: torque[1]),
+            Quantity("torque_n_m", lambda torque: torque[0].value),
         ),
     ),
     _given("gravity_m_per_s2", lambda case: case.operation.gravity),

@@ -164,7 +164,7 @@ def _operation(case: Case) -> str:
     if not torques or not case.operation.torque:
         return f"Operation: {speed}."
     power = case.operation.speed * abs(case.operation.torque)
-    given = ", ".join(f"{torque.torque:+.4g} N·m on {torque.shaft}" for torque in torques)
+    given = ", ".join(f"{torque.value:+.4g} N·m on {torque.rotor}" for torque in torques)
     return f"Operation: {speed}, {given}; {power / 1e3:.4g} kW."
 
 

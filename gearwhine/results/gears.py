@@ -185,7 +185,7 @@ CURVES = (
     Quantity(
         "",
         lambda found: found.mesh.tangent_stiffness,
-        "loaded_mesh_stiffness",
+        "loaded_flank_stiffness",
         _PHASE,
         "N/m",
         "stiffness of the pairs that touch under the mean torque",

@@ -111,7 +111,7 @@ def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
     contact, unloaded = solved.contact, solved.unloaded.stiffness
     found = []
     for number, tooth in enumerate(solved.machine.system.contacts):
-        if not tooth.drives:
+        if not tooth.loaded:
             continue
         force = None if contact.force is None else float(contact.force[number])
         if force is None:

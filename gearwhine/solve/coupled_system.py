@@ -169,7 +169,7 @@ def _instant(case: Case, machine: CoupledMachine, phase: float) -> ContactState:
     require(case, "gear_pair", command="system --mesh-phase")
     if not 0.0 <= phase <= 1.0:
         raise CaseError([Problem("--mesh-phase", phase, "a part of the mesh period, 0 to 1")])
-    if machine.system.contacts[0].rate == 0.0:
+    if machine.system.contacts[0].mesh_frequency == 0.0:
         raise CaseError([Problem("operation.speed", 0.0, "a speed: teeth that do not turn have no phase")])
     return contact_at(machine.system, time_of_phase(machine.system, phase))
 
@@ -239,7 +239,7 @@ def _over_speed(
         contact=mean,
         progress=lambda fraction: progress("coupled modes over speed", fraction),
     )
-    driven = list(dict.fromkeys(one.rotor for one in machine.unbalances if one.moment != 0.0))
+    driven = list(dict.fromkeys(one.rotor for one in machine.loads.unbalances if one.moment != 0.0))
     turning = np.linspace(speeds[0] or speeds[-1] / _UNBALANCE_STEPS, speeds[-1], _UNBALANCE_STEPS)
     unbalance = []
     for rotor in driven:

@@ -211,7 +211,7 @@ def solve_signature(
     housing_frequencies
         Of the housing's modes [Hz], where there is one.
     """
-    histories, drives = solved.histories, [c.name for c in solved.machine.system.contacts if c.drives]
+    histories, drives = solved.histories, [c.name for c in solved.machine.system.contacts if c.loaded]
     interval = float(histories.times[1] - histories.times[0])
     window, limit = solved.record.sampling.window, solved.trusted_limit
     ties = {
@@ -302,10 +302,12 @@ def _sidebands(
     machine, found = solved.machine, []
     length = signal.size * interval
     for mesh, contact in zip(machine.meshes, machine.system.contacts, strict=False):
-        if contact.rate == 0.0 or only not in (None, contact.name):
+        if contact.mesh_frequency == 0.0 or only not in (None, contact.name):
             continue
         carriers = [
-            n * contact.rate for n in range(1, _HARMONICS + 1) if n * contact.rate <= solved.trusted_limit * (1 + 1e-9)
+            n * contact.mesh_frequency
+            for n in range(1, _HARMONICS + 1)
+            if n * contact.mesh_frequency <= solved.trusted_limit * (1 + 1e-9)
         ]
         together: dict[float, list[str]] = {}
         for rotor in (mesh.driver.rotor, mesh.driven.rotor):

@@ -189,11 +189,11 @@ class SolvedSteady:
         for number, contact in enumerate(self.machine.system.contacts if sum_ is not None else ()):
             assert sum_ is not None
             loss, part = float(sum_.contact_loss[number]), float(sum_.neglected_part[number])
-            if contact.drives and loss > 0.0:
+            if contact.loaded and loss > 0.0:
                 text = f"its flanks are apart {100.0 * loss:.2g} % of the time under all excitations together"
-            elif contact.drives and part > _DOUBTFUL:
+            elif contact.loaded and part > _DOUBTFUL:
                 text = f"the sum leaves out {100.0 * part:.2g} % of its varying force"
-            elif not contact.drives and loss < 1.0:
+            elif not contact.loaded and loss < 1.0:
                 text = f"these flanks touch {100.0 * (1.0 - loss):.2g} % of the time under all excitations together"
             else:
                 continue

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from coupling import CoupledMachine, GearMesh, MountedBearing, MountedGear, Torque, assemble_machine
+from coupling import CoupledMachine, GearMesh, MachineLoads, MountedBearing, MountedGear, Torque, assemble_machine
 from coupling.gears import Gear, GearPairGeometry, SquareStiffness, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
 from coupling.machine.components import rotor_component
@@ -51,5 +51,5 @@ def couple_pairs(
         speeds={"input": speed, "output": -speed / ratio},
         bearings=[MountedBearing(bearing, rotor.name, None) for rotor in rotors for bearing in held],
         meshes=meshes,
-        torques=[Torque("input", 0.12, TORQUE), Torque("output", 0.12, TORQUE * ratio)],
+        loads=MachineLoads(torques=[Torque("input", 0.12, TORQUE), Torque("output", 0.12, TORQUE * ratio)]),
     )

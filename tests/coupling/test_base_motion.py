@@ -9,6 +9,7 @@ from coupling import (
     BaseMotion,
     CoupledMachine,
     CouplingError,
+    MachineLoads,
     MountedBearing,
     TransientOutputs,
     TransientSettings,
@@ -73,7 +74,8 @@ def test_thrust_bearings_let_the_shaft_be_shaken_along_its_axis() -> None:
 def machine(bearings: list[Bearing], *, count: int = 6, speed: float = 0.0, **loads: object) -> CoupledMachine:
     mounted = [MountedBearing(bearing, "shaft", None) for bearing in bearings]
     rotor = component(bearings, count)
-    return assemble_machine([rotor], None, speeds={"shaft": speed}, bearings=mounted, **loads)  # type: ignore[arg-type]
+    acting = MachineLoads(**loads)  # type: ignore[arg-type]
+    return assemble_machine([rotor], None, speeds={"shaft": speed}, bearings=mounted, loads=acting)
 
 
 @pytest.mark.parametrize("pedestal", [None, Pedestal(np.diag([4e6, 3e6]), np.zeros((2, 2)), 7.0)])
@@ -105,7 +107,7 @@ def test_one_mass_on_a_shaken_base() -> None:
     base = BaseMotion((BaseHistory(times, values), BaseHarmonic(70.0, amplitude)))
     rotor = rotor_component("shaft", modal_rotor(body, bearings, count=2), start=0.0)
     mounted = [MountedBearing(bearing, "shaft", None) for bearing in bearings]
-    parts = assemble_machine([rotor], None, speeds={"shaft": 0.0}, bearings=mounted, base=base)
+    parts = assemble_machine([rotor], None, speeds={"shaft": 0.0}, bearings=mounted, loads=MachineLoads(base=base))
     row = np.pad(rotor.direction(0.1, 1), (0, parts.system.size - rotor.size))[None, :]
     settings = TransientSettings(0.6, 0.0, 1e-3, 2e-4, tolerance=1e-4)
     result = simulate(parts.system, settings, TransientOutputs(row, row, row))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling import MountedBearing, assemble_machine
+from coupling import MachineLoads, MountedBearing, assemble_machine
 from coupling.machine.components import rotor_component
 from coupling.machine.loads import BowReactions
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor, unbalance_response
@@ -28,7 +28,7 @@ def test_bow_response_is_the_rotors_own(speed: float) -> None:
         None,
         speeds={"shaft": speed},
         bearings=[MountedBearing(bearing, "shaft", None) for bearing in bearings],
-        bows=[BowReactions("shaft", BOW.at, bow_shape(SHAFT, BOW).reactions)],
+        loads=MachineLoads(bows=[BowReactions("shaft", BOW.at, bow_shape(SHAFT, BOW).reactions)]),
     )
     (load,) = parts.system.harmonic_loads
     assert (load.frequency, load.follows) == (speed, "turning")

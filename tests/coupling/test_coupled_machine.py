@@ -12,6 +12,7 @@ from coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     Torque,
@@ -131,8 +132,10 @@ def machine(
         speeds={"input": sense * SPEED, "output": -sense * SPEED / PAIR.ratio},
         bearings=bearings,
         meshes=[mesh],
-        unbalances=unbalances,
-        torques=[Torque("input", 0.0, sense * torque), Torque("output", LENGTH, sense * torque * PAIR.ratio)],
+        loads=MachineLoads(
+            unbalances=unbalances,
+            torques=[Torque("input", 0.0, sense * torque), Torque("output", LENGTH, sense * torque * PAIR.ratio)],
+        ),
     )
 
 
@@ -349,7 +352,7 @@ def test_wrong_names() -> None:
             both_rotors(), rigid_housing({}), speeds=speeds, bearings=[MountedBearing(bearing, "input", "hole")]
         )
     with pytest.raises(CouplingError, match="no rotor is named 'middle'"):
-        assemble_machine(both_rotors(), None, speeds=speeds, torques=[Torque("middle", 0.0, 1.0)])
+        assemble_machine(both_rotors(), None, speeds=speeds, loads=MachineLoads(torques=[Torque("middle", 0.0, 1.0)]))
     with pytest.raises(CouplingError, match="no speed for output"):
         assemble_machine(both_rotors(), None, speeds={"input": 1.0})
     with pytest.raises(CouplingError, match="expected each name once"):
@@ -359,7 +362,7 @@ def test_wrong_names() -> None:
 def test_linear_analyses_stand_on_the_flanks_that_the_torque_presses() -> None:
     """A machine that coasts is linear about its back flanks, under the same force along the mirrored line."""
     reverse = machine(torque=-90.0, backlash=BACKLASH)
-    assert [contact.drives for contact in reverse.system.contacts] == [False, True]
+    assert [contact.loaded for contact in reverse.system.contacts] == [False, True]
     force = 90.0 / PAIR.driver.base_radius
     state = mean_contact(reverse.system)
     np.testing.assert_allclose(state.stiffness, [0.0, MESH_STIFFNESS], rtol=1e-12)

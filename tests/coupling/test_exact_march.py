@@ -69,7 +69,7 @@ def one_mass(contact: ToothContact, rate: float, back: float | None = None, load
     drive = ContactConnector("teeth", np.ones(1), contact, 0.0, rate, np.empty((0, 3)))
     flanks = [drive]
     if back is not None:
-        flanks.append(replace(drive, name="back", direction=-np.ones(1), clearance=back, drives=False))
+        flanks.append(replace(drive, name="back", direction=-np.ones(1), clearance=back, loaded=False))
     force = HarmonicLoad(0.31, np.array([0.5 * load + 0.0j]))
     return CoupledSystem((mass,), (0.0,), contacts=tuple(flanks), load=np.array([load]), harmonic_loads=(force,))
 
@@ -98,7 +98,7 @@ def exponentials(system: CoupledSystem, start: FloatArray, duration: float) -> F
     for begin, end in pairwise(times):
         stiffness, damping, load = system.stiffness.copy(), system.damping.copy(), system.load.copy()
         for contact in system.contacts:
-            pairs = contact.contact.pairs(np.array([contact.phase + contact.rate * 0.5 * (begin + end)]))
+            pairs = contact.contact.pairs(np.array([contact.phase + contact.mesh_frequency * 0.5 * (begin + end)]))
             k = pairs.stiffness[pairs.present].sum()
             stiffness += k * np.outer(contact.direction, contact.direction)
             damping += contact.contact.damping * np.outer(contact.direction, contact.direction)
@@ -201,7 +201,7 @@ def two_masses(errors: Sequence[Sequence[float]] = ()) -> CoupledSystem:
     masses = Component("masses", ("torsion", "torsion"), np.diag([0.2, 0.1]), 0.02 * np.eye(2), zeros)
     direction = np.array([1.0, -1.0])
     drive = tooth(arched(damping=0.05), 0.45, direction, errors)
-    back = replace(drive, name="back", direction=-direction, clearance=0.3, drives=False)
+    back = replace(drive, name="back", direction=-direction, clearance=0.3, loaded=False)
     ripple = HarmonicLoad(0.7, np.array([0.3 + 0.1j, -0.2]))
     return CoupledSystem((masses,), (0.0,), (), (drive, back), 0.5 * direction, (ripple,))
 
@@ -248,7 +248,7 @@ def test_the_error_measure_is_the_error() -> None:
 @settings(max_examples=5, deadline=None)
 def test_goes_on_from_a_checkpoint_bit_for_bit(cut: int, phase: float, rate: float) -> None:
     system = two_masses(((0.2, 0.3, phase),))
-    system = replace(system, contacts=tuple(replace(contact, rate=rate) for contact in system.contacts))
+    system = replace(system, contacts=tuple(replace(contact, mesh_frequency=rate) for contact in system.contacts))
     march = replace(SETTINGS, sample_interval=4e-4, tolerance=1e-6)
     rows = TransientOutputs(np.eye(2)[:1], np.eye(2)[:1], np.eye(2)[:1])
     whole = list(integrate_blocks(system, march, rows))

@@ -8,7 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling import CoupledMachine, CouplingError, GearMesh, MountedBearing, MountedGear, Torque, assemble_machine
+from coupling import (
+    CoupledMachine,
+    CouplingError,
+    GearMesh,
+    MachineLoads,
+    MountedBearing,
+    MountedGear,
+    Torque,
+    assemble_machine,
+)
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
 from coupling.machine.components import rotor_component
 from coupling.machine.loads import AnyTorque, TorqueHistory
@@ -43,7 +52,7 @@ def built(shaft: tuple[ModalRotor, list[Bearing]], **changes: Any) -> CoupledMac
         speeds=dict(zip(("first", "second"), changes.get("speeds", (500.0, -500.0 / pair.ratio)), strict=True)),
         bearings=[MountedBearing(bearing, rotor.name, None) for rotor in rotors for bearing in shaft[1]],
         meshes=[GearMesh(*gears, pair, tooth_contact(pair, ConstantStiffness(1e8)))],
-        torques=changes.get("torques", ()),
+        loads=MachineLoads(torques=changes.get("torques", ())),
     )
 
 
@@ -89,7 +98,7 @@ def test_any_pair_in_mesh_is_taken_and_any_slip_refused(
     a = pair.working_centre_distance
     axis = (a * math.cos(angle), a * math.sin(angle))
     machine = built(shaft, pair=pair, axis=axis, start=shift, speeds=(speed, -speed * teeth[0] / teeth[1]))
-    assert machine.system.contacts[0].rate == pytest.approx(abs(speed) * teeth[0] / (2.0 * math.pi))
+    assert machine.system.contacts[0].mesh_frequency == pytest.approx(abs(speed) * teeth[0] / (2.0 * math.pi))
     with pytest.raises(CouplingError, match="turns at"):
         built(shaft, pair=pair, axis=axis, start=shift, speeds=(speed, -speed * (1.0 + wrong) * teeth[0] / teeth[1]))
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from coupling import GearMesh, MountedBearing, MountedGear, Torque, assemble_machine, static_equilibrium
+from coupling import GearMesh, MachineLoads, MountedBearing, MountedGear, Torque, assemble_machine, static_equilibrium
 from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
 from coupling.machine.components import rotor_component
@@ -48,7 +48,7 @@ def machine(hand: float, sense: int, line: float = 0.6):  # type: ignore[no-unty
         speeds={"one": sense * 100.0, "two": -sense * 100.0 / ratio},
         bearings=bearings,
         meshes=[mesh],
-        torques=[Torque("one", 0.2, sense * TORQUE), Torque("two", 0.2, sense * TORQUE * ratio)],
+        loads=MachineLoads(torques=[Torque("one", 0.2, sense * TORQUE), Torque("two", 0.2, sense * TORQUE * ratio)]),
     )
 
 

@@ -25,7 +25,7 @@ def machine() -> CoupledSystem:
     body = Component("masses", ("torsion", "torsion"), np.diag([0.2, 0.1]), 0.02 * np.eye(2), zeros)
     contact = ToothContact(1.6, piecewise.quadratic(0.8, 1.2, 0.8, 1.6), piecewise.constant(0.0, 1.6), 0.01)
     first = ContactConnector("first", np.array([1.0, -1.0]), contact, 0.0, 0.17, np.zeros((0, 3)))
-    second = replace(first, name="second", rate=0.17 * np.sqrt(2.0))
+    second = replace(first, name="second", mesh_frequency=0.17 * np.sqrt(2.0))
     tie = LinearConnector("tie", np.array([[1.0], [0.5]]), np.array([[0.3]]), np.array([[0.01]]))
     return CoupledSystem(
         (body,),

@@ -126,7 +126,7 @@ def geared(load: float, backlash: float | None = None, relief: float = 0.0) -> C
     contacts = [drive]
     if backlash is not None:
         contacts.append(
-            ContactConnector("back", -drive.direction, law, 0.0, -10.0, drive.errors, backlash, drives=False)
+            ContactConnector("back", -drive.direction, law, 0.0, -10.0, drive.errors, backlash, loaded=False)
         )
     return CoupledSystem(
         (mass("one", kind="torsion"), mass("two", kind="torsion")),

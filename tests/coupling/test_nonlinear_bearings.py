@@ -12,6 +12,7 @@ from coupling import (
     CoupledSystem,
     CouplingError,
     GapLaw,
+    MachineLoads,
     MountedBearing,
     PeriodicError,
     RollingLaw,
@@ -259,7 +260,7 @@ def machine(speed: float = SPEED) -> CoupledMachine:
         None,
         speeds={"shaft": speed},
         bearings=[MountedBearing(bearing, "shaft", None, RollingLaw(state)) for bearing in bearings],
-        gravity=(0.0, -9.81, 0.0),
+        loads=MachineLoads(gravity=(0.0, -9.81, 0.0)),
     )
 
 
@@ -348,3 +349,17 @@ def test_a_gap_s_tangent_is_the_slope_of_its_force() -> None:
     slope = np.column_stack([(force(place + d) - force(place - d)) / (2.0 * step) for d in step * np.eye(2)])
     np.testing.assert_allclose(force(place), load, rtol=1e-12)
     np.testing.assert_allclose(law.tangent(load), slope, rtol=1e-5, atol=1.0)
+
+    energy, push, tangent = law.at(place)
+    # The work of F = 100 N (x / 10 µm)^1.7 on the way beyond the gap.
+    assert energy == pytest.approx(50.0 * beyond / 2.7, rel=1e-12)
+    np.testing.assert_allclose(push, load, rtol=1e-12)
+    np.testing.assert_allclose(tangent, law.tangent(load), rtol=1e-10)
+
+
+def test_a_linear_spring_without_a_gap_holds_its_centre() -> None:
+    energy, push, tangent = GapLaw(100.0, 1e-5).at(np.zeros(2))
+    assert energy == 0.0
+    np.testing.assert_array_equal(push, 0.0)
+    np.testing.assert_allclose(tangent, 1e7 * np.eye(2), rtol=1e-15)
+    np.testing.assert_array_equal(GapLaw(100.0, 1e-5, 1.0, 2e-5).at([1e-5, 0.0])[2], 0.0)

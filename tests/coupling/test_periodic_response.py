@@ -16,6 +16,7 @@ from coupling import (
     CoupledSystem,
     CouplingError,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     Torque,
@@ -306,8 +307,10 @@ def geared(torque: float, *, unbalance: float = 0.0, backlash: float | None = No
         speeds={"input": 300.0, "output": -300.0 / PAIR.ratio},
         bearings=bearings,
         meshes=[GearMesh(gears[0], gears[1], PAIR, contact, backlash)],
-        unbalances=[Unbalance("input", 0.2, unbalance, 0.4)],
-        torques=[Torque("input", 0.0, torque), Torque("output", 0.3, torque * PAIR.ratio)],
+        loads=MachineLoads(
+            unbalances=[Unbalance("input", 0.2, unbalance, 0.4)],
+            torques=[Torque("input", 0.0, torque), Torque("output", 0.3, torque * PAIR.ratio)],
+        ),
     )
 
 

@@ -10,6 +10,7 @@ from coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     SpeedProfile,
@@ -60,7 +61,7 @@ def machine(speed: float, *, ends: tuple[float, float] = (0.0, LENGTH), **loads:
         speeds={"input": speed, "output": -speed * RATIO},
         bearings=mounted,
         meshes=[GearMesh(*gears, PAIR, contact)],
-        **loads,  # type: ignore[arg-type]
+        loads=MachineLoads(**loads),  # type: ignore[arg-type]
     )
 
 
@@ -122,7 +123,7 @@ def on_tables(speed: float, rates: tuple[float, float]) -> CoupledMachine:
     modal = modal_rotor(shaft, [one.at_speed(speed) for one in bearings], count=2)
     rotor = rotor_component("input", modal, start=0.0)
     mounted = [MountedBearing(one, "input", None) for one in bearings]
-    return assemble_machine([rotor], None, speeds={"input": speed}, bearings=mounted, rates=rates)
+    return assemble_machine([rotor], None, speeds={"input": speed}, bearings=mounted, speed_range=rates)
 
 
 @pytest.mark.parametrize("rate", [0.25, 0.4, 0.75, 1.1, 2.0])
@@ -141,6 +142,20 @@ def test_steady_bearings_keep_one_law() -> None:
     assert all(connector.over_speed is None for connector in on_tables(200.0, (1.0, 1.0)).system.linear)
     with pytest.raises(RotorError, match="a speed in its table"):
         on_tables(200.0, (0.1, 1.0))
+
+
+@pytest.mark.parametrize("speed", [250.0, 100.0, -160.0, 300.0])
+def test_a_machine_at_another_speed_runs_between_the_same_speeds(speed: float) -> None:
+    """From 100 to 260 rad/s, and at the speed itself where that is none of these."""
+    system = on_tables(200.0, (0.5, 1.3)).at_speed(speed).system
+    for absolute in (100.0, 130.0, 150.0, 200.0, 260.0, abs(speed)):
+        law = Bearing("one", 0.0, BY_SPEED, 1e-4 * BY_SPEED, TABLE).at_speed(absolute)
+        for connector in system.linear:
+            assert connector.over_speed is not None
+            stiffness, damping = connector.over_speed.at(absolute / abs(speed))
+            np.testing.assert_allclose(stiffness, law.stiffness, rtol=1e-3)
+            np.testing.assert_allclose(damping, law.damping, rtol=1e-3)
+    assert all(part.over_speed is None for part in on_tables(200.0, (1.0, 1.0)).at_speed(speed).system.linear)
 
 
 def test_bearing_forces_over_speed() -> None:
@@ -172,7 +187,9 @@ def test_torques_over_time_and_by_order() -> None:
         [rotor],
         None,
         speeds={"input": speed},
-        torques=[TorqueHistory("input", 0.0, times, values), TorqueRipple("input", 0.0, 3.0, 0.4, order=2.0)],
+        loads=MachineLoads(
+            torques=[TorqueHistory("input", 0.0, times, values), TorqueRipple("input", 0.0, 3.0, 0.4, order=2.0)]
+        ),
     )
     row = parts.rotors[0].rotation(0.0)[None, :]
     settings = TransientSettings(0.4, 0.0, 1e-4, 2e-5, tolerance=1e-4)
@@ -188,13 +205,28 @@ def test_a_slope_of_torque_resists() -> None:
     shaft = SHAFTS["input"]
     rotor = rotor_component("input", modal_rotor(shaft, [], count=1), start=0.0)
     slope = TorqueSlope("motor", "input", 0.0, np.array([0.0, 1.0]), np.array([-0.2, -0.2]))
-    parts = assemble_machine([rotor], None, speeds={"input": 100.0}, torques=[slope])
+    parts = assemble_machine([rotor], None, speeds={"input": 100.0}, loads=MachineLoads(torques=[slope]))
     row = parts.rotors[0].rotation(0.0)[None, :]
     settings = TransientSettings(0.1, 0.0, 1e-3, 1e-4, tolerance=1e-4)
     start = np.zeros(parts.system.size), 3.0 * parts.rotors[0].turning
     result = simulate(parts.system, settings, TransientOutputs(row, row, row), initial=start)
     expected = 3.0 * np.exp(-0.2 * result.times / shaft.polar_inertia)
     np.testing.assert_allclose(result.velocity[:, 0], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("speed", [50.0, 80.0, -120.0, 150.0, 0.0])
+def test_the_slope_of_a_torque_is_that_of_the_speed(speed: float) -> None:
+    """A motor of dT/dω = -0.1 N m s below 60 rad/s, falling to -0.4 at 120: in a machine set to another speed too."""
+    rotor = rotor_component("input", modal_rotor(SHAFTS["input"], [], count=1), start=0.0)
+    slope = TorqueSlope("motor", "input", 0.0, np.array([0.6, 1.2]), np.array([-0.1, -0.4]))
+    parts = assemble_machine([rotor], None, speeds={"input": 100.0}, loads=MachineLoads(torques=[slope]))
+    system = parts.at_speed(speed).system
+    expected = np.interp(abs(speed), [60.0, 120.0], [0.1, 0.4])
+    assert system.linear[0].damping[0, 0] == pytest.approx(expected, rel=1e-12)
+    if speed:
+        damping = system.connector_matrices(90.0 / abs(speed))[1]
+        row = system.linear[0].directions[:, 0]
+        np.testing.assert_allclose(damping, 0.25 * np.outer(row, row), atol=1e-12 * np.abs(row).max() ** 2)
 
 
 @pytest.mark.parametrize("phase", [0.0, -1.2])

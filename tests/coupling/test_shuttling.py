@@ -9,7 +9,7 @@ from helical_pairs import couple_pairs, helical
 from coupling import static_equilibrium
 from coupling.gears import SquareStiffness, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
-from coupling.machine.thrust import load_arms
+from coupling.machine.load_shuttling import load_arms
 
 FORCE = 4000.0
 
@@ -47,7 +47,7 @@ def test_bearings_bear_the_moment_of_the_load_where_it_acts(hand: float) -> None
     system, (mesh,) = machine.system, machine.meshes
     (contact,) = system.contacts
     missed, moved = [], []
-    for time in np.arange(16) / 16.0 / abs(contact.rate):
+    for time in np.arange(16) / 16.0 / abs(contact.mesh_frequency):
         moments = [(one.amplitude * np.exp(1j * one.frequency * time)).real for one in system.harmonic_loads]
         q = static_equilibrium(replace(system, load=system.load + sum(moments), harmonic_loads=()), float(time))
         # Of the shaft on its bearings, about the middle of the gear.
@@ -59,7 +59,7 @@ def test_bearings_bear_the_moment_of_the_load_where_it_acts(hand: float) -> None
                 force += push[:3]
                 moment += np.cross([0.0, 0.0, mounted.bearing.at - mesh.driven.at], push[:3])
         size = float(np.linalg.norm(force[:2]))
-        phase = float(contact.phase + contact.rate * time)
+        phase = float(contact.phase + contact.mesh_frequency * time)
         z, xi = load_arms(contact.contact, mesh.geometry, size, [phase])[0]
         along = force[:2] / size
         # The driver sits on the driven gear's -x side.

@@ -10,8 +10,9 @@ from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.stiffness.hertz import line_contact
 from coupling.gears.stiffness.iso6336 import iso6336_stiffness
 from coupling.machine.components import HousingComponent, rotor_component
-from coupling.machine.loads import BaseHistory, _rates, participations
-from coupling.machine.thrust import ThrustPair, axial_forces, load_arms, shuttling_loads
+from coupling.machine.load_shuttling import load_arms, shuttling_loads
+from coupling.machine.loads import BaseHistory, _velocities, participations
+from coupling.machine.thrust import ThrustPair, axial_forces
 from coupling.signals.spectrum import averaged_spectrum
 from rotors import Rotor, Segment, ShaftMaterial, modal_rotor
 
@@ -69,7 +70,8 @@ def test_shuttling_goes_through_the_mesh_period_with_the_rotation(rate: float, m
         return 1e-4 * (0.7 + np.cos(turned - 0.4) + 0.5 * np.cos(2.0 * turned + 1.1))
 
     monkeypatch.setattr(
-        "coupling.machine.thrust.load_arms", lambda *given: np.column_stack([arm(given[3]), np.zeros(len(given[3]))])
+        "coupling.machine.load_shuttling.load_arms",
+        lambda *given: np.column_stack([arm(given[3]), np.zeros(len(given[3]))]),
     )
     assert callable(load_arms)
     contact: Any = SimpleNamespace(faces=SimpleNamespace(face_width=0.02))
@@ -102,8 +104,8 @@ def test_a_base_that_turns_about_z_holds_the_shaft_back_by_its_inertia() -> None
 def test_the_rate_of_a_base_is_the_integral_of_its_acceleration() -> None:
     values = np.zeros((2, 6))
     values[1, 3] = 2.0
-    times, rates = _rates(BaseHistory(np.array([0.0, 1.0]), values))
-    np.testing.assert_allclose(rates[:, 3], times**2, atol=1e-12)
+    times, velocities = _velocities(BaseHistory(np.array([0.0, 1.0]), values))
+    np.testing.assert_allclose(velocities[:, 3], times**2, atol=1e-12)
 
 
 def test_the_mean_of_averaged_stretches_is_the_mean_of_their_means() -> None:

@@ -98,7 +98,7 @@ def test_rigid_motion_of_rotor_and_seat_together_strains_no_bearing() -> None:
     # Coordinates of rigid motions of the shaft, by its own displacement and slope, x = 1 and x = z.
     lateral = reduced.lateral
     places = np.linspace(0.0, 1.0, 9)
-    displacement = component.mixture.T @ lateral.evaluate(places)[0]
+    displacement = component.plane_basis.T @ lateral.evaluate(places)[0]
     for shift, tilt in ((1.0, 0.0), (0.0, 1.0), (0.4, -2.0)):
         target = shift + tilt * (component.start + places)
         q = np.linalg.lstsq(displacement.T, target, rcond=None)[0]

@@ -34,8 +34,8 @@ def contacts(phase: float, turned: float) -> Contacts:
     no, number = np.zeros((1, 0)), np.zeros(1, dtype=np.int64)
     return Contacts(
         direction=no, law=LAW, law_at=number + AT, shares_at=number - 1, phase=np.array([phase]),
-        rate=np.array([turned / LENGTH]), errors=np.zeros((1, 0, 3)), clearance=np.zeros(1), friction_row=number - 1,
-        friction=np.zeros((1, 3)), sliding=np.zeros((1, 2)),
+        mesh_frequency=np.array([turned / LENGTH]), errors=np.zeros((1, 0, 3)), clearance=np.zeros(1),
+        friction_row=number - 1, friction=np.zeros((1, 3)), sliding=np.zeros((1, 2)),
     )  # fmt: skip
 
 

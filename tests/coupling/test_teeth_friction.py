@@ -16,6 +16,7 @@ from coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     PeriodicError,
@@ -80,7 +81,9 @@ def machine(friction: float, *, sense: int = 1, psi: float = 0.4, backlash: floa
         speeds={"input": sense * SPEED, "output": -sense * SPEED / PAIR.ratio},
         bearings=bearings,
         meshes=[GearMesh(gears[0], gears[1], PAIR, CONTACT, backlash, friction)],
-        torques=[Torque("input", 0.0, sense * TORQUE), Torque("output", 0.2, sense * TORQUE * PAIR.ratio)],
+        loads=MachineLoads(
+            torques=[Torque("input", 0.0, sense * TORQUE), Torque("output", 0.2, sense * TORQUE * PAIR.ratio)]
+        ),
     )
 
 
@@ -95,7 +98,7 @@ def test_forces_and_moments_are_those_of_the_flanks(sense: int, phase: float) ->
     """On each shaft the normal force along the line of action, ±Q across it and the moments of the static analysis."""
     parts = machine(COEFFICIENT, sense=sense)
     system, (contact,) = parts.system, parts.system.contacts
-    time = (phase - contact.phase) / contact.rate
+    time = (phase - contact.phase) / contact.mesh_frequency
     q = static_equilibrium(system, time)
     found = force_of(contact, system, q)
     compression = float(contact.direction @ q)
@@ -279,7 +282,7 @@ def test_steps_are_of_second_order_through_the_pitch_points(damping: float) -> N
 
 
 def settled(parts: CoupledMachine, periods: int = 12) -> TransientResult:
-    period = 1.0 / parts.system.contacts[0].rate
+    period = 1.0 / parts.system.contacts[0].mesh_frequency
     chosen = TransientSettings(periods * period, 0.0, period / 64, period / 16, tolerance=1e-3)
     return simulate(parts.system, chosen, transient_outputs(parts))
 

@@ -5,7 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling import CoupledMachine, CouplingError, MountedBearing, Torque, assemble_machine, coupled_modes
+from coupling import (
+    CoupledMachine,
+    CouplingError,
+    MachineLoads,
+    MountedBearing,
+    Torque,
+    assemble_machine,
+    coupled_modes,
+)
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
 from coupling.signals import housing_paths, line_names, mode_parts
@@ -52,7 +60,7 @@ def on_housing(machine: CoupledMachine, seed: int = 2) -> CoupledMachine:
             for mounted, seat in zip(machine.bearings, seats, strict=True)
         ],
         meshes=machine.meshes,
-        torques=[Torque(torque.rotor, torque.at, torque.value) for torque in machine.torques],
+        loads=MachineLoads(torques=[Torque(torque.rotor, torque.at, torque.value) for torque in machine.loads.torques]),
     )
 
 

@@ -11,6 +11,7 @@ from coupling import (
     CoupledSystem,
     CouplingError,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     Unbalance,
@@ -81,7 +82,7 @@ def geared(speed: float, *, housing: bool = True, cross: float = 0.0) -> Coupled
         speeds={"fast": speed, "slow": -0.4 * speed},
         bearings=bearings,
         meshes=[mesh],
-        unbalances=[Unbalance("fast", 0.1, 3e-4, 0.7)],
+        loads=MachineLoads(unbalances=[Unbalance("fast", 0.1, 3e-4, 0.7)]),
     )
 
 

@@ -120,7 +120,7 @@ def rhs(turning: SpeedProfile, tooth: tuple[float, float, float] | None = None):
         q, v = state[:2], state[2:]
         turned, rate, swing = (float(part[0]) for part in turning.at(time))
         part = [
-            np.array([[np.interp(rate, TABLE.rates, m[:, i, j]) for j in range(2)] for i in range(2)])
+            np.array([[np.interp(rate, TABLE.speed_ratios, m[:, i, j]) for j in range(2)] for i in range(2)])
             for m in (TABLE.stiffness, TABLE.damping)
         ]
         force = np.array([0.5, 0.0]) + np.array([0.0, 1.0]) * np.interp(time, TORQUE.times, TORQUE.values)

@@ -6,6 +6,7 @@ import pytest
 
 from coupling import (
     CoupledMachine,
+    MachineLoads,
     MountedBearing,
     TransientError,
     TransientOutputs,
@@ -55,7 +56,9 @@ def machine(
         lateral = add_attachment_modes(lateral, forces_at=[0.0, LENGTH], moments_at=DISCS_AT)
     rotor = rotor_component("shaft", ModalRotor(lateral, solve_torsional_modes(SHAFT, count=1)), start=0.0)
     mounted = [] if free else [MountedBearing(bearing, "shaft", None) for bearing in bearings]
-    return assemble_machine([rotor], None, speeds={"shaft": speed}, bearings=mounted, unbalances=[UNBALANCE])
+    return assemble_machine(
+        [rotor], None, speeds={"shaft": speed}, bearings=mounted, loads=MachineLoads(unbalances=[UNBALANCE])
+    )
 
 
 def disc_rows(parts: CoupledMachine) -> FloatArray:

@@ -17,7 +17,7 @@ PITCH_ERROR = 4e-6
 """Of one tooth of gear c [m]."""
 SHAPES = {
     "mesh_stiffness": (("gear_pair", "mesh_phase"), "N/m"),
-    "loaded_mesh_stiffness": (("gear_pair", "mesh_phase"), "N/m"),
+    "loaded_flank_stiffness": (("gear_pair", "mesh_phase"), "N/m"),
     "transmission_error": (("gear_pair", "mesh_phase"), "m"),
     "unloaded_transmission_error": (("gear_pair", "mesh_phase"), "m"),
     "transmission_error_harmonic": (("gear_pair", "harmonic"), "m"),
@@ -95,7 +95,7 @@ def test_curves_are_what_their_names_say(written: Written) -> None:
             row[name].values
             for name in (
                 "mesh_stiffness",
-                "loaded_mesh_stiffness",
+                "loaded_flank_stiffness",
                 "transmission_error",
                 "unloaded_transmission_error",
             )

@@ -44,7 +44,7 @@ def test_an_idler_turns_back_and_passes_the_torque_on() -> None:
     assert rpm == pytest.approx({"a": 600.0, "b": -400.0, "c": 300.0})
     assert mesh_frequencies(case) == pytest.approx((200.0, 200.0))
     # the output, turning forwards, is held back by 30 N m * 40 / 20
-    assert [(t.shaft, t.torque) for t in applied_torques(case)] == [("a", 30.0), ("c", pytest.approx(-60.0))]
+    assert [(t.rotor, t.value) for t in applied_torques(case)] == [("a", 30.0), ("c", pytest.approx(-60.0))]
     # the idler receives 30 N m * 30 / 20 and passes all of it on
     assert pair_torques(case) == pytest.approx((30.0, 45.0))
 
@@ -55,7 +55,7 @@ def test_two_outputs_share_the_power_equally() -> None:
     case = gears(teeth, [("one", "two"), ("one", "three")], speed="1500 rpm", torque="2.25 kN*m")
     assert mesh_frequencies(case) == pytest.approx((900.0, 900.0))
     assert pair_torques(case) == pytest.approx((1125.0, 1125.0))
-    assert [t.torque for t in applied_torques(case)] == pytest.approx([2250.0, 1125.0, 1125.0])
+    assert [t.value for t in applied_torques(case)] == pytest.approx([2250.0, 1125.0, 1125.0])
 
 
 def test_given_outputs_split_the_torque() -> None:
@@ -67,13 +67,13 @@ def test_given_outputs_split_the_torque() -> None:
 
 def test_outputs_within_one_per_cent_are_scaled_to_balance() -> None:
     case = gears({"a": 20, "b": 20}, [("a", "b")], output=[{"rotor": "b", "torque": "29.8 N*m"}])
-    assert [t.torque for t in applied_torques(case)] == [30.0, 30.0]
+    assert [t.value for t in applied_torques(case)] == [30.0, 30.0]
 
 
 def test_turning_the_other_way_turns_every_sign() -> None:
     forwards = gears({"a": 20, "b": 30}, [("a", "b")])
     backwards = gears({"a": 20, "b": 30}, [("a", "b")], speed="-600 rpm")
-    assert [t.torque for t in applied_torques(backwards)] == [-t.torque for t in applied_torques(forwards)]
+    assert [t.value for t in applied_torques(backwards)] == [-t.value for t in applied_torques(forwards)]
     assert pair_torques(backwards) == pair_torques(forwards)
     assert mesh_frequencies(backwards) == mesh_frequencies(forwards)
 
@@ -92,7 +92,7 @@ def test_power_in_is_power_out_along_any_chain(teeth: list[int], torque: float, 
     chain = list(itertools.pairwise(names))
     case = gears(dict(zip(names, teeth, strict=True)), chain, torque=torque, speed=speed)
     speeds = rotor_speeds(case)
-    power = [applied.torque * speeds[applied.shaft] for applied in applied_torques(case)]
+    power = [applied.value * speeds[applied.rotor] for applied in applied_torques(case)]
     assert power[0] == pytest.approx(torque * speed)
     assert sum(power) == pytest.approx(0.0, abs=1e-9 * torque * speed)
     through = [t * abs(speeds[driver]) for t, (driver, _) in zip(pair_torques(case), chain, strict=True)]
@@ -108,7 +108,7 @@ def test_without_gears_every_rotor_has_the_speed_of_the_operation() -> None:
 
 
 def test_stations_of_torques_are_the_ends_unless_given() -> None:
-    ends = [(t.shaft, t.at) for t in applied_torques(load_case("spur-pair").case)]
+    ends = [(t.rotor, t.at) for t in applied_torques(load_case("spur-pair").case)]
     assert ends == [("input", 0.0), ("output", pytest.approx(0.2))]
     given_places = load_case("spur-pair", ["operation.at=30 mm"]).case
     assert applied_torques(given_places)[0].at == 0.03

@@ -81,10 +81,10 @@ def test_gravity_and_the_base_act_on_the_shafts() -> None:
     }
     gravity = ["1 m/s^2", "-9 m/s^2", "0 m/s^2"]
     machine = machine_of(lambda document: document["operation"].update(base=base, gravity=gravity))
-    assert machine.gravity == (1.0, -9.0, 0.0)
-    assert machine.base is not None
-    assert machine.base.point == pytest.approx((0.03, -0.02, 0.05))
-    (harmonic,) = machine.base.parts
+    assert machine.loads.gravity == (1.0, -9.0, 0.0)
+    assert machine.loads.base is not None
+    assert machine.loads.base.point == pytest.approx((0.03, -0.02, 0.05))
+    (harmonic,) = machine.loads.base.parts
     assert isinstance(harmonic, BaseHarmonic)
     assert harmonic.frequency == pytest.approx(80.0 * pi)
     turned = np.exp(1j * radians(35.0))
@@ -109,14 +109,14 @@ def test_torques_swing_where_and_when_the_case_says() -> None:
         ratio = 47 / 23 * 50 / 21
         document["operation"]["torque"] = f"{209 / ratio} N*m"
 
-    ripples = [torque for torque in machine_of(change).torques if isinstance(torque, TorqueRipple)]
+    ripples = [torque for torque in machine_of(change).loads.torques if isinstance(torque, TorqueRipple)]
     (entering,) = (one for one in ripples if one.rotor == "input")
     (leaving,) = (one for one in ripples if one.rotor == "output")
     assert (entering.amplitude, entering.phase, entering.order) == (3.0, pytest.approx(radians(25.0)), None)
     assert entering.frequency == pytest.approx(120.0 * pi)
     # In the sense of its torque, which holds the output back.
     assert (leaving.amplitude, leaving.phase, leaving.order) == (-7.0, pytest.approx(radians(-15.0)), 2.0)
-    constant = {torque.rotor: torque.value for torque in machine_of(change).torques if isinstance(torque, Torque)}
+    constant = {torque.rotor: torque.value for torque in machine_of(change).loads.torques if isinstance(torque, Torque)}
     assert constant["input"] > 0.0 > constant["output"]
 
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 import pytest
 
 import gearwhine as gw
-from coupling import assemble_machine
+from coupling import MachineLoads, assemble_machine
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.loaded.transmission_error import loaded_transmission_error, mesh_period_phases, period_mean
 from coupling.linear import mesh_harmonics
@@ -220,7 +220,7 @@ def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
             speeds=given.speeds,
             bearings=given.bearings,
             meshes=[changed],
-            torques=given.torques,
+            loads=MachineLoads(torques=given.loads.torques),
         )
         there = replace(model, machine=machine)
         np.testing.assert_allclose(there.contact.stiffness, model.contact.stiffness, rtol=1e-9)
@@ -293,7 +293,7 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
             speeds=given.speeds,
             bearings=[changed, *given.bearings[1:]],
             meshes=given.meshes,
-            torques=given.torques,
+            loads=MachineLoads(torques=given.loads.torques),
         )
         return np.array([one.value for one in chosen(replace(model, machine=machine).lines(LIMIT, 9))])
 

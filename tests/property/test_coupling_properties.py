@@ -58,7 +58,7 @@ def contacts(draw: st.DrawFn, size: int, rng: np.random.Generator, lossless: boo
             ratio, piecewise.quadratic(ends, middle, ends, ratio), gap, 0.0 if lossless else draw(st.floats(0.0, 0.1))
         ),
         phase=draw(st.floats(0.0, 1.0)),
-        rate=draw(st.sampled_from([0.21, 0.1, -0.15])),
+        mesh_frequency=draw(st.sampled_from([0.21, 0.1, -0.15])),
         errors=harmonics,
     )
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from coupling import (
     CoupledMachine,
     GearMesh,
+    MachineLoads,
     MountedBearing,
     MountedGear,
     Torque,
@@ -103,8 +104,10 @@ def machine(seed: int, sense: int, psi: float, *, turned: float = 0.0, unbalance
         speeds={"input": sense * SPEED, "output": -sense * SPEED / geometry.ratio},
         bearings=bearings,
         meshes=[GearMesh(*gears, geometry, tooth_contact(geometry, PotentialEnergyStiffness(), 300.0), 4e-5)],
-        unbalances=masses if unbalanced else (),
-        torques=[Torque("input", 0.0, sense * TORQUE), Torque("output", LENGTH, sense * TORQUE * geometry.ratio)],
+        loads=MachineLoads(
+            unbalances=masses if unbalanced else (),
+            torques=[Torque("input", 0.0, sense * TORQUE), Torque("output", LENGTH, sense * TORQUE * geometry.ratio)],
+        ),
     )
 
 

@@ -56,6 +56,11 @@ def mesh_frequency(speed: float, teeth: int) -> float:
     return abs(speed) * teeth / (2.0 * math.pi)
 
 
+def pair_label(driver: str, driven: str) -> str:
+    """Name of a gear pair in messages, by the names of its gears."""
+    return f"gear pair {driver!r} -> {driven!r}"
+
+
 @dataclass(frozen=True)
 class GearPairGeometry:
     """A driver and a driven gear on parallel shafts.
@@ -93,7 +98,7 @@ class GearPairGeometry:
     @property
     def label(self) -> str:
         """Name of the pair in messages."""
-        return f"gear pair {self.driver.name!r} -> {self.driven.name!r}"
+        return pair_label(self.driver.name, self.driven.name)
 
     @property
     def ratio(self) -> float:
@@ -415,8 +420,8 @@ def backlash_free_pressure_angle(driver: Gear, driven: Gear, *, thinned: bool = 
     value = involute(transverse) + 2.0 * math.tan(normal) * shift / (driver.teeth + driven.teeth)
     if value < 0.0:
         raise InterferenceError(
-            f"gear pair {driver.name!r} -> {driven.name!r}: with profile shifts that sum to {shift:.4g} the teeth do "
-            "not close at any distance"
+            f"{pair_label(driver.name, driven.name)}: with profile shifts that sum to {shift:.4g} the teeth do not "
+            "close at any distance"
         )
     return inverse_involute(value)
 
@@ -445,7 +450,7 @@ def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> flo
     require_finite("centre_distance", centre_distance)
     if centre_distance <= base:
         raise InterferenceError(
-            f"gear pair {driver.name!r} -> {driven.name!r}: the centre distance must exceed the sum of the base radii, "
+            f"{pair_label(driver.name, driven.name)}: the centre distance must exceed the sum of the base radii, "
             f"{base * 1e3:.6g} mm, got {centre_distance * 1e3:.6g} mm"
         )
     opening = involute(math.acos(base / centre_distance)) - involute(driver.transverse_pressure_angle)

@@ -16,7 +16,7 @@ from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
 from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency, turning_sense
+from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency, pair_label, turning_sense
 from coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, loaded_transmission_error
 from coupling.gears.stiffness.crack import ToothCrack
 from coupling.gears.stiffness.models import (
@@ -114,6 +114,11 @@ class GearPair:
     misalignment: float | None = 0.0
     corner_contact: bool | None = None
     face_gap: tuple[float, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Name of the pair in messages."""
+        return pair_label(self.driver, self.driven)
 
     @property
     def has_corner_contact(self) -> bool:

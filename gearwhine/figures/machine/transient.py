@@ -500,7 +500,9 @@ def draw_transient(
     if solved.force_spectra:
         yield "mesh-force", _mesh_force(case, solved, meshes)
     carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
-    if rates := {contact.name: abs(contact.rate) for contact in carrying if contact.drives and contact.rate}:
+    if rates := {
+        contact.name: abs(contact.mesh_frequency) for contact in carrying if contact.loaded and contact.mesh_frequency
+    }:
         yield (
             "friction",
             draw_friction(

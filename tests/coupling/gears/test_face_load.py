@@ -22,7 +22,7 @@ from coupling.gears import (
 )
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.face_load import FaceContact, lagrange
-from coupling.machine.thrust import load_arms
+from coupling.machine.load_shuttling import load_arms
 from coupling.statics.static_model import face_stations
 
 FloatArray = npt.NDArray[np.float64]
