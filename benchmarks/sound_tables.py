@@ -10,9 +10,11 @@ millimetre, and solve mesh, modes, operating point, lines and sound anew.
 
 import tempfile
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 from timing import arguments, machine, timed
@@ -20,7 +22,7 @@ from timing import arguments, machine, timed
 import gearwhine as gw
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.solve import housing_modes
-from gearwhine.solve.load_sensitivity import face_changes
+from gearwhine.solve.housing_changes import face_changes
 from meshes import Mesh
 
 RIG = "nasa-gear-noise-rig"
@@ -34,7 +36,6 @@ REFINED: dict[str, tuple[dict[str, object], tuple[str, str]]] = {
     "two-stage-reducer, finer": ({"acoustics.highest_frequency": "2 kHz"}, ("27 mm", "21 mm")),
 }
 """Changes of a case, and two edges of triangles."""
-SPEEDS = "operation.speed=1500:5500:8 rpm"
 SWEPT = {"acoustics.mesh_size": "30 mm"}
 REDUCER = {"acoustics.mesh_size": "26 mm"}
 FACE = "+z at 11, 165, -72 mm"
@@ -95,27 +96,30 @@ def refinement() -> None:
 
 def peaks() -> None:
     """Peaks that a sweep passes by, as told and as found by one that has their speeds."""
-    study = gw.load(RIG, SWEPT)
     with tempfile.TemporaryDirectory() as folder:
-        told = study.sweep([SPEEDS], folder=Path(folder) / "first").document
-        points, missed = told["points"], told["missed_peaks"]
-        added = [float(one["speed_rpm"]) for one in missed]
-        over = ",".join(f"{one:.0f}" for one in added)
-        found = study.sweep([f"operation.speed={over} rpm"], folder=Path(folder) / "second").document["points"]
-    print(f"\n{len(points)} speeds\n{missed[0]}\n{found[0]['sound']}")
-    for peak, point in zip(missed, found, strict=True):
-        print(peak, point["values"], point["sound"].get("loudest"), flush=True)
+        told = swept(np.linspace(1500.0, 5500.0, 8).tolist(), Path(folder) / "first")
+        levels = {point["settings"]["sweep.speed"]: point["sound"]["total_db"] for point in told["points"]}
+        print(f"\n{levels}\n| speed | line | estimate | found, loudest line | all lines | rise over the louder point |")
+        found = swept(told["speeds_to_add_rpm"], Path(folder) / "second")["points"]
+    for peak, point in zip(sorted(told["missed_peaks"], key=lambda one: one["speed_rpm"]), found, strict=True):
+        loudest = point["sound"]["loudest"]
+        heard = f"{loudest['line']} {loudest['sound_power_db']:.1f} | {point['sound']['total_db']:.1f}"
+        print(
+            f"| {peak['speed_rpm']:.0f} | {peak['line']} | {peak['level_db']:.1f} | {heard} | {peak['rise_db']:.1f} |"
+        )
+
+
+def swept(speeds: list[float], folder: Path) -> dict[str, Any]:
+    """Document of the rig's sweep over speeds [rpm]."""
+    texts = [f"{speed:g} rpm" for speed in sorted(speeds)]
+    return gw.load(RIG, SWEPT | {"sweep.speed": texts}).sweep(folder=folder).document
 
 
 def line_levels(study: gw.Study, mesh: Mesh | None = None) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """Document of the operating point with its sensitivity, and its loudest lines; on a mesh where one is given."""
-    kept = housing_modes.build_mesh
-    if mesh is not None:
-        housing_modes.build_mesh = lambda *_: mesh
-    try:
+    given = nullcontext() if mesh is None else mock.patch.object(housing_modes, "build_mesh", return_value=mesh)
+    with given:
         document = study.operating_point(sensitivity=True).document
-    finally:
-        housing_modes.build_mesh = kept
     return document, document["loudest_lines"]
 
 
@@ -151,8 +155,8 @@ def face() -> None:
     before, lines = line_levels(study)
     (row,) = [one for one in before["sensitivity"] if one["parameter"] == FACE]
     mesh = build_mesh(study.case)
-    changes = face_changes(study.case, mesh)
-    velocity = changes.rates[changes.names.index(FACE)].velocity
+    (velocity,) = [one.rate.velocity for one in face_changes(study.case, mesh) if one.parameter == FACE]
+    assert velocity is not None
     moved = replace(mesh, points=mesh.points + 1e-3 * velocity)
     _, after = line_levels(gw.load("two-stage-reducer", REDUCER), moved)
     print(f"\n{FACE}", flush=True)
