@@ -23,7 +23,7 @@ from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing.acoustics.modal_radiation import ModalRadiation
 
-COARSE = {"acoustics.mesh_size": "26 mm", "acoustics.highest_frequency": "3 kHz", "acoustics.lines": 8}
+COARSE = {"acoustics.mesh_size": "30 mm", "acoustics.highest_frequency": "3 kHz", "acoustics.lines": 8}
 
 
 @pytest.fixture(scope="module")

@@ -237,9 +237,9 @@ def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
     (before,) = result["loudest_lines"]
     (row,) = [row for row in result["sensitivity"] if row["parameter"] == "back wall"]
     for key, thickness in (("level_db", "11 mm"), ("reverse_level_db", "9 mm")):
-        other = gw.load("small-gearbox", changes | {"housing.box.wall.back": thickness})
-        (after,) = other.operating_point(sensitivity=True).document["loudest_lines"]
-        found = after["sound_power_db"] - before["sound_power_db"]
+        other = gw.load("small-gearbox", changes | {"housing.box.wall.back": thickness}).case
+        (after,) = sound_lines(solve(other, build_mesh(other)))
+        found = 10.0 * np.log10(after.line.value / 1e-12) - before["sound_power_db"]
         assert row["sound"][0][key] == pytest.approx(found, abs=0.8)
         assert abs(found) > 3.0
 
