@@ -158,8 +158,13 @@ SOUNDING = {
 }
 
 
-def test_the_document_ranks_by_the_sound() -> None:
-    study = gw.load("small-gearbox", SOUNDING)
+@pytest.fixture(scope="module")
+def study() -> gw.Study:
+    """The gearbox with a quick sound, whose housing is solved once."""
+    return gw.load("small-gearbox", SOUNDING)
+
+
+def test_the_document_ranks_by_the_sound(study: gw.Study) -> None:
     result = study.operating_point(sensitivity=True)
     loudest = result.document["loudest_lines"]
     assert [one["excitation"] for one in loudest] == ["2× pinion -> wheel", "1× pinion -> wheel"]
@@ -244,8 +249,7 @@ def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
         assert abs(found) > 3.0
 
 
-def test_a_line_of_the_sound_is_chosen() -> None:
-    study = gw.load("small-gearbox", SOUNDING)
+def test_a_line_of_the_sound_is_chosen(study: gw.Study) -> None:
     result = study.operating_point(line="sound@5133")
     assert [one["ranked"] for one in result.document["loudest_lines"]] == [True, False]
     (section,) = sections(result.document)
