@@ -242,10 +242,13 @@ def fits_circle(
     arms = across(mesh.points - np.asarray(center), axis)
     near = np.abs(np.linalg.norm(arms, axis=1) - radius) <= slack
     on = np.concatenate([near[block.corners].all(axis=1) for block in mesh.boundary])
-    normals = facet_normals(mesh.points, mesh.boundary)
-    inward = -across(facet_centers(mesh.points, mesh.boundary) - np.asarray(center), axis)
+    # Few do: only these are looked at, for hundreds of circles.
+    few = pick_facets(mesh.boundary, on)
+    normals = facet_normals(mesh.points, few)
+    inward = -across(facet_centers(mesh.points, few) - np.asarray(center), axis)
     facing = np.einsum("fi,fi->f", normals, inward) > _FACING * np.linalg.norm(inward, axis=1)
-    return np.asarray(on & facing & (np.abs(normals @ axis) < SIDEWAYS))
+    on[on] = facing & (np.abs(normals @ axis) < SIDEWAYS)
+    return on
 
 
 def joined_by_span(

@@ -210,9 +210,10 @@ def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tol
         if todo_low.size > _MOST_INTERVALS:
             raise ContactAccuracyError("a curve has a step where it should be continuous: give it corners of its own")
         width = todo_high - todo_low
-        nodes = function((todo_low[:, None] + width[:, None] * _NODES).ravel()).reshape(-1, _NODES.size)
+        # At once: a call costs more than its points.
+        places = (todo_low[:, None] + width[:, None] * np.concatenate([_NODES, _BETWEEN])).ravel()
+        nodes, between = np.hsplit(function(places).reshape(todo_low.size, -1), [_NODES.size])
         coefficients = nodes @ _THROUGH_NODES.T
-        between = function((todo_low[:, None] + width[:, None] * _BETWEEN).ravel()).reshape(-1, _BETWEEN.size)
         error = np.abs(coefficients @ _BETWEEN ** np.arange(4)[:, None] - between).max(axis=1)
         good = (error <= tolerance) | (width <= NARROWEST)
         lows.append(todo_low[good])

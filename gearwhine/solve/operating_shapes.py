@@ -17,6 +17,7 @@ from housing.modes.natural_modes import ModeSet
 from housing.modes.receptance import OperatingShape
 from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
 from housing.storage.mode_file import ModeRecord
+from housing.storage.netcdf import read_netcdf
 
 if TYPE_CHECKING:
     from gearwhine.solve.signature import SolvedSignature
@@ -28,6 +29,14 @@ _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _TOLD = 2  # modes in a picture
 _NEAR = 0.1  # part by which shapes at the nodes nearest to survey points may differ from those at the points
+_OF_LINES = (
+    "housing_line",
+    "housing_acceleration_spectrum",
+    "line_frequency",
+    "line_name",
+    "survey_shape",
+    "survey_position",
+)  # arrays of a results file that its operating shapes follow from
 _SAME = 1e-9  # of frequencies and shapes, for the run's housing to be this one
 
 
@@ -134,20 +143,16 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     most : int
         Number of lines, as :func:`highest_lines` chooses them.
     """
-    import xarray as xr
-
-    wanted = ("housing_line", "housing_acceleration_spectrum", "line_frequency", "line_name", "survey_shape")
+    # Not by xarray, which looks at all of a hundred arrays.
     try:
-        with xr.open_dataset(folder / RESULTS_FILE, engine="h5netcdf") as dataset:
-            if not {*wanted, "survey_position"} <= {*map(str, dataset.variables)}:
-                return []
-            content = dataset[[*wanted, "survey_position"]].load()
-    except (OSError, ValueError):
+        stored, _ = read_netcdf(folder / RESULTS_FILE, _OF_LINES)
+    except (OSError, ValueError, KeyError):
         return []
-    if not _same_shapes(content, record):
+    if len(stored) < len(_OF_LINES):
         return []
-    lines, spectrum = content["housing_line"].values, content["housing_acceleration_spectrum"].values
-    listed, names = content["line_frequency"].values, content["line_name"].values
+    lines, spectrum, listed, names, shapes, positions = (stored[name].values for name in _OF_LINES)
+    if not _same_shapes(shapes, positions, record):
+        return []
     chosen: dict[int, str] = {}
     for frequency, name in zip(listed.T.ravel(), names.T.ravel(), strict=True):
         if len(chosen) < most and np.isfinite(frequency):
@@ -163,10 +168,9 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     ]
 
 
-def _same_shapes(content: Any, record: ModeRecord) -> bool:
+def _same_shapes(stored: FloatArray, positions: FloatArray, record: ModeRecord) -> bool:
     """Whether the modes of a run are these, with the same signs: by the nodes nearest to its survey points."""
-    stored = content["survey_shape"].values
-    _, nodes = KDTree(record.mesh.points).query(content["survey_position"].values)
+    _, nodes = KDTree(record.mesh.points).query(positions)
     shapes = record.modes.shapes[:, np.asarray(nodes)]
     if stored.shape != shapes.shape:
         return False

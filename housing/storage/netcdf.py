@@ -7,7 +7,7 @@ of none, and carries its number; an array carries the numbers of its dimensions.
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -188,8 +188,14 @@ def _tell(target: Any, attributes: Mapping[str, Any]) -> None:
         target[name] = value if isinstance(value, str) else np.atleast_1d(value)
 
 
-def read_netcdf(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
-    """Read every variable of a file without any conversion by its attributes, and the attributes of the file.
+def read_netcdf(path: Path, names: Collection[str] | None = None) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
+    """Read variables of a file without any conversion by their attributes, and the attributes of the file.
+
+    Parameters
+    ----------
+    path : Path
+    names : collection of str, optional
+        Of the variables to read, where they are there; every one by default.
 
     Raises
     ------
@@ -199,7 +205,8 @@ def read_netcdf(path: Path) -> tuple[dict[str, LabelledArray], dict[str, Any]]:
     import h5netcdf
 
     with h5netcdf.File(path, "r", decode_vlen_strings=True) as file:
-        return {str(name): _labelled(variable) for name, variable in file.variables.items()}, dict(file.attrs)
+        read = [str(name) for name in file.variables if names is None or name in names]
+        return {name: _labelled(file.variables[name]) for name in read}, dict(file.attrs)
 
 
 def _labelled(variable: Any) -> LabelledArray:

@@ -29,8 +29,8 @@ DIVERGED = "pressed together by|motion diverged"
 ROTORS = (
     *("sweep", "spur-pair", "-o", "out", "--json"),
     *("--over", "operation.speed=3000 rpm:4200 rpm:3", "--over", UNSTABLE),
-    # Points that take a second or so, so that there is something to interrupt.
-    *("--set", "transient.revolutions=24", "--set", "transient.discard=23", "--set", "transient.tolerance=1e-4"),
+    # Points that take half a second or so, so that there is something to interrupt.
+    *("--set", "transient.revolutions=12", "--set", "transient.discard=11", "--set", "transient.tolerance=1e-4"),
 )
 HOUSED = (
     *("sweep", "small-gearbox", "-q", "--json", "--set", "housing.box.mesh_size=50 mm"),

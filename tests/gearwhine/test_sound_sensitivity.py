@@ -158,8 +158,13 @@ SOUNDING = {
 }
 
 
-def test_the_document_ranks_by_the_sound() -> None:
-    study = gw.load("small-gearbox", SOUNDING)
+@pytest.fixture(scope="module")
+def study() -> gw.Study:
+    """The gearbox with a quick sound, whose housing is solved once."""
+    return gw.load("small-gearbox", SOUNDING)
+
+
+def test_the_document_ranks_by_the_sound(study: gw.Study) -> None:
     result = study.operating_point(sensitivity=True)
     loudest = result.document["loudest_lines"]
     assert [one["excitation"] for one in loudest] == ["2× pinion -> wheel", "1× pinion -> wheel"]
@@ -237,15 +242,14 @@ def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
     (before,) = result["loudest_lines"]
     (row,) = [row for row in result["sensitivity"] if row["parameter"] == "back wall"]
     for key, thickness in (("level_db", "11 mm"), ("reverse_level_db", "9 mm")):
-        other = gw.load("small-gearbox", changes | {"housing.box.wall.back": thickness})
-        (after,) = other.operating_point(sensitivity=True).document["loudest_lines"]
-        found = after["sound_power_db"] - before["sound_power_db"]
+        other = gw.load("small-gearbox", changes | {"housing.box.wall.back": thickness}).case
+        (after,) = sound_lines(solve(other, build_mesh(other)))
+        found = 10.0 * np.log10(after.line.value / 1e-12) - before["sound_power_db"]
         assert row["sound"][0][key] == pytest.approx(found, abs=0.8)
         assert abs(found) > 3.0
 
 
-def test_a_line_of_the_sound_is_chosen() -> None:
-    study = gw.load("small-gearbox", SOUNDING)
+def test_a_line_of_the_sound_is_chosen(study: gw.Study) -> None:
     result = study.operating_point(line="sound@5133")
     assert [one["ranked"] for one in result.document["loudest_lines"]] == [True, False]
     (section,) = sections(result.document)

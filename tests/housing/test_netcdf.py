@@ -53,6 +53,9 @@ def test_what_is_read_is_what_was_written(file: Path) -> None:
     np.testing.assert_array_equal(level.values, VARIABLES["level"][1])
     assert arrays["sensor"].values.tolist() == ["top", "End ° é"]
     assert arrays["of_nothing"].values.shape == (0,)
+    some, attributes = read_netcdf(file, ("level", "absent"))
+    assert (list(some), attributes) == (["level"], ATTRIBUTES)
+    np.testing.assert_array_equal(some["level"].values, level.values)
 
 
 def test_without_fill_no_number_stands_for_a_missing_one(tmp_path: Path) -> None:

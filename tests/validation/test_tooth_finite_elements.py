@@ -21,12 +21,13 @@ unchanged, and Kolosov's constant of the ring is 3 - 4 nu.  The tooth model take
 
 import math
 from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
 import pytest
 import skfem
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 from skfem.helpers import ddot, div, sym_grad, trace
 
 from coupling.gears import (
@@ -68,6 +69,7 @@ def loaded_radii(gear: Gear, count: int = 7) -> np.ndarray:
     return np.linspace(start, gear.tip_radius - 2.0 * STRIP * gear.module, count)
 
 
+@cache
 def gear_mesh(gear: Gear, fineness: float) -> skfem.MeshTri2:
     """The whole gear; tooth 0 stands along +y and is loaded on its flank at x > 0."""
     side = tooth_outline(gear, POINTS)[: 2 * POINTS - 1] * np.array([-1.0, 1.0])  # right, root to tip
@@ -153,13 +155,11 @@ def _curved(places: np.ndarray, elements: np.ndarray) -> skfem.MeshTri2:
     return skfem.MeshTri2(nodes, mesh.t)
 
 
-def deflections(
-    gear: Gear, radii: np.ndarray, fineness: float = 1.4, state: PlaneState = "plane-strain"
-) -> Deflections:
-    """Motion of the tooth's axis and mean sinking of the loaded strip under unit loads at `radii`."""
+@lru_cache(maxsize=2)
+def held_gear(gear: Gear, fineness: float, state: PlaneState) -> tuple[skfem.Basis, np.ndarray, SuperLU]:
+    """A gear held at its bore: the basis on its mesh, the free degrees of freedom, their factored stiffness."""
     mesh = gear_mesh(gear, fineness)
-    element = skfem.ElementVector(skfem.ElementTriP2())
-    basis = skfem.Basis(mesh, element, intorder=4)
+    basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementTriP2()), intorder=4)
     young, nu = gear.youngs_modulus, gear.poisson_ratio
     shear = young / (2.0 * (1.0 + nu))
     dilatation = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu) if state == "plane-strain" else 1.0 - nu**2)
@@ -170,6 +170,20 @@ def deflections(
         web = np.hypot(w.x[0], w.x[1]) < (gear.rim_inner_radius or 0.0)
         width = np.where(web, (gear.web_thickness or gear.face_width) / gear.face_width, 1.0)
         return width * (dilatation * trace(strain) * div(v) + 2.0 * shear * ddot(strain, sym_grad(v)))
+
+    bore = mesh.facets_satisfying(lambda x: np.hypot(x[0], x[1]) < 0.51 * gear.bore, boundaries_only=True)
+    free = basis.complement_dofs(basis.get_dofs(bore))
+    matrix = stiffness.assemble(basis)[free][:, free].tocsc()
+    factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return basis, free, factor
+
+
+def deflections(
+    gear: Gear, radii: np.ndarray, fineness: float = 1.4, state: PlaneState = "plane-strain"
+) -> Deflections:
+    """Motion of the tooth's axis and mean sinking of the loaded strip under unit loads at `radii`."""
+    basis, free, factor = held_gear(gear, fineness, state)
+    mesh, element = basis.mesh, basis.elem
 
     def along_flank(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Arc of the involute from the base circle, and distance from the loaded flank."""
@@ -198,10 +212,6 @@ def deflections(
         loads.append(load.assemble(flank, pressure=pressure / np.sum(pressure * flank.dx)))
         directions.append(direction)
     right_sides = np.array(loads).T
-    bore = mesh.facets_satisfying(lambda x: np.hypot(x[0], x[1]) < 0.51 * gear.bore, boundaries_only=True)
-    free = basis.complement_dofs(basis.get_dofs(bore))
-    matrix = stiffness.assemble(basis)[free][:, free].tocsc()
-    factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     motion = np.zeros_like(right_sides)
     motion[free] = factor.solve(right_sides[free])
     # Inside the tooth edges are straight, so the straight mesh finds the element of a point.

@@ -67,7 +67,13 @@ from scipy.interpolate import CubicSpline
 from coupling.gears import piecewise_cubic as piecewise
 from coupling.gears.contact.face_slices import DEFAULT_SLICES, FaceSlices, face_equilibrium
 from coupling.gears.contact.lookup_tables import FaceSliceStates, face_force_table, face_slice_states, law_table
-from coupling.gears.contact.tooth_pair import ToothPairCurves, slope_jumps, tooth_pair_curves, without_shared_compliance
+from coupling.gears.contact.tooth_pair import (
+    ToothPairCurves,
+    pair_deviation,
+    slope_jumps,
+    tooth_pair_curves,
+    without_shared_compliance,
+)
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.pair import GearPairGeometry, IntArray
 from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
@@ -554,3 +560,19 @@ def tooth_contact(
         module=geometry.driver.module,
         shared_compliance=shared_compliance(model, geometry),
     )
+
+
+def with_flanks_of(contact: ToothContact, geometry: GearPairGeometry) -> ToothContact:
+    """Return a contact with the deviations of a pair that differs in the modifications of its flanks alone.
+
+    As `tooth_contact` of that pair, without the stiffness and the reach of the teeth, which are the same.
+    """
+    if contact.contact_ratio == 1.0 and geometry.contact_ratio != 1.0:
+        return contact  # of a whole mesh, whose deviation is zero
+    start, end = float(contact.stiffness.knots[0]), float(contact.stiffness.knots[-1])
+    sound, *others = (
+        pair_deviation(geometry, start, end, corner_contact=contact.has_corner_contact, faults=own)
+        for own in pair_variants(geometry).faults
+    )
+    variants = (replace(one, deviation=own) for one, own in zip(contact.variants, others, strict=True))
+    return replace(contact, deviation=sound, variants=tuple(variants))

@@ -454,7 +454,11 @@ def _fields(
     Shapes (p, n) and (p, n, m), for given touching slices.
     """
     flat = np.where(touching, slices.flattening, 0.0)
-    fields = face_yield(slices, base, touching, np.dstack([-(flat * gap), flat[:, :, None] * motions]))
+    # One field after the other, as they are solved for.
+    loads = np.empty((1 + motions.shape[1], *gap.shape))
+    np.multiply(flat, -gap, out=loads[0])
+    np.multiply(flat, motions.T[:, None], out=loads[1:])
+    fields = face_yield(slices, base, touching, np.moveaxis(loads, 0, 2))
     return fields[:, :, 0], fields[:, :, 1:]
 
 
@@ -490,13 +494,13 @@ def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads:
     beside = np.full(diagonal.shape, -link)
     beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
     # One symmetric, diagonally dominant tridiagonal matrix of all pairs; right-hand sides in LAPACK's order.
-    right = np.asfortranarray(loads.reshape(-1, loads.shape[2]))
+    right = np.array(np.moveaxis(loads, 2, 0)).reshape(loads.shape[2], -1).T
     _, _, fields, info = dptsv(
         diagonal.ravel(), beside.ravel()[:-1], right, overwrite_d=1, overwrite_e=1, overwrite_b=1
     )
     if info != 0:
         raise ContactAccuracyError("the slices of the face yield without bound; check the stiffness of the teeth")
-    return np.asarray(fields).reshape(loads.shape)
+    return np.moveaxis(np.asarray(fields).T.reshape(loads.shape[2], *loads.shape[:2]), 0, 2)
 
 
 def _middle_radii(geometry: GearPairGeometry) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -184,16 +185,17 @@ def tooth_pair_curves(
 
 def without_shared_compliance(curves: ToothPairCurves, shared: float) -> ToothPairCurves:
     """Remove from a pair's compliance the part C shared with other pairs, `shared` [m/N]: ``1/k' = 1/k - C``."""
-    if shared == 0.0:
-        return curves
-    alone = curves.stiffness
+    return curves if shared == 0.0 else replace(curves, stiffness=_stiffness_alone(curves.stiffness, shared))
 
+
+@lru_cache(maxsize=16)  # by the curve itself, not by its values: contacts of other flanks have the same one
+def _stiffness_alone(stiffness: PiecewiseCubic, shared: float) -> PiecewiseCubic:
     def without(position: FloatArray) -> FloatArray:
-        stiffness = alone(position)
-        return np.asarray(stiffness / (1.0 - shared * stiffness), dtype=np.float64)
+        own = stiffness(position)
+        return np.asarray(own / (1.0 - shared * own), dtype=np.float64)
 
-    largest = float(without(alone.knots).max())
-    return replace(curves, stiffness=piecewise.fitted(without, alone.knots, _STIFFNESS_TOLERANCE * largest))
+    largest = float(without(stiffness.knots).max())
+    return piecewise.fitted(without, stiffness.knots, _STIFFNESS_TOLERANCE * largest)
 
 
 def slope_jumps(curve: PiecewiseCubic) -> FloatArray:

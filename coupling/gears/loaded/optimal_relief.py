@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
 
-from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact
+from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, with_flanks_of
 from coupling.gears.contact.face_slices import FaceSlices
 from coupling.gears.errors import GearError, require_finite
 from coupling.gears.geometry.modifications import ReliefShape, TipRelief
@@ -256,15 +256,12 @@ def optimal_tip_relief(
 
     target: ReliefAim = PeakToPeak() if aim is None else aim
 
-    def contact_of(
-        relief: TipRelief | None, slices: FaceSlices | None = faces
-    ) -> tuple[GearPairGeometry, ToothContact]:
-        pair = replace(
+    def with_relief(relief: TipRelief | None) -> GearPairGeometry:
+        return replace(
             geometry,
             driver=replace(geometry.driver, tip_relief=relief),
             driven=replace(geometry.driven, tip_relief=relief),
         )
-        return pair, tooth_contact(pair, stiffness, corner_contact=corner_contact, faces=slices)
 
     def meshes(contact: ToothContact) -> list[LoadedMesh]:
         # Both sides of each step and every corner of this contact are among the phases.
@@ -276,11 +273,13 @@ def optimal_tip_relief(
         inside = 0.0 <= amount <= deepest and shortest <= length <= longest
         if not inside:
             return float("inf")
-        _, contact = contact_of(TipRelief(amount, length=length, shape=shape), coarse)
+        pair = with_relief(TipRelief(amount, length=length, shape=shape))
+        contact = with_flanks_of(coarse, pair)
         return max(target.of(mesh, contact) for mesh in meshes(contact))
 
-    coarse = faces if searched_faces is None else searched_faces
-    bare, plain = contact_of(None)
+    bare = with_relief(None)
+    plain = tooth_contact(bare, stiffness, corner_contact=corner_contact, faces=faces)
+    coarse = plain if searched_faces is None else replace(plain, faces=searched_faces)
     # Counted from first touch, which crowning or a deviation shifts from nominal motion.
     loaded, unloaded = (loaded_transmission_error(plain, force) for force in (max(forces), 0.0))
     deflection = loaded.mean_transmission_error - unloaded.mean_transmission_error
@@ -296,7 +295,8 @@ def optimal_tip_relief(
     start = np.array([amounts[row] / deepest, lengths[column] / longest])
     found = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
     relief: TipRelief | None = TipRelief(float(found.x[0] * deepest), length=float(found.x[1] * longest), shape=shape)
-    pair, contact = contact_of(relief)
+    pair = with_relief(relief)
+    contact = with_flanks_of(plain, pair)
     # The comparison uses all slices of the face; the search may use fewer.
     with_it, without = meshes(contact), meshes(plain)
     value, value_without = (

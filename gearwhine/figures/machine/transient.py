@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
-from scipy.signal import resample_poly
+from numpy.lib.stride_tricks import sliding_window_view
 
 from coupling import amplitude_spectrum
 from coupling.signals import decibels
@@ -226,7 +226,8 @@ def _percent(share: float) -> str:
 _PERIODS = 6  # of the mesh that are drawn
 _FINE = 40  # points of a mesh period that a curve has at least
 _SMOOTH = 24  # the same of an orbit
-_EDGE = 64  # samples on either side that a curve between samples is made of
+_EDGE = 10  # samples on either side that a curve between samples is made of
+_BETA = 8.0  # of Kaiser's window over them
 _ROW, _ROW_GAP = 42.0, 18.0  # height of a row of panels, and between two for axis and title [mm of paper]
 _FIRST = 5.0  # above the first row, for its titles [mm of paper]
 
@@ -268,15 +269,27 @@ def between_samples(times: FloatArray, values: FloatArray, end: float, period: f
 
 
 def _refined(values: FloatArray, factor: int) -> FloatArray:
-    """Return a signal (s, ...) at ``factor`` times its rate, from the first to the last of its samples."""
+    """Return a signal (s, ...) at ``factor`` times its rate, from the first to the last of its samples.
+
+    Each point between two samples is a sum over ten samples on either side,
+
+        y(k + p / factor) = sum over j of h(p / factor - j) x[k + j],   h(u) = sinc(u) w(u / 10),
+
+    where w is Kaiser's window.
+    """
     reach = min(_EDGE, len(values) - 1)
-    # Mirrored about its ends, so that these are met without ringing.
+    # Mirrored about its ends, so that these are met without ringing; beyond what a short one has, nothing.
     begin, after = values[1 : reach + 1][::-1], values[-reach - 1 : -1][::-1]
-    whole = np.concatenate([2.0 * values[:1] - begin, values, 2.0 * values[-1:] - after])
-    fine = resample_poly(whole, factor, 1, axis=0, window=("kaiser", 8.0))
-    found = np.array(fine[factor * reach : factor * (reach + len(values) - 1) + 1])
-    # The filter's gain is one to five digits; the samples stand as they are.
+    nothing = np.zeros((_EDGE - reach, *values.shape[1:]))
+    whole = np.concatenate([nothing, 2.0 * values[:1] - begin, values, 2.0 * values[-1:] - after, nothing])
+    # Not scipy.signal.resample_poly, which does the same: that import takes longer than to draw a figure.
+    taps = np.sinc(np.arange(-_EDGE * factor, _EDGE * factor + 1) / factor) * np.kaiser(2 * _EDGE * factor + 1, _BETA)
+    taps *= factor / taps.sum()
+    found = np.zeros((factor * (len(values) - 1) + 1, *values.shape[1:]))
     found[::factor] = values
+    between = sliding_window_view(whole, 2 * _EDGE, axis=0)[1 : len(values)]
+    for part in range(1, factor):
+        found[part::factor] = between @ taps[part::factor][::-1]
     return found
 
 

@@ -12,7 +12,7 @@ import gzip
 import hashlib
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
@@ -65,15 +65,10 @@ class Scripts:
     shapes: Sequence[MovingShape] = ()
     _drawings: list[dict[str, Any]] = field(default_factory=list)
 
-    def curves(self, place: Path, section: Section) -> str:
+    def curves(self, dataset: Any, section: Section) -> str:
         """Return frames for the curves that a section declares and a results file holds; keep their data."""
-        if not section.curves or not (place / _RESULTS).is_file():
-            return ""
-        import xarray as xr
-
         try:
-            with xr.open_dataset(place / _RESULTS, engine="h5netcdf") as dataset:
-                drawings = [one for declared in section.curves for one in _drawings(dataset, declared)]
+            drawings = [one for declared in section.curves for one in _drawings(dataset, declared)]
         except (OSError, ValueError):
             return ""
         frames = []
@@ -229,10 +224,21 @@ def _coarse_table(
 
 def live_parts(scripts: Scripts | None, place: Path, sections: Sequence[Section]) -> Mapping[int, str]:
     """Return the curves of sections and of those in them as HTML, by the identity of the section."""
-    if scripts is None:
+    declaring = [section for section in _all_sections(sections) if section.curves]
+    if scripts is None or not declaring or not (place / _RESULTS).is_file():
         return {}
-    found: dict[int, str] = {}
+    import xarray as xr
+
+    try:
+        # Once for all sections: to open a file of a hundred arrays takes longer than to read what one section shows.
+        with xr.open_dataset(place / _RESULTS, engine="h5netcdf") as dataset:
+            return {id(section): scripts.curves(dataset, section) for section in declaring}
+    except (OSError, ValueError):
+        return {}
+
+
+def _all_sections(sections: Sequence[Section]) -> Iterator[Section]:
+    """Yield each section before those in it."""
     for section in sections:
-        found[id(section)] = scripts.curves(place, section)
-        found |= live_parts(scripts, place, section.inner)
-    return found
+        yield section
+        yield from _all_sections(section.inner)

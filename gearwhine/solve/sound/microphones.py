@@ -14,11 +14,10 @@ trend and, like the pressure, fade in and out over `FADE`; silence is put behind
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import detrend
+from numpy.polynomial import polynomial
 
 from coupling import CoupledMachine
 from coupling.signals.transfer_paths import housing_paths
@@ -91,9 +90,9 @@ def microphone_histories(
     length = len(times) if repeats else len(times) + int(np.ceil(_DECAY / interval))
     lines = np.asarray(np.fft.rfftfreq(length, interval), dtype=np.float64)
     kept = np.flatnonzero((lines >= transfer.frequencies[0]) & (lines <= transfer.frequencies[-1]))
-    order: Literal["constant", "linear"] = "constant" if repeats else "linear"
+    degree = 0 if repeats else 1
     spectra = {
-        name: np.fft.rfft(weights[:, None] * detrend(force, axis=0, type=order), length, axis=0)
+        name: np.fft.rfft(weights[:, None] * _less_its_trend(force, degree), length, axis=0)
         for name, force in forces.items()
     }
     sound = np.zeros((len(lines), len(transfer.delays)), dtype=np.complex128)
@@ -128,3 +127,10 @@ def fading_weights(count: int, interval: float) -> FloatArray:
     weights[:length] = rising
     weights[count - length :] = rising[::-1]
     return weights
+
+
+def _less_its_trend(record: FloatArray, degree: int) -> FloatArray:
+    """Subtract the polynomial that fits each signal of a record (s, k) best."""
+    places = np.linspace(-1.0, 1.0, len(record))
+    trend = polynomial.polyval(places, polynomial.polyfit(places, record, degree))
+    return np.asarray(record - trend.T, dtype=np.float64)

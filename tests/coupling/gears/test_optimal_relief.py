@@ -13,6 +13,7 @@ from coupling.gears import (
     GearPairGeometry,
     PotentialEnergyStiffness,
     ProfileDeviation,
+    Spall,
     SquareStiffness,
     TipRelief,
     harris_map,
@@ -20,6 +21,7 @@ from coupling.gears import (
     optimal_tip_relief,
     tooth_contact,
 )
+from coupling.gears.contact.contact_law import with_flanks_of
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.optimal_relief import WeightedHarmonics, transmission_error_harmonics
 from coupling.gears.loaded.transmission_error import mesh_period_phases
@@ -97,6 +99,23 @@ def test_a_range_of_loads_is_a_compromise(best) -> None:  # type: ignore[no-unty
     at_half = harris_map(tooth_contact(best.geometry, MODEL, corner_contact=True), [0.5 * DESIGN]).peak_to_peak[0]
     assert both.peak_to_peak.max() < at_half
     assert both.peak_to_peak[1] > best.peak_to_peak[0]
+
+
+def test_a_contact_with_the_flanks_of_another_pair_is_that_pairs_own() -> None:
+    """Sound and spalled teeth, on the path and beyond it; of a whole mesh, whose flanks do not count, itself."""
+    spall = Spall(3, math.radians(20.0), math.radians(23.0), 5e-6, 3e-3)
+    plain, made = (replace(pair, driver=replace(pair.driver, faults=(spall,))) for pair in (PLAIN, MADE))
+    found = with_flanks_of(tooth_contact(plain, MODEL, corner_contact=True), made)
+    own = tooth_contact(made, MODEL, corner_contact=True)
+    phases = np.linspace(0.0, 28.0, 2001)
+    ours, expected = found.pairs(phases), own.pairs(phases)
+    assert np.array_equal(ours.variant, expected.variant)
+    assert ours.variant.max() == 1
+    present = expected.present
+    np.testing.assert_allclose(ours.deviation[present], expected.deviation[present], rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(ours.stiffness, expected.stiffness, rtol=1e-9)
+    whole = tooth_contact(PLAIN, SquareStiffness(1e8))
+    assert with_flanks_of(whole, MADE).pairs(phases).deviation.max() == whole.pairs(phases).deviation.max()
 
 
 @pytest.mark.parametrize("forces", [[], [0.0], [-5.0], [math.nan]])
