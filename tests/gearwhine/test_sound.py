@@ -29,7 +29,7 @@ COARSE = {"acoustics.mesh_size": "30 mm", "acoustics.highest_frequency": "3 kHz"
 @pytest.fixture(scope="module")
 def study():
     found = gw.load("small-gearbox", COARSE | {"acoustics.floor": "-21 mm", "acoustics.microphone_box": "1 m"})
-    found._housing = solve_housing(found.case)
+    assert found.housing is not None  # of the case alone, without the checks of the sound
     return found
 
 
@@ -156,7 +156,7 @@ def test_rayleigh_of_the_top_is_near_boundary_elements_for_a_mode_of_the_top():
             "small-gearbox",
             changes | {"operation": "", "rotor": [], "bearing": [], "gear": [], "gear_pair": [], "transient": ""},
         )
-        study._housing = housing
+        study._kept.solved = housing
         modes[method] = study.sound().document["modes"]
         housing = study.housing
     most = max(modes["boundary-elements"], key=lambda mode: mode["faces"].get("top", 0.0))
@@ -197,6 +197,13 @@ def test_json_of_the_command(capsys, tmp_path):
 def test_refuses_choices_that_do_not_fit(changes, message):
     with pytest.raises(CaseError, match=message):
         gw.load("small-gearbox", changes)
+
+
+def test_triangles_of_no_use_are_refused_by_the_radiation_itself(study):
+    """Where nothing was checked before: a sweep's points, whose housing may have changed."""
+    case = study.changed({"acoustics.mesh_size": "90 mm"}).case
+    with pytest.raises(CaseError, match=r"^acoustics\.mesh_size: .* too large for 3000 Hz: .*, got '90 mm'"):
+        build_radiation(case, study.housing)
 
 
 @pytest.mark.parametrize(
@@ -292,7 +299,7 @@ def test_sweep_sounds_as_its_points_do(study, tmp_path):
     levels = swept.dataset["sound_power_level"].values
     assert np.isfinite(levels).all()
     alone = gw.load("small-gearbox", short)
-    alone._housing = study.housing
+    alone._kept.solved = study.housing
     found = alone.run().solved.sound
     assert levels[0] == pytest.approx(found.total_db, abs=0.05)
     loudest = max(found.lines, key=lambda line: line.sound.power)
