@@ -60,6 +60,11 @@ def axially_held(bearings: Sequence[MountedBearing], speeds: Mapping[str, float]
 
 
 def _holds_axially(mounted: MountedBearing, speed: float) -> bool:
+    """Whether a bearing holds its rotor in motion: by its stiffness, or, until that is found, by its elements.
+
+    An operating point asks the elements wherever there are any, see
+    :func:`coupling.machine.axial_location.axial_support`.
+    """
     elements = mounted.elements
     if mounted.needs_load and elements is not None:
         return elements.has_axial_stiffness
