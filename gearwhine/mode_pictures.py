@@ -17,9 +17,9 @@ from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
-    from gearwhine.solve.influences import LoadSensitivity
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
+    from gearwhine.solve.sensitivity.influences import LoadSensitivity
     from gearwhine.solve.sound.solution import SolvedSound
     from housing.correlation.comparison import Comparison
     from housing.measured import MappedSurvey

@@ -25,9 +25,9 @@ from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.influences import LoadSensitivity
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings
-from gearwhine.solve.sensitivity_ranking import solve_load_sensitivity
+from gearwhine.solve.sensitivity.influences import LoadSensitivity
+from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
 from rotors import EquilibriumError, RotorError
 from rotors.rolling_bearings import BallRow, RollerRow, Row
 
@@ -195,9 +195,9 @@ def solve_load(
     over_torque : bool
         Whether to find it at `TORQUES` as well.
     sensitivity : bool
-        Whether to compute its gradients, see :func:`gearwhine.solve.sensitivity_ranking.solve_load_sensitivity`.
+        Whether to compute its gradients, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
     line : str, optional
-        The line that these are ranked by, see :func:`gearwhine.solve.sensitivity_ranking.solve_load_sensitivity`.
+        The line that these are ranked by, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
 
     Raises
     ------

@@ -26,10 +26,11 @@ from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
-from gearwhine.solve import housing_modes, sensitivity_ranking
-from gearwhine.solve.housing_changes import by_changes, case_changes, housing_fields, slopes_of
+from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.line_model import SolvedLines, solve_lines
+from gearwhine.solve.sensitivity import ranking
+from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
+from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
 from housing.model.material import element_constants
 from housing.updating.static_sensitivity import harmonic_surface_density
 from meshes import Mesh
@@ -323,11 +324,11 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
 
 def test_short_steps_of_either_way_are_the_slope(case: Case, solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bearings and flanks follow the equilibrium here, which has a part in the lines of its own."""
-    monkeypatch.setattr(sensitivity_ranking, "_LENGTH_STEP", 1e-9)
-    monkeypatch.setattr(sensitivity_ranking, "_RELATIVE_STEP", 1e-6)
+    monkeypatch.setattr(ranking, "_LENGTH_STEP", 1e-9)
+    monkeypatch.setattr(ranking, "_RELATIVE_STEP", 1e-6)
     housing, point, _ = solved
     machine = describe_machine(case, full_housing_component(case, housing))
-    found = sensitivity_ranking.solve_load_sensitivity(case, machine, point, housing)
+    found = ranking.solve_load_sensitivity(case, machine, point, housing)
     kinds = {one.kind for one in found.influences}
     assert kinds == {"housing", "bearing stiffness", "bearing position"}
     for kind in kinds:

@@ -16,15 +16,15 @@ from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
-from gearwhine.solve.housing_changes import (
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.operating_point import solve_load
+from gearwhine.solve.sensitivity.housing_changes import (
     by_case_parameters,
     by_changes,
     face_changes,
     housing_fields,
     housing_parameters,
 )
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.operating_point import solve_load
 from housing.updating.static_sensitivity import StaticSensitivity
 from meshes import Mesh
 

@@ -18,10 +18,10 @@ from gearwhine.output.sections import Table
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
-from gearwhine.solve.housing_changes import by_changes, case_changes, housing_fields, slopes_of
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.influences import LineChange
-from gearwhine.solve.line_model import SolvedLines, solve_lines
+from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
+from gearwhine.solve.sensitivity.influences import LineChange
+from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
 from gearwhine.solve.sound import solution
 from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 from housing.acoustics.radiation import HousingRadiation

@@ -1,7 +1,7 @@
 """Sensitivity ranking at an operating point: change of gear pairs, sensors' lines and sound by walls and bearings.
 
 The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.mesh_harmonics`. Parameters of
-the housing are those of :mod:`gearwhine.solve.housing_changes`.
+the housing are those of :mod:`gearwhine.solve.sensitivity.housing_changes`.
 """
 
 from collections.abc import Sequence
@@ -18,10 +18,16 @@ from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_changes import HousingChange, by_changes, housing_changes, housing_fields, slopes_of
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.influences import Influence, LoadSensitivity, sound_weights
-from gearwhine.solve.line_model import SolvedLines, solve_lines
+from gearwhine.solve.sensitivity.housing_changes import (
+    HousingChange,
+    by_changes,
+    housing_changes,
+    housing_fields,
+    slopes_of,
+)
+from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity, sound_weights
+from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
 from housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
 
 FloatArray = npt.NDArray[np.float64]

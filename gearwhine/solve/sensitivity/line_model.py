@@ -24,8 +24,8 @@ from gearwhine.from_case.fixtures import attach_all
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import driving, full_housing_component
 from gearwhine.progress import Progress
-from gearwhine.solve.housing_changes import HousingChange
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
+from gearwhine.solve.sensitivity.housing_changes import HousingChange
 from housing import ModeSet, modal_damping
 from housing.model.housing import RESPONSE_ORDERS
 from housing.modes.natural_modes import ModeSetExtension
