@@ -10,8 +10,8 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
 - :mod:`~gearwhine.solve.rotors`: each rotor alone.
 - :mod:`~gearwhine.solve.gear_pairs`: each gear pair, and its best tip relief.
 - :mod:`~gearwhine.solve.operating_point`: static equilibrium of the machine under its mean load.
-- :mod:`gearwhine.solve.sensitivity`: ranking of walls and bearings by what they change in gear pairs, sensors' lines and
-  sound at that equilibrium; changes of the housing, and the model of the lines.
+- :mod:`gearwhine.solve.sensitivity`: ranking of walls and bearings by what they change in gear pairs, sensors' lines
+  and sound at that equilibrium; changes of the housing, and the model of the lines.
 - :mod:`gearwhine.solve.sound`: the sound of modes and lines.
 - :mod:`~gearwhine.solve.coupled_system`, :mod:`~gearwhine.solve.steady_state`, :mod:`~gearwhine.solve.transient`: the
   machine's modes and responses, its periodic motion, and its motion over time.
