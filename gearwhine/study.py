@@ -149,8 +149,8 @@ class Study:
     def changed(self, changes: Mapping[str, object] | Sequence[str]) -> Study:
         """Return a study of the same case with other values of some keys; this one stays as it is.
 
-        Both have one solved housing where the changes leave its modes, damping, seats and sensors as they are: those of
-        torque, gears, bearing stiffness or preload do, a bearing's position does not.
+        Both share one solved housing, where its modes, damping, seats and sensors stay as they are. Changes of torque,
+        gears, bearing stiffness and preload leave them so; a change of a bearing's position does not.
 
         Parameters
         ----------

@@ -33,7 +33,7 @@ def life_quantities(
     """
 
     def of(key: str) -> Callable[[Document], str]:
-        return lambda row: life_in_words(row.get(key))  # a bearing at rest has none
+        return lambda row: life_in_words(row.get(key))
 
     return (
         Quantity("dynamic_rating_n", rated("rating")),
