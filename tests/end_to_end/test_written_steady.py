@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from lopsided_case import GEARS, PAIRS, SPEEDS, force, lopsided
+from lopsided_case import GEARS, PAIRS, SPEEDS, bearing_forces, force, lopsided
 
 from gearwhine.cli import run_command
 
@@ -103,6 +103,13 @@ def test_meshes_without_common_period_have_a_motion_each(tmp_path: Path) -> None
     assert data.contact.values.tolist() == contacts
     assert data.excitation_mesh_force.dims == ("excitation", "contact", "period_part")
     (motion,) = summary["motions"]
+    # By the lever, under the mean mesh forces: each group's motion has them, and so has the sum.
+    statics = bearing_forces({pair: complex(force(pair)) for pair in PAIRS})
+    assert {one["name"] for one in motion["bearings"]} == set(statics)
+    for one in motion["bearings"]:
+        expected = [part.real for part in statics[one["name"]]]
+        assert one["mean_force_n"][:2] == pytest.approx(expected, abs=2e-3 * max(map(force, PAIRS)))
+        assert max(one["rms_force_n"]) > 0.0
     for number, name in enumerate(data.excitation.values.tolist()):
         (own,) = (row for row, contact in enumerate(contacts) if contact in name)
         driver = GEARS[PAIRS[own][0]]
