@@ -23,6 +23,7 @@ from gearwhine.results.first_page import first_page, machine_section
 VOID = {"meta", "img"}
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")
 RUN = {
+    "command": "run",
     "title": "Gears & <b>bold</b> claims",
     "housing": {
         "modes": [{"number": 1, "frequency_hz": 657.891, "damping_ratio": 0.01, "strength": 0.123}],
@@ -148,7 +149,7 @@ def linked(folder: Path, text: str) -> str:
 
 
 def test_a_line_leads_to_its_path_and_to_the_housing_that_moves_at_it(tmp_path: Path) -> None:
-    document = RUN | {"command": "run", "sensors": [{"name": "top", "peaks": [TRACED]}]}
+    document = RUN | {"sensors": [{"name": "top", "peaks": [TRACED]}]}
     write(tmp_path, document, 'title = "x"')
     assert linked(tmp_path, "2566.7") == "run-path-top-2566-7-hz"
     assert linked(tmp_path, "housing mode 19 (2664 Hz)") == ""
@@ -168,7 +169,7 @@ def test_a_line_leads_to_its_path_and_to_the_housing_that_moves_at_it(tmp_path: 
 
 
 def test_pictures_of_another_command_are_found_from_a_line(tmp_path: Path) -> None:
-    document = RUN | {"command": "run", "sensors": [{"name": "top", "peaks": [TRACED]}]}
+    document = RUN | {"sensors": [{"name": "top", "peaks": [TRACED]}]}
     write(tmp_path, document, 'title = "x"')
     shape = {"frequency_hz": 2566.7, "name": "1×", "modes": [], "largest_displacement_m": 5e-8}
     write(tmp_path / "render", {"command": "render", "lines": [shape]}, 'title = "x"')
@@ -177,7 +178,7 @@ def test_pictures_of_another_command_are_found_from_a_line(tmp_path: Path) -> No
 
 
 def test_a_link_leads_to_the_own_results_first(tmp_path: Path) -> None:
-    write(tmp_path, {"command": "run", "made_at": "2026-01-01T10:00:00+00:00"} | RUN, 'title = "x"')
+    write(tmp_path, {"made_at": "2026-01-01T10:00:00+00:00"} | RUN, 'title = "x"')
     newer = {"command": "modes", "made_at": "2026-02-01T10:00:00+00:00"} | RUN["housing"]  # type: ignore[operator]
     write(tmp_path / "modes", newer, 'title = "x"')
     for place in (tmp_path, tmp_path / "modes"):
@@ -271,7 +272,7 @@ def test_the_first_page_marks_each_proof(tmp_path: Path) -> None:
     system = {"stability": stability, "modes": [], "coordinates": 1, "speed_rpm": 1.0}
     missing = RUN["housing"] | {"certificate": certificate | {"complete": False, "found": 0}}  # type: ignore[operator]
     warned = {"name": "runout", "message": "teeth run out by 3 µm"}
-    document = RUN | {"command": "run", "system": system, "warnings": [warned]}
+    document = RUN | {"system": system, "warnings": [warned]}
     write(tmp_path, document, 'title = "x"')
     found = marks(tmp_path)
     assert found["Stability: 1 mode grows. "] == "failed"
@@ -308,8 +309,9 @@ def test_inner_sections_choose_their_pictures_first(tmp_path: Path) -> None:
 def test_sections_follow_what_the_document_holds() -> None:
     assert [section.title for section in chapters_of(RUN)] == ["Housing modes", "Measured and modelled", "Motion"]
     assert chapters_of({"title": "nothing"}) == ()
-    modes = RUN["housing"]
-    assert [section.title for section in chapters_of(modes)] == ["Housing modes"]  # type: ignore[arg-type]
+    modes = {"command": "modes"} | RUN["housing"]  # type: ignore[operator]
+    assert [section.title for section in chapters_of(modes)] == ["Housing modes"]
+    assert chapters_of(RUN["housing"]) == ()  # type: ignore[arg-type]
 
 
 def test_what_a_fit_is_worth_is_told_beside_it() -> None:
@@ -324,6 +326,7 @@ def test_what_a_fit_is_worth_is_told_beside_it() -> None:
     }
     held = {"measured_hz": 658.0, "predicted_hz": 700.0, "error_percent": 6.383, "standard_deviation_percent": 2.0}
     document = {
+        "command": "update",
         "parameters": [{"name": "top wall", "before": 0.012, "after": 0.013, "standard_deviation": 0.0016}],
         "before": {"rms_error_percent": 13.6, "max_error_percent": 24.0},
         "identifiability": {"learned_combinations": 8, "parameters": 18},
@@ -628,7 +631,7 @@ def test_every_table_is_held_against_its_cells() -> None:
 
 
 def test_warnings_stand_before_the_results(tmp_path: Path) -> None:
-    document = {"command": "gears", "warnings": [{"name": "runout", "message": "teeth run out by 3 µm"}]} | RUN
+    document = RUN | {"warnings": [{"name": "runout", "message": "teeth run out by 3 µm"}]}
     write(tmp_path, document, CASE.format(speed=1, load=2))
     text = read(tmp_path).text
     assert text.index("Warnings\n") < text.index("teeth run out by 3 µm") < text.rindex("Housing modes")
