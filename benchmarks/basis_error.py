@@ -15,8 +15,8 @@ import coupling
 from coupling.linear.frequency_response import BasisError, mesh_error_response
 from gearwhine.case import load_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import basis_error, build_machine, reduce_housing
 
 HERTZ = 2.0 * np.pi
 LIMITS = (2400.0, 3200.0)

@@ -19,7 +19,7 @@ from coupling import periodic_response, response_curve
 from coupling.periodic.continuation import ResponseCurve
 from gearwhine.case import Case, load_case, mesh_frequencies
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.steady_state import CURVE_TOLERANCE
 from gearwhine.solve.transient import solve_transient
 

@@ -44,10 +44,10 @@ from gearwhine.case import Case, case_document, load_case
 from gearwhine.case.units import amount
 from gearwhine.figures.style import BLUE, FOOT, HEAD, RED, legend, panel_pair, panel_title, sheet
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine, reduce_housing
 from gearwhine.from_case.parametric_housing import fitted_case, with_entry
 from gearwhine.solve.comparison import compare_housing
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.machine import build_machine, reduce_housing
 from gearwhine.solve.updating import update_housing, updated_case
 from housing.acoustics.boundary_elements import surface_product
 from housing.acoustics.surface_velocity import face_surface

@@ -11,21 +11,27 @@
 - :func:`periodic_response` finds the steady state by shooting, :func:`response_curve` its branch over speed.
 - :func:`amplitude_spectrum` evaluates signals.
 
-Sub-packages:
+Sub-packages and modules, each of which imports only those before it:
 
-- ``coupling.machine``: description, assembly, components (projection onto modes), connectors (5x5 bearing stiffness),
-  loads.
 - ``coupling.gears``: geometry, choice of the tooth model, tooth stiffness, tooth contact force, loaded transmission
   error.
-- ``coupling.statics``: static equilibrium, mean mesh stiffness.
-- ``coupling.linear``: complex modes, stability, Campbell diagram, frequency response.
-- ``coupling.time``: Newmark's method, exponential collocation, speed profiles, energy balance.
+- ``coupling.machine``: parts, gear train, components (projection onto modes), connectors (5x5 bearing stiffness),
+  loads, speed profile, equations of motion.
+- ``coupling.connector_forces``: forces of tooth contacts, rolling bearings and gaps, compiled.
+- ``coupling.statics``: static equilibrium, operating point, mean mesh stiffness.
+- ``coupling.assembly``: assembly of the coupled machine.
+- ``coupling.linear``: complex modes, stability, Campbell diagram, frequency response, excitation orders.
+- ``coupling.signals``: spectra, order tracking, sidebands, names of spectral lines, transfer paths.
+- ``coupling.collocation``: elements of the exponential collocation.
+- ``coupling.time``: Newmark's method, exponential collocation, energy balance, time histories.
 - ``coupling.periodic``: shooting, Floquet multipliers, continuation over speed.
-- ``coupling.signals``: time histories, spectra, order tracking, sidebands, transfer paths.
+- ``coupling.machine_description``: the description of a machine, and its analyses.
 
 numba is imported when a motion or an equilibrium is computed, not before.
 """
 
+from coupling.assembly import CoupledMachine as CoupledMachine
+from coupling.assembly import assemble_machine as assemble_machine
 from coupling.errors import CouplingError as CouplingError
 from coupling.errors import ModesError as ModesError
 from coupling.errors import PeriodicError as PeriodicError
@@ -34,15 +40,12 @@ from coupling.linear.campbell import system_campbell as system_campbell
 from coupling.linear.complex_modes import coupled_modes as coupled_modes
 from coupling.linear.complex_modes import stability as stability
 from coupling.linear.frequency_response import receptance as receptance
-from coupling.machine.assembly import CoupledMachine as CoupledMachine
-from coupling.machine.assembly import assemble_machine as assemble_machine
 from coupling.machine.connectors import GapLaw as GapLaw
 from coupling.machine.connectors import GearMesh as GearMesh
 from coupling.machine.connectors import MountedBearing as MountedBearing
 from coupling.machine.connectors import MountedGear as MountedGear
 from coupling.machine.connectors import RollingLaw as RollingLaw
 from coupling.machine.coupled_system import CoupledSystem as CoupledSystem
-from coupling.machine.description import Machine as Machine
 from coupling.machine.gear_train import Output as Output
 from coupling.machine.loads import BaseMotion as BaseMotion
 from coupling.machine.loads import MachineLoads as MachineLoads
@@ -51,11 +54,12 @@ from coupling.machine.loads import Torque as Torque
 from coupling.machine.loads import Unbalance as Unbalance
 from coupling.machine.parts import Shaft as Shaft
 from coupling.machine.parts import ShaftGear as ShaftGear
+from coupling.machine.speed_profile import SpeedProfile as SpeedProfile
+from coupling.machine_description import Machine as Machine
 from coupling.periodic.continuation import response_curve as response_curve
 from coupling.periodic.shooting import periodic_response as periodic_response
 from coupling.signals.spectrum import amplitude_spectrum as amplitude_spectrum
 from coupling.statics.static_equilibrium import static_equilibrium as static_equilibrium
 from coupling.time.settings import TransientOutputs as TransientOutputs
 from coupling.time.settings import TransientSettings as TransientSettings
-from coupling.time.speed_profile import SpeedProfile as SpeedProfile
 from coupling.time.transient import simulate as simulate

@@ -11,10 +11,11 @@ from coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.output import file_stems
+from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import warning
 from gearwhine.output.report import MovingShape
 from gearwhine.progress import Progress
-from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, strongest_modes
+from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
     from gearwhine.solve.operating_point import SolvedLoad

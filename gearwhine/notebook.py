@@ -36,8 +36,8 @@ def register() -> None:
     if shell is None:
         return
     formatter = shell.display_formatter.formatters["text/html"]
-    formatter.for_type_by_name("coupling.machine.description", "Machine", machine_html)
-    formatter.for_type_by_name("housing.model.housing", "HousingModes", modes_html)
+    formatter.for_type_by_name("coupling.machine_description", "Machine", machine_html)
+    formatter.for_type_by_name("housing.housing", "HousingModes", modes_html)
     formatter.for_type_by_name("gearwhine.case.model", "Case", case_html)
 
 

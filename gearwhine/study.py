@@ -193,7 +193,8 @@ class Study:
         It has the constant torques of `[operation]`; torques over time, motion of the base and gravity stay in the
         case, and :meth:`simulate` applies them.
         """
-        from gearwhine.from_case.machine import describe_machine, reduce_housing
+        from gearwhine.from_case.machine import describe_machine
+        from gearwhine.solve.machine import reduce_housing
 
         solved = self.housing
         part = None if solved is None else reduce_housing(self.case, solved, self.progress).component

@@ -12,10 +12,11 @@
   :func:`read_modes` and :func:`write_modes` keep it on file.
 - :func:`compare_by_shapes` and :func:`compare_by_dominance` pair model modes with measured ones.
 
-Sub-packages: ``housing.model`` (description), ``housing.fem`` (assembly, factorisation), ``housing.modes``
-(eigensolver, certificate, residual modes), ``housing.correlation`` (modal assurance criterion and others),
-``housing.measured`` (surveys and their files), ``housing.updating`` (model updating), ``housing.pictures`` (rendering),
-``housing.storage`` (NetCDF).
+Sub-packages and modules, each of which imports only those before it: ``housing.material``, ``housing.fem`` (assembly,
+factorisation), ``housing.model`` (supports, seats, fixtures), ``housing.modes`` (eigensolver, certificate, residual
+modes), ``housing.housing`` (the whole description), ``housing.storage`` (NetCDF), ``housing.acoustics`` (radiated
+sound), ``housing.measured`` (surveys and their files), ``housing.correlation`` (modal assurance criterion and others),
+``housing.updating`` (model updating), ``housing.pictures`` (rendering).
 """
 
 from housing.correlation.comparison import compare_by_dominance as compare_by_dominance
@@ -23,17 +24,17 @@ from housing.correlation.comparison import compare_by_shapes as compare_by_shape
 from housing.errors import HousingError as HousingError
 from housing.errors import IncompleteModesError as IncompleteModesError
 from housing.fem.assembly import assemble as assemble
+from housing.housing import Housing as Housing
+from housing.housing import HousingModes as HousingModes
+from housing.housing import cover_joints as cover_joints
+from housing.material import STEEL as STEEL
+from housing.material import Material as Material
 from housing.model.bolted_joints import bolted_joint as bolted_joint
 from housing.model.bushings import Bushing as Bushing
 from housing.model.bushings import Joint as Joint
 from housing.model.bushings import Mount as Mount
 from housing.model.fixtures import LumpedMass as LumpedMass
 from housing.model.fixtures import attach_fixtures as attach_fixtures
-from housing.model.housing import Housing as Housing
-from housing.model.housing import HousingModes as HousingModes
-from housing.model.housing import cover_joints as cover_joints
-from housing.model.material import STEEL as STEEL
-from housing.model.material import Material as Material
 from housing.model.patches import Patch as Patch
 from housing.model.seats import Seat as Seat
 from housing.model.seats import Sensor as Sensor

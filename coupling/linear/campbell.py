@@ -21,11 +21,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from coupling.assembly import CoupledMachine
 from coupling.errors import CouplingError
 from coupling.linear.complex_modes import coupled_modes
 from coupling.linear.eigenpairs import refine_pair
-from coupling.machine.assembly import CoupledMachine
-from coupling.signals.excitation import ExcitationLine, excitation_lines
+from coupling.linear.excitation_orders import ExcitationLine, excitation_lines
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from rotors.numerics.branch_following import (
     BranchPoint,
@@ -272,7 +272,7 @@ def system_campbell(
     frequency_limit : float
         Branches below it at some speed are followed [rad/s].
     lines : sequence of ExcitationLine, optional
-        Those of :func:`coupling.signals.excitation.excitation_lines` where not given.
+        Those of :func:`coupling.linear.excitation_orders.excitation_lines` where not given.
     contact : ContactState, optional
         At every speed; :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load where not given.
     progress : callable

@@ -31,10 +31,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from coupling.assembly import CoupledMachine
 from coupling.errors import CouplingError, ModesError
 from coupling.linear.complex_modes import CoupledModes
 from coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from coupling.machine.assembly import CoupledMachine
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 

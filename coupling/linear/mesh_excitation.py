@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from coupling.assembly import CoupledMachine
 from coupling.gears import ToothContact
 from coupling.gears.loaded.transmission_error import (
     LoadedMesh,
@@ -20,7 +21,6 @@ from coupling.gears.loaded.transmission_error import (
     mesh_period_phases,
     transmission_error_phasors,
 )
-from coupling.machine.assembly import CoupledMachine
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,7 +7,7 @@ equations of motion, so the two sides feel equal and opposite forces, whatever t
 The law of a linear bearing is its stiffness and damping matrix, at most 5x5 over x, y, z and the rotations about x and
 y. Nonlinear bearing laws are rolling elements with clearance, and gaps that close: such a law turns the deflections δ
 of the shaft against its seat (x, y, z and the rotations about x and y) into the forces of the shaft on the seat;
-:mod:`coupling.time.bearing_kernels` is its compiled form.
+:mod:`coupling.connector_forces.bearing_kernels` is its compiled form.
 
 `MountedBearing`, `MountedGear` and `GearMesh` give bearings and gears their places in the machine.
 
@@ -91,7 +91,7 @@ class RollingLaw:
 class GapLaw:
     """Radial gap law of a ring around the shaft: beyond the gap the force is F (penetration / depth)^n.
 
-    :mod:`coupling.time.bearing_kernels` has its compiled form.
+    :mod:`coupling.connector_forces.bearing_kernels` has its compiled form.
 
     Attributes
     ----------

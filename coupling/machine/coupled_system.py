@@ -28,7 +28,7 @@ class HarmonicLoad:
         w [rad/s], at the nominal speeds.
     amplitude : ndarray of complex, shape (n,)
     follows : "time", "turning" or "unbalance"
-        Dependence on the speed where it is not the nominal one, see :mod:`coupling.time.speed_profile`: constant
+        Dependence on the speed where it is not the nominal one, see :mod:`coupling.machine.speed_profile`: constant
         frequency; phase that follows the rotation, e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/w)
         e^{iws}.
     """

@@ -20,11 +20,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from coupling.collocation.arrays import ORDER, Steps, Trace, element_work, empty_steps, empty_trace, first_elements
+from coupling.collocation.linear_part import LinearPart, real_rows
+from coupling.connector_forces.kernel_arrays import Contacts
 from coupling.errors import PeriodicError
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.periodic.arrays import ORDER, Steps, Trace, element_work, empty_steps, empty_trace, first_elements
-from coupling.periodic.linear_part import LinearPart, real_rows
-from coupling.time.kernel_arrays import Contacts
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -121,8 +121,6 @@ _MOST_CUTS = 41  # of one element, a few more than the kernel makes: a whole per
 _PER_CYCLE = 4  # coarsest elements in a mesh period or in the shortest cycle of a load
 _SAME_TIME = 1e-9  # part of the period within which two events are one
 _SAME_SIZE = 1e-11  # parts of the largest element by which elements of one size may differ
-_LADDER = 1.1  # between the sizes of its rungs ...
-_RUNGS = 100  # ... so down to a ten-thousandth of the largest
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +155,7 @@ class PeriodMotion:
     ----------
     part : LinearPart
     starts, ends : ndarray, shape (K, 2 N)
-        States, see :class:`coupling.periodic.linear_part.LinearPart`.
+        States, see :class:`coupling.collocation.linear_part.LinearPart`.
     pieces : ndarray, shape (K, 2 N, 2 N)
         Derivative of each end by its start, both in amplitudes, as :attr:`LinearPart.to_amplitudes` gives them; of no
         segments without disturbances.
@@ -257,17 +255,9 @@ def cut_period(part: LinearPart, period: float, largest: float, segments: int = 
     within = np.arange(len(size)) - np.repeat(np.cumsum(counts) - counts, counts)
     # Sizes that differ by rounding are one.
     _, first, slots = np.unique(np.rint(size / (_SAME_SIZE * largest)), return_index=True, return_inverse=True)
-    steps = element_sizes(part, size[first], float(size.max()))
+    steps = empty_steps(part.reference, size[first], float(size.max()))
     nodes = np.concatenate([[0], np.cumsum(counts)])[np.searchsorted(bounds, marks)]
     return Elements(np.repeat(bounds[:-1], counts) + within * size, size, slots.astype(np.int64), steps, nodes)
-
-
-def element_sizes(part: LinearPart, values: FloatArray, largest: float, *, inner: bool = False) -> Steps:
-    """Room for elements of some sizes, and for a ladder from the largest down; see :class:`Steps`."""
-    reference = part.reference
-    sizes = np.concatenate([values, largest / _LADDER ** np.arange(_RUNGS)])
-    m, c = reference.eigenvalue.size, reference.stiffness.size
-    return empty_steps(sizes, len(values), m, ORDER, c, inner=inner)
 
 
 def integrate_period(
@@ -293,7 +283,7 @@ def _pass_within(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, room: int, *, varied: bool
 ) -> PeriodMotion | None:
     """Integration with room for some changes of contact; None where there are more."""
-    from coupling.periodic.integration_kernels import NO_ROOM, integrate_elements
+    from coupling.collocation.integration_kernels import NO_ROOM, integrate_elements
 
     modes, count = len(part.eigenvalues), len(elements.nodes) - 1
     m, c = part.reference.eigenvalue.size, len(part.system.contacts)
@@ -346,7 +336,7 @@ def _pass_within(
 
 
 def _refuse(wrong: int, room: int) -> None:
-    from coupling.periodic.integration_kernels import NO_BALANCE, NO_ROOM
+    from coupling.collocation.integration_kernels import NO_BALANCE, NO_ROOM
 
     if wrong == NO_BALANCE:
         raise PeriodicError("the teeth's forces do not balance within an element of time; expected a law that grows")

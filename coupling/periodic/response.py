@@ -14,11 +14,11 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from coupling.collocation.arrays import MONOMIALS, ORDER, Trace, element_work, weights_to
+from coupling.collocation.linear_part import LinearPart
+from coupling.connector_forces.kernel_arrays import Contacts
 from coupling.errors import CouplingError
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.periodic.arrays import MONOMIALS, ORDER, Trace, element_work, weights_to
-from coupling.periodic.linear_part import LinearPart
-from coupling.time.kernel_arrays import Contacts
 from coupling.time.settings import MotionRecord, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
@@ -223,12 +223,12 @@ class PeriodicResponse:
         return np.asarray(np.einsum("es,esc->c", weights, values) / self.period)
 
     def _amplitudes(self, times: FloatArray) -> FloatArray:
-        from coupling.periodic.integration_kernels import amplitudes_at
+        from coupling.collocation.integration_kernels import amplitudes_at
 
         return np.asarray(amplitudes_at(self.part.reference, self.trace, times))
 
     def _contacts(self, times: FloatArray, amplitudes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        from coupling.periodic.integration_kernels import forces_at
+        from coupling.collocation.integration_kernels import forces_at
 
         reference = self.part.reference
         delta, rate = amplitudes @ reference.displacement.T, amplitudes @ reference.rate.T

@@ -1,7 +1,7 @@
 """Shooting method: periodic motion of a coupled system by Newton's method on the state after a period.
 
 A motion is periodic where the state x(T) after the period is the state x(0) at its start. With the monodromy
-M = ∂x(T)/∂x(0), which :mod:`coupling.periodic.integration_kernels` integrates exactly, switches of contact included,
+M = ∂x(T)/∂x(0), which :mod:`coupling.collocation.integration_kernels` integrates exactly, switches of contact included,
 Newton's step solves
 
     (M - I) Δ = x(0) - x(T).
@@ -23,14 +23,14 @@ from math import lcm
 import numpy as np
 import numpy.typing as npt
 
+from coupling.collocation.linear_part import LinearPart, linear_part
+from coupling.connector_forces.kernel_arrays import Contacts
 from coupling.errors import CouplingError, PeriodicError
 from coupling.gears import ToothContact
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.periodic.linear_part import LinearPart, linear_part
 from coupling.periodic.orbit import Elements, PeriodMotion, coarsest_element, cut_period, integrate_period
 from coupling.periodic.response import BranchMotion, PeriodicResponse, multipliers
 from coupling.time.condensation import Condensed, condensed
-from coupling.time.kernel_arrays import Contacts
 from coupling.time.step_matrices import contact_arrays
 
 _SAME = 1e-9  # relative tolerance of a frequency ratio

@@ -112,8 +112,8 @@ class SuperposedResponse:
     @cached_property
     def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Compression, force by the law and assumed force over the phases of all groups, shape (s, c) each."""
-        from coupling.periodic.arrays import element_work
-        from coupling.periodic.integration_kernels import forces_at
+        from coupling.collocation.arrays import element_work
+        from coupling.collocation.integration_kernels import forces_at
 
         slowest = max(motion.response.period for motion in self.motions)
         times = slowest * _SPACING * np.arange(_PHASES, dtype=np.float64)

@@ -8,8 +8,9 @@
 - :func:`housing_paths` -- contributions of bearings and housing modes to a sensor's lines.
 """
 
-from coupling.signals.excitation import LineName, Sideband, line_names, sidebands
+from coupling.signals.line_names import LineName, line_names
 from coupling.signals.order_tracking import AngleSignal, OrderMap, order_map, order_spectrum, resample_by_angle
+from coupling.signals.sidebands import Sideband, sidebands
 from coupling.signals.spectrum import (
     ACCELERATION_REFERENCE,
     PowerDensity,

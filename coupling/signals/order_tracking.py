@@ -14,8 +14,8 @@ import numpy.typing as npt
 from scipy.interpolate import make_interp_spline
 
 from coupling.errors import CouplingError
+from coupling.machine.speed_profile import SpeedProfile
 from coupling.signals.spectrum import Spectrum, Window, amplitude_spectrum, lines_at
-from coupling.time.speed_profile import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 

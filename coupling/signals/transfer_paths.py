@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from coupling.assembly import CoupledMachine
 from coupling.errors import CouplingError
-from coupling.machine.assembly import CoupledMachine
 from coupling.machine.components import HousingComponent
 
 FloatArray = npt.NDArray[np.float64]

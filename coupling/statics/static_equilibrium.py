@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector_forces.kernel_arrays import bearing_arrays
 from coupling.errors import CouplingError, TransientError
 from coupling.machine.connectors import ContactConnector, NonlinearConnector
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.time.kernel_arrays import bearing_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -157,7 +157,7 @@ def friction_push(
 
 def _bearing(connector: NonlinearConnector, deflection: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
     """Force and tangent of a nonlinear bearing at its deflections, over its directions."""
-    from coupling.time.bearing_kernels import bearing_force
+    from coupling.connector_forces.bearing_kernels import bearing_force
 
     q, force, tangent = connector.law.reference.copy(), np.zeros(5), np.zeros((5, 5))
     q[connector.axes] = deflection

@@ -4,7 +4,7 @@ The machine with its mean mesh stiffness is linear and time-invariant, so its mo
 their exponentials, gyroscopic and damped as they are; harmonic loads and runout errors by the steady response of the
 reference; rigid-body motions by uniform acceleration. The difference of the tooth forces from their mean law, one force
 for each contact, is all that is approximated: over an element of time by the polynomial through its values at Gauss
-points, see :mod:`coupling.periodic.integration_kernels`, whose elements the search of periodic motions shares.
+points, see :mod:`coupling.collocation.integration_kernels`, whose elements the search of periodic motions shares.
 Elements end at every tooth event, and where a contact law changes its branch by itself.
 
 The local error is that of the polynomial. It has no defect at the Gauss points, so between them the defect has the
@@ -25,26 +25,26 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import PeriodicError, TransientError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.periodic.arrays import (
+from coupling.collocation.arrays import (
     ORDER,
     FreeMotion,
     Powers,
     Steps,
     Trace,
     element_work,
+    empty_steps,
     empty_trace,
     first_elements,
     powers_room,
 )
-from coupling.periodic.linear_part import LinearPart, linear_part
-from coupling.periodic.orbit import element_sizes
+from coupling.collocation.linear_part import LinearPart, linear_part
+from coupling.connector_forces.kernel_arrays import Contacts, Samples
+from coupling.errors import PeriodicError, TransientError
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.speed_profile import SpeedProfile
 from coupling.time.condensation import condensed
 from coupling.time.integration import Attempt, Checkpoint, coarsest_step, sample_times
-from coupling.time.kernel_arrays import Contacts, Samples
 from coupling.time.settings import TransientOutputs, TransientSettings
-from coupling.time.speed_profile import SpeedProfile
 from coupling.time.step_matrices import kernel_arrays
 
 FloatArray = npt.NDArray[np.float64]
@@ -112,7 +112,7 @@ class CollocationRecord:
 
     def write(self, trace: Trace, free: FreeMotion, times: FloatArray, samples: Samples, first: int) -> None:
         """Write the samples at ascending times of a trace, from number ``first`` on."""
-        from coupling.periodic.integration_kernels import amplitudes_at, forces_at
+        from coupling.collocation.integration_kernels import amplitudes_at, forces_at
 
         reference = self.part.reference
         rows = slice(first - samples.offset, first - samples.offset + len(times))
@@ -128,7 +128,7 @@ class CollocationRecord:
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
         """Add the work, the losses and the contact figures of a trace to the state."""
-        from coupling.periodic.integration_kernels import add_contacts, add_powers
+        from coupling.collocation.integration_kernels import add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
         excess = trace.excess.reshape(len(trace.start), ORDER * trace.excess.shape[2])
@@ -138,7 +138,7 @@ class CollocationRecord:
 
     def contact_figures(self, before: Checkpoint, trace: Trace) -> FloatArray:
         """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace added."""
-        from coupling.periodic.integration_kernels import add_contacts
+        from coupling.collocation.integration_kernels import add_contacts
 
         figures = before.contact_totals.copy()
         add_contacts(trace, self.contacts, before.stored, self._room.weights[0], before.totals.copy(), figures)
@@ -207,7 +207,7 @@ class CollocationStepper:
         self.coarsen_below = _MUCH_BETTER * settings.tolerance
         self._coarsest = ORDER * coarsest_step(part.system, profile, settings.largest_step)
         self._record = CollocationRecord(part, outputs, self.arrays.contacts)
-        self._steps = element_sizes(part, np.zeros(_SIZES), self._coarsest, inner=True)
+        self._steps = empty_steps(part.reference, np.zeros(_SIZES), self._coarsest, inner=True)
         self._shape = part.reference.eigenvalue.size, ORDER, len(part.system.contacts)
         self._trace = empty_trace(0, *self._shape)
         self._undisturbed = np.zeros((0, 2 * self._shape[0]))
@@ -271,7 +271,7 @@ class CollocationStepper:
 
         The trace holds until the next call.
         """
-        from coupling.periodic.integration_kernels import NO_BALANCE, NO_ROOM, integrate_elements
+        from coupling.collocation.integration_kernels import NO_BALANCE, NO_ROOM, integrate_elements
 
         reference, modes = self._part.reference, len(self._part.eigenvalues)
         lengths = np.diff(stretches) / pieces

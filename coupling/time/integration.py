@@ -15,12 +15,12 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector_forces.kernel_arrays import LAST_TOUCH, PEAK, Samples
 from coupling.errors import DeflectionError, TransientError
 from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.speed_profile import SpeedProfile
 from coupling.statics.static_equilibrium import coasting_velocity, static_equilibrium
-from coupling.time.kernel_arrays import LAST_TOUCH, PEAK, Samples
 from coupling.time.settings import TransientSettings
-from coupling.time.speed_profile import SpeedProfile
 from coupling.time.step_matrices import KernelArrays, stored_energy
 
 FloatArray = npt.NDArray[np.float64]

@@ -27,7 +27,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.time.contact_kernels import (
+from coupling.connector_forces.contact_kernels import (
     DAMPING,
     ENERGY,
     FORCE,
@@ -37,8 +37,8 @@ from coupling.time.contact_kernels import (
     flank_gap,
     solve_contact_forces,
 )
-from coupling.time.dense_kernels import SUMS, add_rows, project
-from coupling.time.kernel_arrays import (
+from coupling.connector_forces.dense_kernels import SUMS, add_rows, project
+from coupling.connector_forces.kernel_arrays import (
     APART,
     BEARING_ENERGY,
     BEARING_POWER,

@@ -15,11 +15,11 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector_forces.kernel_arrays import LAST_TOUCH, Samples, Segments
 from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.speed_profile import SpeedProfile
 from coupling.time.integration import Attempt, Checkpoint, timed_amplitude
-from coupling.time.kernel_arrays import LAST_TOUCH, Samples, Segments
 from coupling.time.settings import TransientOutputs, TransientSettings
-from coupling.time.speed_profile import SpeedProfile
 from coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_room
 
 FloatArray = npt.NDArray[np.float64]

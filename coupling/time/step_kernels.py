@@ -15,8 +15,8 @@ B = S₀⁻¹, by Sherman, Morrison and Woodbury,
 import numpy as np
 import numpy.typing as npt
 
-from coupling.time.dense_kernels import add_rows, project, solve_in_place
-from coupling.time.kernel_arrays import Contacts, Dynamics, StepMatrices
+from coupling.connector_forces.dense_kernels import add_rows, project, solve_in_place
+from coupling.connector_forces.kernel_arrays import Contacts, Dynamics, StepMatrices
 from rotors.numerics.compiled import counted, inner
 
 FloatArray = npt.NDArray[np.float64]

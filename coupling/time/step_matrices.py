@@ -8,10 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.machine.connectors import SpeedTable
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.time.condensation import common_span
-from coupling.time.kernel_arrays import (
+from coupling.connector_forces.kernel_arrays import (
     BEARING_ENERGY,
     BY_TIME,
     BY_TURNING,
@@ -26,8 +23,11 @@ from coupling.time.kernel_arrays import (
     StepMatrices,
     bearing_arrays,
 )
+from coupling.machine.connectors import SpeedTable
+from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.speed_profile import SpeedProfile
+from coupling.time.condensation import common_span
 from coupling.time.settings import TransientOutputs
-from coupling.time.speed_profile import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -333,7 +333,7 @@ def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, nominal_
 
 def _of_bearings(bearings: Bearings, first: int, delta: FloatArray, nominal_time: float) -> float:
     """Energy of the nonlinear part of the bearings' forces."""
-    from coupling.time.bearing_kernels import evaluate_bearings
+    from coupling.connector_forces.bearing_kernels import evaluate_bearings
 
     tangents, room = np.zeros((bearings.preload.size, 5, 5)), np.zeros((8, 5))
     evaluate_bearings(bearings, first, nominal_time, delta, np.zeros_like(delta), tangents, room)

@@ -18,18 +18,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from coupling.assembly import CoupledMachine
+from coupling.connector_forces.kernel_arrays import APART, IMPULSE, PEAK
 from coupling.errors import CouplingError, TransientError
-from coupling.machine.assembly import CoupledMachine
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.signals.histories import HISTORY_QUANTITIES, Histories
+from coupling.machine.speed_profile import SpeedProfile
 from coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from coupling.time.condensation import condensed
 from coupling.time.exponential_collocation import CollocationStepper, exact_part
+from coupling.time.histories import HISTORY_QUANTITIES, Histories
 from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint, Integration, sample_times
-from coupling.time.kernel_arrays import APART, IMPULSE, PEAK
 from coupling.time.newmark_stepper import NewmarkStepper
 from coupling.time.settings import RECORDED, MotionRecord, TransientOutputs, TransientSettings
-from coupling.time.speed_profile import SpeedProfile
 from coupling.time.step_matrices import empty_samples
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
-from gearwhine.from_case.machine import basis_error, point_of_pairs, require_machine, solve_machine, solve_pairs
+from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.output.dataset import labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
@@ -23,6 +23,7 @@ from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system
 from gearwhine.solve.coupled_system import SolvedSystem, solve_system
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.machine import basis_error, point_of_pairs, solve_machine, solve_pairs
 from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import (
     add_uncertainty,

@@ -192,8 +192,16 @@ class Result(Generic[Solved]):
                 now = time.perf_counter()
                 self.document["seconds"] |= {"writing": now - begin, "total": now - self._started}
 
+        def write_with_modes(place: Path) -> None:
+            write(place)
+            if self._housing is not None:
+                from gearwhine.solve.housing_modes import write_mode_cache
+
+                write_mode_cache(place, self._housing)
+
         if self.command in COMMANDS:
-            store_results(self.command, self.document, self.case, Path(folder), write, self._housing)
+            cached = self._housing is not None and self._housing.source is not None
+            store_results(self.command, self.document, self.case, Path(folder), write_with_modes, modes_stored=cached)
         else:
             with staging(Path(folder)) as place:
                 write(place)

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
-from gearwhine.from_case.machine import basis_error, build_machine, reduce_housing, require_machine, solve_pairs
+from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
+from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import comparison_document, write_comparison
@@ -30,7 +31,8 @@ from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.comparison import compare_housing
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.gear_pairs import analyse_pairs
-from gearwhine.solve.housing_modes import MODE_CACHE_FILE, solve_housing, write_mode_cache
+from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
+from gearwhine.solve.machine import basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, unstable_modes_warnings

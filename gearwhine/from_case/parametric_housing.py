@@ -23,8 +23,8 @@ from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.progress import Progress, silent
 from housing import HousingError, assemble, solve_modes
 from housing.fem.matrices import Additions
+from housing.material import element_constants
 from housing.measured.survey_planning import survey_grid
-from housing.model.material import element_constants
 from housing.model.seats import seat_matrix
 from housing.updating import ModalState, ModelSensitivity, Parameter, Surrogate, modal_sensitivities, values_at
 from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality

@@ -172,6 +172,8 @@ def _file_content(path: Path) -> dict[str, str]:
         return {"sha256": hashlib.file_digest(file, "sha256").hexdigest(), "ending": path.suffix.lower()}
 
 
+MODE_CACHE_FILE = "modes.nc"
+"""Modes of the housing, which the commands of a results folder share."""
 SUMMARY = "summary.json"
 COMMANDS = (
     "run",

@@ -16,6 +16,7 @@ from typing import Any
 from gearwhine.case import Case, dump_case
 from gearwhine.output.files import (
     COMMANDS,
+    MODE_CACHE_FILE,
     SUMMARY,
     file_contents,
     finite,
@@ -24,7 +25,6 @@ from gearwhine.output.files import (
     read_summary,
     staging,
 )
-from gearwhine.solve.housing_modes import MODE_CACHE_FILE, SolvedHousing, write_mode_cache
 from housing.storage.netcdf import Variables, read_netcdf
 
 _FOREMOST = "run"
@@ -140,7 +140,8 @@ def store_results(
     case: Case,
     folder: Path,
     write: Callable[[Path], None],
-    housing: SolvedHousing | None = None,
+    *,
+    modes_stored: bool = False,
 ) -> None:
     """Keep a command's results in a folder.
 
@@ -156,8 +157,8 @@ def store_results(
         The output folder.
     write
         Writes the command's own files into a folder.
-    housing
-        Whose modes are stored.
+    modes_stored
+        Whether the folder holds the modes that the results rest on, so that they are listed though not written.
     """
 
     def settle(place: Path) -> Path | None:
@@ -167,7 +168,7 @@ def store_results(
             if path.is_file() and path.name != MODE_CACHE_FILE:
                 path.rename(place / own / path.name)
         names = {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
-        if housing is not None and housing.source is not None:
+        if modes_stored:
             names.add(MODE_CACHE_FILE)
         files = [*sorted(names), (own / SUMMARY).as_posix()]
         document.update(
@@ -179,8 +180,6 @@ def store_results(
     with staging(folder, settle) as place:
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
         write(place)
-        if housing is not None:
-            write_mode_cache(place, housing)
 
 
 def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import h5netcdf
 import numpy as np
 
-from coupling.signals.histories import HISTORY_QUANTITIES, HistoryQuantity
+from coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results import comparison, operating_point, sound

@@ -9,6 +9,7 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
   of a survey, and model updating.
 - :mod:`~gearwhine.solve.rotors`: each rotor alone.
 - :mod:`~gearwhine.solve.gear_pairs`: each gear pair, and its best tip relief.
+- :mod:`~gearwhine.solve.machine`: the machine with its solved housing, assembled.
 - :mod:`~gearwhine.solve.operating_point`: static equilibrium of the machine under its mean load.
 - :mod:`gearwhine.solve.sensitivity`: ranking of walls and bearings by what they change in gear pairs, sensors' lines
   and sound at that equilibrium; changes of the housing, and the model of the lines.

@@ -10,6 +10,7 @@ from coupling import CoupledMachine, ModesError, coupled_modes, system_campbell
 from coupling import stability as coupled_stability
 from coupling.linear.campbell import SystemCampbell
 from coupling.linear.complex_modes import CoupledModes, Stability
+from coupling.linear.excitation_orders import excitation_lines
 from coupling.linear.frequency_response import (
     FrequencyResponse,
     mesh_error_response,
@@ -17,7 +18,6 @@ from coupling.linear.frequency_response import (
     unbalance_response,
 )
 from coupling.linear.mesh_excitation import MeshHarmonicModel, ResponseParts
-from coupling.signals.excitation import excitation_lines
 from coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require, rotor_speeds, table_range
 from gearwhine.case.errors import NOTHING

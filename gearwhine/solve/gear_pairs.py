@@ -42,9 +42,9 @@ from gearwhine.case import GearPair as GivenPair
 from gearwhine.case.errors import NOTHING
 from gearwhine.case.gears import ReliefAim as GivenAim
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
-from gearwhine.from_case.machine import build_machine
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import build_machine
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -24,7 +24,7 @@ from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import attach_all, build_attachments, check_places
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.mesh_health import noted_on_failure, require_meshable, resolution_warnings
-from gearwhine.output.files import file_contents, installed, source_digest, texts_in, with_contents
+from gearwhine.output.files import MODE_CACHE_FILE, file_contents, installed, source_digest, texts_in, with_contents
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from housing import (
@@ -38,9 +38,9 @@ from housing import (
     write_modes,
 )
 from housing.errors import ModeFileError
+from housing.housing import RESPONSE_ORDERS, bearing_port, certified_modes
+from housing.material import mass_properties
 from housing.measured.survey_planning import Survey, survey_grid
-from housing.model.housing import RESPONSE_ORDERS, bearing_port, certified_modes
-from housing.model.material import mass_properties
 from housing.model.seats import SensorPort
 from housing.modes.dominance import Dominance, dominance
 from housing.modes.effective_mass import EffectiveMass
@@ -53,13 +53,14 @@ from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-MODE_CACHE_FILE = "modes.nc"
 
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 MODES_CODE = (
     "meshes",
     "housing.errors",
+    "housing.housing",
+    "housing.material",
     "housing.fem",
     "housing.model",
     "housing.modes",
@@ -149,7 +150,7 @@ class SolvedHousing:
         The seats' motions from the nodes'.
     loaded : dict of str to sparse array, shape (5, 3 n_nodes)
         Motions of each place where the machine bears on the housing, see
-        :func:`housing.model.housing.bearing_port`: the modes' attachments are for these.
+        :func:`housing.housing.bearing_port`: the modes' attachments are for these.
     sensors : dict of str to SensorPort
     survey : Survey
     strengths : Dominance or None

@@ -20,11 +20,12 @@ from coupling.gears import GearError
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
-from gearwhine.from_case.machine import ReducedHousing, describe_machine, reduce_housing, require_machine
+from gearwhine.from_case.machine import describe_machine, require_machine
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.machine import ReducedHousing, reduce_housing
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings
 from gearwhine.solve.sensitivity.influences import LoadSensitivity
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import signals as signature
-from coupling.signals.excitation import excitation_lines
+from coupling.linear.excitation_orders import excitation_lines
 from gearwhine.case import Case, speed_ratios
 from gearwhine.output.quantity import warning
 from gearwhine.solve.transient import SolvedTransient

@@ -18,10 +18,10 @@ from coupling.periodic.superposition import (
     excitation_groups,
     superposed_response,
 )
-from coupling.signals.excitation import line_names
-from coupling.signals.histories import Histories, modal_record, transient_outputs, with_modal_rows
-from coupling.signals.histories import histories as coupled_histories
+from coupling.signals.line_names import line_names
 from coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
+from coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
+from coupling.time.histories import histories as coupled_histories
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.speeds_and_torques import BEYOND_OPERATION

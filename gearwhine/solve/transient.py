@@ -8,7 +8,9 @@ import numpy.typing as npt
 
 import gearwhine
 from coupling import CoupledMachine, SpeedProfile
-from coupling.signals.histories import (
+from coupling.signals.spectrum import Peak, SignalParts, Spectrum, signal_parts, spectrum_peaks
+from coupling.time.exponential_collocation import integration_method
+from coupling.time.histories import (
     Histories,
     ModalRecord,
     empty_record,
@@ -16,17 +18,17 @@ from coupling.signals.histories import (
     transient_outputs,
     with_modal_rows,
 )
-from coupling.signals.histories import histories as coupled_histories
-from coupling.signals.spectrum import Peak, SignalParts, Spectrum, signal_parts, spectrum_peaks
-from coupling.time.exponential_collocation import integration_method
+from coupling.time.histories import histories as coupled_histories
 from coupling.time.integration import Checkpoint
 from coupling.time.settings import MotionRecord
 from coupling.time.transient import TransientFigures, fingerprint, integrate_blocks, integration_key, transient_figures
 from gearwhine.case import Case, require
-from gearwhine.from_case.machine import ReducedHousing, base_motion, driving
+from gearwhine.from_case.driving import driving
+from gearwhine.from_case.machine import base_motion
 from gearwhine.output.files import PRESENTATION, installed, source_digest
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.machine import ReducedHousing
 from gearwhine.solve.transient_record import (
     RECORD_BYTES,
     Arrays,

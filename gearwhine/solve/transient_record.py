@@ -32,8 +32,8 @@ import numpy.typing as npt
 from coupling import SpeedProfile, TransientSettings, amplitude_spectrum
 from coupling.signals.decimation import Decimation
 from coupling.signals.decimation import decimation as coupled_decimation
-from coupling.signals.histories import Histories, ModalRecord
 from coupling.signals.spectrum import Spectrum, Window, averaged_spectrum
+from coupling.time.histories import Histories, ModalRecord
 from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked

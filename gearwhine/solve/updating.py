@@ -235,7 +235,7 @@ def random_frequency_sets(
 
 def default_workers() -> int:
     """Return the number of cores that this process may use."""
-    from gearwhine.sweep.workers import default_workers as of_the_machine
+    from gearwhine.workers import default_workers as of_the_machine
 
     return of_the_machine()
 
@@ -252,7 +252,7 @@ def in_parallel(workers: int) -> Iterator[Each]:
     if workers < 2:
         yield serial_map
         return
-    from gearwhine.sweep.workers import await_workers, connected
+    from gearwhine.workers import await_workers, connected
 
     with tempfile.TemporaryDirectory(prefix="gearwhine-") as place, connected(workers, None, Path(place)) as client:
         await_workers(client, workers)

@@ -6,7 +6,7 @@
 - :func:`collected_sweep`, :func:`sweep_document` -- all points in one labelled dataset, and as JSON.
 
 A point is identified by its content (:mod:`gearwhine.sweep.points`), is solved wherever a worker is
-(:mod:`gearwhine.sweep.workers`), and lives in a file of its own (both in :mod:`gearwhine.sweep.solution`).
+(:mod:`gearwhine.workers`), and lives in a file of its own (both in :mod:`gearwhine.sweep.solution`).
 """
 
 from gearwhine.sweep.collect import collected_sweep, sweep_document
@@ -14,7 +14,7 @@ from gearwhine.sweep.points import Point, axis_name, sweep_points
 from gearwhine.sweep.resolution import missed_peaks
 from gearwhine.sweep.run import SweptPoint, run_sweep
 from gearwhine.sweep.solution import PointFailure, PointResult
-from gearwhine.sweep.workers import default_workers
+from gearwhine.workers import default_workers
 
 __all__ = [
     "Point",

@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from coupling import CoupledMachine, ModesError, coupled_modes
 from coupling.linear.complex_modes import CoupledModes
+from coupling.linear.excitation_orders import excitation_lines
 from coupling.linear.frequency_response import mesh_error_response, resonance_grid
-from coupling.signals.excitation import excitation_lines
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case
 from gearwhine.solve.sound.motion_lines import pulsating_efficiency

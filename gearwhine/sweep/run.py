@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.failures import WorkersError
-from gearwhine.from_case.machine import ReducedHousing, reduce_housing
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.output import staging
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing, write_mode_cache
+from gearwhine.solve.machine import ReducedHousing, reduce_housing
 from gearwhine.solve.sound import check_before_modes
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.solution import (
@@ -25,7 +25,7 @@ from gearwhine.sweep.solution import (
     solve_point_housing,
     write_point,
 )
-from gearwhine.sweep.workers import await_workers, connected
+from gearwhine.workers import await_workers, connected
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -63,7 +63,7 @@ def run_sweep(
     folder
         For the results.
     workers, scheduler
-        See :func:`gearwhine.sweep.workers.connected`.
+        See :func:`gearwhine.workers.connected`.
     fresh
         Solve also what the folder holds.
 

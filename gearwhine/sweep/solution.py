@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.signals.excitation import LineName
+from coupling.signals.line_names import LineName
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case, mesh_frequencies
 from gearwhine.failures import explain
-from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.output import finite, json_text
 from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import ReducedHousing, basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, machine_warnings
 from gearwhine.solve.transient import SolvedTransient, mean_bearing_forces, solve_transient
@@ -65,7 +65,7 @@ class PointResult:
     line_rates : ndarray, shape (l, n, 2)
         Rates of the housing's coordinates there, real and imaginary part.
     line_names, line_kinds : tuple of str
-        Their names and causes, see :class:`coupling.signals.excitation.LineName`.
+        Their names and causes, see :class:`coupling.signals.line_names.LineName`.
     resonances : Resonances or None
         Of the machine, linear about its mean contact; None where no mesh drives a sensor or a sound.
     """

@@ -26,7 +26,7 @@ from scipy import sparse
 
 from housing.errors import HousingError
 from housing.fem.matrices import Matrices
-from housing.model.material import Material, element_constants
+from housing.material import Material, element_constants
 from meshes import ElementBlock, Mesh
 from meshes.elements import ElementKind
 from meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions

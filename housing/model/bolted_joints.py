@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from housing.errors import HousingError
+from housing.material import Material
 from housing.model.bushings import Axial
-from housing.model.material import Material
 
 _TAN = math.tan(math.radians(30.0))
 _HEAD = 1.5  # diameter of the head's bearing face by that of the bolt

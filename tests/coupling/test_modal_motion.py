@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from coupling import CoupledMachine, CouplingError
-from coupling.signals.histories import modal_rows
+from coupling.time.histories import modal_rows
 from gearwhine.case import load_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.machine import build_machine
 
 
 @pytest.fixture(scope="module")

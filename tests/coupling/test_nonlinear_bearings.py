@@ -24,11 +24,11 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
+from coupling.connector_forces.kernel_arrays import bearing_arrays
 from coupling.machine.components import Component, rotor_component
 from coupling.machine.connectors import LinearConnector, NonlinearConnector
 from coupling.signals import line_names
-from coupling.signals.histories import histories, transient_outputs
-from coupling.time.kernel_arrays import bearing_arrays
+from coupling.time.histories import histories, transient_outputs
 from coupling.time.transient import TransientResult
 from rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 from rotors.rolling_bearings import (
@@ -96,7 +96,7 @@ def everything(n: int) -> TransientOutputs:
 @LAWS
 def test_the_compiled_law_is_that_of_the_room_of_rotors(bearing: RollingBearing) -> None:
     """Forces and tangent by the rolling room's own code; energy and its slopes by differences."""
-    from coupling.time.bearing_kernels import bearing_force
+    from coupling.connector_forces.bearing_kernels import bearing_force
 
     q = np.array([8e-6, -12e-6, 3e-6 if bearing.has_axial_stiffness else 0.0, 2e-4, -1e-4])
     state = rolling_state(bearing, q, cage_angle=0.3)

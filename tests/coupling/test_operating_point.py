@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from own_statics import FULL, STEEL, STIFFNESS, TEETH, distance, linear_bearing, one_stage, toothed
 
 from coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from coupling.assembly import assemble_machine
 from coupling.errors import EquilibriumNotFoundError
 from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, tooth_contact
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
-from coupling.machine.assembly import assemble_machine
 from coupling.machine.components import HousingComponent
 from coupling.statics.operating_point import CAUSES
 from coupling.statics.static_equilibrium import static_equilibrium

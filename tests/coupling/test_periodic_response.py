@@ -32,7 +32,7 @@ from coupling.machine.components import Component, rotor_component
 from coupling.machine.connectors import ContactConnector
 from coupling.machine.coupled_system import HarmonicLoad
 from coupling.periodic import PeriodicResponse, common_period, periodic_response
-from coupling.signals.histories import histories, transient_outputs
+from coupling.time.histories import histories, transient_outputs
 from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
 from rotors.modes.residual_modes import add_attachment_modes
 

@@ -23,7 +23,7 @@ from coupling import (
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
 from coupling.machine.components import rotor_component
 from coupling.machine.loads import Drive, TorqueHistory, TorqueRipple, TorqueSlope
-from coupling.signals.histories import histories, transient_outputs
+from coupling.time.histories import histories, transient_outputs
 from coupling.time.transient import TransientResult
 from rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, modal_rotor
 

@@ -19,8 +19,8 @@ from coupling import (
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
 from coupling.linear.campbell import ModesAtSpeed, likeness, matched
 from coupling.linear.eigenpairs import quadratic_eigenpairs
+from coupling.linear.excitation_orders import ExcitationLine, excitation_lines
 from coupling.machine.components import rotor_component
-from coupling.signals.excitation import ExcitationLine, excitation_lines
 from rotors import (
     Bearing,
     Disc,

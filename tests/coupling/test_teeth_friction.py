@@ -47,7 +47,7 @@ from coupling.gears.loaded.mesh_friction import mesh_friction
 from coupling.gears.loaded.transmission_error import mesh_period_phases
 from coupling.machine.components import Component, rotor_component
 from coupling.machine.connectors import ContactConnector, Sliding
-from coupling.signals.histories import histories, transient_outputs
+from coupling.time.histories import histories, transient_outputs
 from coupling.time.transient import TransientResult
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 

@@ -17,10 +17,10 @@ from coupling import (
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
 from coupling.signals import housing_paths, line_names, mode_parts
-from coupling.signals.histories import modal_record, transient_outputs, with_modal_rows
+from coupling.time.histories import modal_record, transient_outputs, with_modal_rows
 from gearwhine.case import load_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.machine import build_machine
 
 MODES = 4
 

@@ -13,7 +13,7 @@ from coupling.linear.frequency_response import mesh_error_response
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import mean_bearing_forces, solve_transient
 
 SHORTER = ("transient.revolutions=3", "transient.discard=1")

@@ -16,12 +16,12 @@ import xarray as xr
 from gearwhine.analyses.run import RunSolution, run_arrays
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.output.dataset import arrays_of
 from gearwhine.results.operating_point import LOAD
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.signature import solve_signature

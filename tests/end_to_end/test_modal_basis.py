@@ -7,8 +7,8 @@ import pytest
 from coupling.linear.frequency_response import mesh_error_response
 from gearwhine.case import Case, load_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import ReducedHousing, basis_error, build_machine, reduce_housing
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import ReducedHousing, basis_error, build_machine, reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
 Motions = dict[str, FloatArray]

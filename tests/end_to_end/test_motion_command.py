@@ -9,8 +9,8 @@ import xarray as xr
 
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.results.run import transient_document
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import solve_transient
 
 FEW = ("--set", "rotor.input.modes=2", "--set", "rotor.output.modes=2")

@@ -16,9 +16,9 @@ import xarray as xr
 from coupling import coupled_modes
 from gearwhine.case import CaseError, RollingStiffness, parse_case
 from gearwhine.cli import run_command
-from gearwhine.from_case.machine import build_machine
 from gearwhine.from_case.rotors import build_bearings, rolling_state
 from gearwhine.results.rotors import rotors_document
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.rotors import solve_rotors
 from rotors.rolling_bearings import (
     FourPointRow,

@@ -11,11 +11,11 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.solve.housing_modes import base_participation, solve_housing
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import solve_transient
 
 BASE = {

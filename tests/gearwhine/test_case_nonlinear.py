@@ -10,9 +10,9 @@ import pytest
 
 from coupling import GapLaw, RollingLaw
 from gearwhine.case import CaseError, dump_case, parse_case
-from gearwhine.from_case.machine import solve_machine
 from gearwhine.from_case.rotors import bearing_law, build_bearings
 from gearwhine.results.run import transient_document
+from gearwhine.solve.machine import solve_machine
 from gearwhine.solve.transient import solve_transient
 
 SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))

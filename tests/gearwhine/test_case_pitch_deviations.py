@@ -11,8 +11,8 @@ import pytest
 from coupling.gears.geometry.pitch_deviations import pitch_gaps
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.from_case.rotors import build_gear
+from gearwhine.solve.machine import build_machine
 
 MICROMETRES = [0.0, 1.0, -2.5, *([0.5] * 25)]
 

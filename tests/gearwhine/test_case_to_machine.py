@@ -13,9 +13,9 @@ from coupling import CoupledMachine, GapLaw, Torque
 from coupling.machine.loads import BaseHarmonic, TorqueRipple
 from gearwhine.case import Case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import build_machine
 
 Change = Callable[[dict[str, Any]], None]
 

@@ -5,7 +5,7 @@ from scipy.signal import argrelmax
 
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 

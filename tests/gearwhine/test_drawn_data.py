@@ -19,9 +19,9 @@ from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_tra
 from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.style import BLUE, GREY
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.signature import SolvedSignature, solve_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 from rotors import Campbell

@@ -13,20 +13,16 @@ import pytest
 from coupling import Torque, TransientError, static_equilibrium
 from coupling.gears.contact.tooth_force_kernels import tooth_force
 from coupling.machine.loads import TorqueHistory, TorqueRipple
-from coupling.time.speed_profile import free_speed
+from coupling.machine.speed_profile import free_speed
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
+from gearwhine.from_case.driving import driving, train_inertia
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import (
-    build_machine,
-    describe_machine,
-    driving,
-    solve_machine,
-    train_inertia,
-)
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.results.run import transient_document
+from gearwhine.solve.machine import build_machine, solve_machine
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 RPM = math.pi / 30.0

@@ -13,8 +13,9 @@ import gearwhine as gw
 from coupling.errors import EquilibriumNotFoundError
 from gearwhine.case import CaseError, dump_case, parse_case, swept_keys
 from gearwhine.cli import run_command
-from gearwhine.from_case.machine import describe_machine, rotor_bearings, solve_machine, solve_pairs
+from gearwhine.from_case.machine import describe_machine, rotor_bearings
 from gearwhine.results.operating_point import sections
+from gearwhine.solve.machine import solve_machine, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
@@ -230,7 +231,7 @@ def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: 
     def none_found(*parts: Any) -> None:
         raise EquilibriumNotFoundError("no static equilibrium of the machine")
 
-    monkeypatch.setattr("coupling.machine.description.solve_operating_point", none_found)
+    monkeypatch.setattr("coupling.machine_description.solve_operating_point", none_found)
     changed = document(misalignment="0 rad")
     for bearing in changed["bearing"]:
         bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}

@@ -22,12 +22,12 @@ from coupling.linear.sensor_level import SensorLevel
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.output.dataset import arrays_of, labelled
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques, with_coarser_slices
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import build_machine
 
 
 @cache

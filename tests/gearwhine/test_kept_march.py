@@ -15,8 +15,8 @@ import pytest
 
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.output.files import held_lock
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 from gearwhine.solve.transient_record import BlockFiles, stored_record
 

@@ -18,9 +18,10 @@ from coupling.linear.mesh_harmonics import LineModel
 from coupling.linear.sensor_level import SensorLevel
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine, describe_machine, full_housing_component
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.machine import build_machine, full_housing_component
 
 HELIX = 15.0  # degrees
 SENSOR = "right wall"

@@ -21,17 +21,18 @@ from coupling.statics.sensitivity import adjoint
 from coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine, full_housing_component
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.machine import full_housing_component
 from gearwhine.solve.sensitivity import ranking
 from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
 from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
-from housing.model.material import element_constants
+from housing.material import element_constants
 from housing.updating.static_sensitivity import harmonic_surface_density
 from meshes import Mesh
 

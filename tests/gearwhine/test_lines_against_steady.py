@@ -11,11 +11,12 @@ from coupling.gears.contact.tooth_force_kernels import tooth_force
 from coupling.gears.loaded.transmission_error import loaded_transmission_error
 from coupling.linear.line_outputs import SensorAmplitude
 from coupling.linear.mesh_harmonics import LineModel
-from coupling.signals.histories import histories, transient_outputs
+from coupling.time.histories import histories, transient_outputs
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine, describe_machine, full_housing_component
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import build_machine, full_housing_component
 
 FloatArray = npt.NDArray[np.float64]
 

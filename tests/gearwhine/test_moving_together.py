@@ -3,8 +3,8 @@
 import pytest
 
 from gearwhine.case import CaseError, Material, load_case, swept_keys
-from gearwhine.from_case.machine import build_machine
 from gearwhine.from_case.mesh import material_of
+from gearwhine.solve.machine import build_machine
 from gearwhine.sweep.points import sweep_points
 
 

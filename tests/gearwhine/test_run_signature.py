@@ -10,8 +10,8 @@ from coupling import SpeedProfile
 from gearwhine.case import Case, load_case, mesh_frequencies
 from gearwhine.figures.machine.transient import _speed
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.results.run import run_signature_document
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 

@@ -11,7 +11,7 @@ from coupling.linear.housing_rates import HousingRates
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import adjoint
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
-from gearwhine.from_case.machine import describe_machine, full_housing_component
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.output.sections import Table
@@ -19,6 +19,7 @@ from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.machine import full_housing_component
 from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
 from gearwhine.solve.sensitivity.influences import LineChange
 from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines

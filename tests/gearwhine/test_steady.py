@@ -14,8 +14,8 @@ from gearwhine.case import CaseError, load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.figures.machine.steady_state import draw_response_curve
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.results.steady_state import curve_sentences
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.steady_state import solve_steady
 from gearwhine.solve.transient import solve_transient
 

@@ -15,13 +15,13 @@ from coupling.gears import piecewise_cubic as piecewise
 from coupling.periodic import orbit, periodic_response, shooting, superposed_response
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
-from coupling.signals.histories import transient_outputs
+from coupling.time.histories import transient_outputs
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.steady_state import solve_steady
 
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second

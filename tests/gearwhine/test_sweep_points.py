@@ -12,8 +12,8 @@ import xarray as xr
 from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import build_machine, reduce_housing
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import build_machine, reduce_housing
 from gearwhine.solve.transient import solve_transient
 from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
 from gearwhine.sweep.points import code_digest

@@ -7,8 +7,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from coupling.linear.campbell import SystemCampbell, SystemCrossing
+from coupling.linear.excitation_orders import ExcitationLine
 from coupling.linear.frequency_response import FrequencyResponse
-from coupling.signals.excitation import ExcitationLine
 from gearwhine.figures.machine.system import KIND_COLORS, draw_system_campbell, draw_transmissibility
 
 RPM = 60.0 / (2.0 * math.pi)

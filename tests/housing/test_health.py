@@ -20,7 +20,7 @@ from housing import (
 )
 from housing.errors import HealthError
 from housing.fem.matrices import Matrices
-from housing.model.material import enclosed_volume
+from housing.material import enclosed_volume
 from housing.model.seats import seat_matrix
 from housing.model.supports import grounding
 from housing.modes.health import HealthLine

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from housing import Housing, HousingError, Joint, LumpedMass, Material, Patch, Seat, Sensor, Support
+from housing.housing import bearing_port, cover_joints
 from housing.model.bushings import Bushing
-from housing.model.housing import bearing_port, cover_joints
 from meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
 from meshes.box import Bore, Cover, CoverBolts, WallThickness
 

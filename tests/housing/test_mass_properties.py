@@ -8,7 +8,7 @@ import pytest
 
 from housing import LumpedMass, Material, Patch, assemble, attach_fixtures
 from housing.fem.matrices import Matrices
-from housing.model.material import mass_properties
+from housing.material import mass_properties
 from housing.model.patches import rigid_body
 from meshes import Mesh
 from meshes.elements import SOLIDS

@@ -9,7 +9,7 @@ from scipy import linalg
 
 from housing import HousingError, Material, Support, assemble, attach_fixtures, solve_modes
 from housing.fem.matrices import Matrices
-from housing.model.material import element_constants
+from housing.material import element_constants
 from housing.model.supports import fixed_freedoms
 from housing.updating import ModelSensitivity, modal_sensitivities
 from meshes import BoxGeometry, BoxMorph, Mesh

@@ -26,7 +26,7 @@ from coupling import (
 )
 from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
 from coupling.machine.components import HousingComponent, RotorComponent, rotor_component
-from coupling.signals.histories import Histories, histories, transient_outputs
+from coupling.time.histories import Histories, histories, transient_outputs
 from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
 from rotors.modes.residual_modes import add_attachment_modes
 

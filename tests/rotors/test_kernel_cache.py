@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from coupling.collocation.switch_kernels import by_pairs
+from coupling.connector_forces.contact_kernels import evaluate_contact
 from coupling.gears.contact.lookup_tables import law_table
 from coupling.gears.contact.tooth_force_kernels import friction_history, penetration
-from coupling.periodic.switch_kernels import by_pairs
-from coupling.time.contact_kernels import evaluate_contact
 from rotors.numerics import compiled
 from rotors.numerics.banded_kernels import factor
 from rotors.numerics.compiled import counted

@@ -19,12 +19,12 @@ import numpy.typing as npt
 import pytest
 
 from coupling import TransientOutputs, TransientSettings, amplitude_spectrum, simulate
-from coupling.signals.histories import histories, modal_rows, transient_outputs
 from coupling.signals.spectrum import Spectrum, spectrum_peaks
+from coupling.time.histories import histories, modal_rows, transient_outputs
 from gearwhine.case import Case, load_case
 from gearwhine.from_case.gear_pairs import pair_geometries, solve_gears
-from gearwhine.from_case.machine import build_machine
 from gearwhine.from_case.rotors import build_bearings, build_rotor
+from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import starting_state
 from rotors import rest_frequencies, solve_torsional_modes
 

@@ -37,7 +37,7 @@ from coupling.gears.errors import GearError, PointedToothError, ThinTipError, Un
 from coupling.gears.geometry.involute import involute
 from coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
 from coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
-from housing.model.material import STEEL
+from housing.material import STEEL
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from coupling.linear.campbell import SystemCampbell
+from coupling.linear.excitation_orders import ExcitationLine
 from coupling.linear.frequency_response import FrequencyResponse
-from coupling.signals.excitation import ExcitationLine
 from gearwhine.case import Case, mesh_frequencies
 from gearwhine.figures.style import (
     BLUE,

@@ -19,8 +19,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from coupling import amplitude_spectrum
 from coupling.signals import decibels
-from coupling.signals.histories import Histories
 from coupling.signals.spectrum import Window, signal_parts
+from coupling.time.histories import Histories
 from gearwhine.case import Case, mesh_frequencies
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (

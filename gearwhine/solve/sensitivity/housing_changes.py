@@ -22,8 +22,8 @@ from gearwhine.from_case.mesh import materials_of
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
 from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
 from housing.fem.surface import flat_faces
-from housing.model.housing import bearing_port
-from housing.model.material import element_constants
+from housing.housing import bearing_port
+from housing.material import element_constants
 from housing.model.seats import seat_matrix, sensor_port
 from housing.updating import ModelSensitivity
 from housing.updating.static_sensitivity import PortRates, StaticSensitivity

@@ -20,14 +20,15 @@ from coupling.linear.line_outputs import SensorAmplitude
 from coupling.linear.mesh_harmonics import Line, LineModel
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case
+from gearwhine.from_case.driving import driving
 from gearwhine.from_case.fixtures import attach_all
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import driving, full_housing_component
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
+from gearwhine.solve.machine import full_housing_component
 from gearwhine.solve.sensitivity.housing_changes import HousingChange
 from housing import ModeSet, modal_damping
-from housing.model.housing import RESPONSE_ORDERS
+from housing.housing import RESPONSE_ORDERS
 from housing.modes.natural_modes import ModeSetExtension
 from housing.updating import modal_sensitivities
 from housing.updating.static_sensitivity import StaticSensitivity

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledMachine, amplitude_spectrum
-from coupling.signals.excitation import LineName, excitation_lines, line_names
+from coupling.linear.excitation_orders import excitation_lines
+from coupling.signals.line_names import LineName, line_names
 from coupling.signals.spectrum import Spectrum
 from coupling.signals.tones import hann_tones
 from coupling.signals.transfer_paths import HousingPaths, housing_paths

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledMachine
-from coupling.signals.excitation import line_names
+from coupling.signals.line_names import line_names
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent

@@ -163,7 +163,7 @@ class Scratch(NamedTuple):
     jacobian: FloatArray  # (e + c, e + c)
     residual: FloatArray  # (e + c, 1)
     tangents: FloatArray  # (b, 5, 5) of bearings
-    bearing_work: FloatArray  # (8, 5): `coupling.time.bearing_kernels.evaluate_bearings`
+    bearing_work: FloatArray  # (8, 5): `coupling.connector_forces.bearing_kernels.evaluate_bearings`
     powers: FloatArray  # (5,): `coupling.time.newmark.evaluate_powers`
     powers_before: FloatArray  # (5,)
     block: FloatArray  # (w,)
@@ -191,7 +191,7 @@ class Samples(NamedTuple):
 
 
 def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
-    """Arrays of the laws of some bearings, see :class:`coupling.time.kernel_arrays.Bearings`."""
+    """Arrays of the laws of some bearings, see :class:`coupling.connector_forces.kernel_arrays.Bearings`."""
     b = len(connectors)
     linear, fixed, preload = np.zeros((b, 5, 5)), np.zeros((b, 5)), np.zeros(b)
     floating = np.zeros(b, dtype=np.bool_)

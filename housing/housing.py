@@ -15,10 +15,10 @@ from scipy import sparse
 from housing.errors import HousingError
 from housing.fem.assembly import assemble
 from housing.fem.matrices import Matrices
+from housing.material import Material, enclosed_volume, mass_properties
 from housing.model.bolted_joints import bolted_joint
 from housing.model.bushings import Bushing, Joint, Mount
 from housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
-from housing.model.material import Material, enclosed_volume, mass_properties
 from housing.model.patches import Patch, rigid_motions
 from housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.model.supports import Support

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from coupling.assembly import CoupledMachine, assemble_machine
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears import GearPairGeometry
 from coupling.gears.contact.face_slices import face_stations
@@ -22,7 +23,6 @@ from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
 from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
-from coupling.machine.assembly import CoupledMachine, assemble_machine
 from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
@@ -54,9 +54,9 @@ from coupling.machine.parts import (
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
-from coupling.signals.histories import histories, transient_outputs
 from coupling.statics.operating_point import OperatingPoint, solve_operating_point
 from coupling.statics.static_model import StaticGear, StaticPair, StaticShaftPart, static_bearing, static_pair
+from coupling.time.histories import histories, transient_outputs
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes

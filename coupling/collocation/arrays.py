@@ -72,6 +72,8 @@ def weights_to(part: FloatArray) -> FloatArray:
     return np.asarray((part[:, None] ** powers / powers) @ MONOMIALS.T)
 
 
+_LADDER = 1.1  # between the sizes of its rungs ...
+_RUNGS = 100  # ... so down to a ten-thousandth of the largest
 _LARGEST_BATCH = 24  # elements whose powers are found at once, within the processor's caches
 _BY_ONE_THREAD = 2**18  # of numbers: larger products of matrices OpenBLAS shares out among threads, at a loss
 
@@ -155,14 +157,16 @@ def first_elements(trace: Trace, count: int) -> Trace:
     return Trace._make(rows[:count] for rows in trace)
 
 
-def empty_steps(sizes: FloatArray, ladder: int, m: int, s: int, c: int, *, inner: bool = False) -> Steps:
-    """Room for some sizes of elements, of which the ladder begins at a number."""
+def empty_steps(reference: Reference, values: FloatArray, largest: float, *, inner: bool = False) -> Steps:
+    """Room for elements of some sizes [s], and for a ladder of sizes from the largest down."""
+    sizes = np.concatenate([values, largest / _LADDER ** np.arange(_RUNGS)])
+    m, s, c = reference.eigenvalue.size, ORDER, reference.stiffness.size
     k, n = len(sizes), s * c
     within = k if inner else 0
     return Steps(
         size=sizes,
         filled=np.zeros(k, dtype=np.int64),
-        ladder=np.array([ladder], dtype=np.int64),
+        ladder=np.array([len(values)], dtype=np.int64),
         decay=np.empty((k, 2, m)),
         free_response=np.empty((k, 2 * n, 2 * m)),
         flexibility=np.empty((k, 2 * n, n)),

@@ -31,7 +31,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.periodic.arrays import (
+from coupling.collocation.arrays import (
     BINOMIAL,
     GAUSS,
     INSIDE,
@@ -46,7 +46,7 @@ from coupling.periodic.arrays import (
     Trace,
     Work,
 )
-from coupling.periodic.element_kernels import (
+from coupling.collocation.element_kernels import (
     advance,
     advance_to,
     carry_on,
@@ -58,16 +58,16 @@ from coupling.periodic.element_kernels import (
     moments,
     solve_element,
 )
-from coupling.periodic.switch_kernels import (
+from coupling.collocation.switch_kernels import (
     apply_saltation,
     branch,
     first_switch,
     propagate_sensitivity,
     saltation_factor,
 )
-from coupling.time.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
-from coupling.time.dense_kernels import SUMS, project
-from coupling.time.kernel_arrays import DAMPING_LOSS, LARGEST_KINETIC, LOAD_WORK, ROTATION_WORK, Contacts
+from coupling.connector_forces.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
+from coupling.connector_forces.dense_kernels import SUMS, project
+from coupling.connector_forces.kernel_arrays import DAMPING_LOSS, LARGEST_KINETIC, LOAD_WORK, ROTATION_WORK, Contacts
 from rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
@@ -150,7 +150,7 @@ def integrate_elements(
 ) -> tuple[int, int, int]:
     """Integrate the amplitudes z and their disturbances through elements, each of a slot's size or, at -1, of any.
 
-    Disturbances as in :mod:`coupling.periodic.switch_kernels`. The trace holds ``held`` elements before. Returns the
+    Disturbances as in :mod:`coupling.collocation.switch_kernels`. The trace holds ``held`` elements before. Returns the
     number of elements after, the number of cuts, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
     """
     c = reference.stiffness.size

@@ -21,7 +21,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.time.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, ROLLERS, Bearings
+from coupling.connector_forces.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, ROLLERS, Bearings
 from rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]

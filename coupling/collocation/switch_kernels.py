@@ -19,11 +19,11 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.periodic.arrays import INSIDE, ORDER, PLACES, Reference, Steps, Work
-from coupling.periodic.element_kernels import end_matrices, interpolated, law
-from coupling.time.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, penetration
-from coupling.time.dense_kernels import SUMS, solve_part_in_place
-from coupling.time.kernel_arrays import Contacts
+from coupling.collocation.arrays import INSIDE, ORDER, PLACES, Reference, Steps, Work
+from coupling.collocation.element_kernels import end_matrices, interpolated, law
+from coupling.connector_forces.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, penetration
+from coupling.connector_forces.dense_kernels import SUMS, solve_part_in_place
+from coupling.connector_forces.kernel_arrays import Contacts
 from rotors.numerics.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]

@@ -8,10 +8,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from coupling.connector_forces.bearing_kernels import evaluate_bearings
+from coupling.connector_forces.dense_kernels import solve_in_place
+from coupling.connector_forces.kernel_arrays import Bearings, Contacts, Scratch
 from coupling.gears.contact.tooth_force_kernels import friction_shares, ranked_penetration, tooth_force
-from coupling.time.bearing_kernels import evaluate_bearings
-from coupling.time.dense_kernels import solve_in_place
-from coupling.time.kernel_arrays import Bearings, Contacts, Scratch
 from rotors.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]

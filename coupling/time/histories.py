@@ -21,13 +21,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from coupling.assembly import CoupledMachine
+from coupling.connector_forces.kernel_arrays import bearing_arrays
 from coupling.errors import CouplingError
-from coupling.machine.assembly import CoupledMachine
 from coupling.machine.connectors import LinearConnector, MountedGear, NonlinearConnector
+from coupling.machine.speed_profile import SpeedProfile
 from coupling.machine.tooth_friction import friction_of
-from coupling.time.kernel_arrays import bearing_arrays
 from coupling.time.settings import MotionRecord, TransientOutputs
-from coupling.time.speed_profile import SpeedProfile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -290,7 +290,7 @@ def _beside_linear(
     linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, nominal_time: FloatArray
 ) -> FloatArray:
     """Nonlinear part of a bearing's force beside its tangent's, shape (s, d)."""
-    from coupling.time.bearing_kernels import bearing_history
+    from coupling.connector_forces.bearing_kernels import bearing_history
 
     # Directions in which nothing can move have no part in it.
     moving = np.flatnonzero(np.any(linear.directions != 0.0, axis=0))

@@ -1,0 +1,1 @@
+"""Connector forces, compiled: tooth contacts, rolling bearings and gaps, and the arrays that their kernels take."""

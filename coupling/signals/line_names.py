@@ -1,0 +1,145 @@
+"""Names of spectral lines by their causes: mesh harmonic, shaft order, rolling elements, sideband, free vibration.
+
+A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
+low order of a shaft, the passing of the elements of a rolling bearing whose law follows them, a sideband, any other
+whole order. A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given
+apart from the cause.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from coupling.assembly import CoupledMachine
+from coupling.errors import CouplingError
+from coupling.linear.complex_modes import CoupledModes
+from coupling.linear.excitation_orders import excitation_lines
+
+LineKind = Literal["mean", "mesh", "shaft", "bearing", "sideband", "mode", "other"]
+
+_SHAFT_ORDERS = 4  # that take precedence over a sideband of the same frequency
+_SIDEBANDS = 4
+_ELEMENT_PASSES = 4
+_HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
+
+
+@dataclass(frozen=True)
+class LineName:
+    """Name and cause of a spectral line.
+
+    Attributes
+    ----------
+    kind : str
+        ``mean``, ``mesh``, ``shaft``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
+    name : str
+        Such as ``1× pinion -> wheel``, several joined by commas where they coincide.
+    order : float
+        Cycles per revolution of the leading shaft.
+    mode : int or None
+        Of the coupled modes, the nearest one, where the line lies within two half-power widths of it.
+    """
+
+    kind: LineKind
+    name: str
+    order: float
+    mode: int | None
+
+
+def line_names(
+    machine: CoupledMachine, frequencies: Sequence[float], tolerance: float, modes: CoupledModes | None = None
+) -> list[LineName]:
+    """Names of spectral lines of a machine at its nominal speeds.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+    frequencies : sequence of float
+        [Hz].
+    tolerance : float
+        Largest distance of a line from the frequency of its cause [Hz]: a small part of the spacing where the record
+        holds whole periods, half of it otherwise.
+    modes : CoupledModes, optional
+        About the mean contact.
+
+    Raises
+    ------
+    CouplingError
+        For a machine that stands still, or a tolerance that is not positive.
+    """
+    if not tolerance > 0.0:
+        raise CouplingError(f"names of lines within {tolerance} Hz; expected more than 0")
+    shaft_frequency = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
+    highest = max(frequencies, default=0.0)
+    meshes = [
+        abs(contact.mesh_frequency) for contact in machine.system.contacts if contact.loaded and contact.mesh_frequency
+    ]
+    excited = excitation_lines(
+        machine,
+        shaft_orders=range(1, _SHAFT_ORDERS + 1),
+        mesh_harmonics=range(1, 2 + int(highest / min(meshes))) if meshes else (),
+        sidebands=_SIDEBANDS,
+        element_passes=range(1, _ELEMENT_PASSES + 1),
+    )
+    found = []
+    for frequency in frequencies:
+        order = frequency / shaft_frequency
+        mode = _near(modes, frequency, tolerance)
+        if frequency <= 0.5 * tolerance:
+            found.append(LineName("mean", "mean", order, None))
+            continue
+        names = {
+            kind: [
+                line.name
+                for line in excited
+                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= tolerance
+            ]
+            for kind in ("mesh", "shaft", "bearing", "sideband")
+        }
+        kind = next((kind for kind in names if names[kind]), None)
+        if kind is not None:
+            text = ", ".join(names[kind] if kind != "sideband" else _nearest(names[kind]))
+            found.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
+        elif whole := _whole_order(machine, frequency, tolerance):
+            found.append(LineName("shaft", whole, order, mode))
+        elif modes is not None and mode is not None:
+            found.append(LineName("mode", _label(modes, mode), order, mode))
+        else:
+            found.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
+    return found
+
+
+def _label(modes: CoupledModes, mode: int) -> str:
+    """Kind and place of a mode, once where they are one word."""
+    kind, place = modes.kinds[mode], modes.where[mode]
+    return f"{kind} mode" if place in ("", kind) else f"{kind} mode of {place}"
+
+
+def _near(modes: CoupledModes | None, frequency: float, tolerance: float) -> int | None:
+    """Return the number of the mode nearest to a frequency; None where none is near. Local compliance is no mode."""
+    if modes is None:
+        return None
+    w = 2.0 * np.pi * frequency
+    distance = np.abs(modes.eigenvalues - 1j * w)
+    proper = np.array([kind not in ("residual", "rigid") for kind in modes.kinds]) & (modes.eigenvalues.imag > 0.0)
+    reach = np.maximum(_HALF_POWER_WIDTHS * np.abs(modes.eigenvalues.real), 2.0 * np.pi * tolerance)
+    proper &= np.abs(modes.eigenvalues.imag - w) <= reach
+    return int(np.argmin(np.where(proper, distance, np.inf))) if proper.any() else None
+
+
+def _nearest(names: list[str]) -> list[str]:
+    """Sidebands with the fewest steps from their carrier."""
+    steps = [int(name.rsplit("×", 1)[0].rsplit(" ", 1)[1]) for name in names]
+    return [name for name, step in zip(names, steps, strict=True) if step == min(steps)]
+
+
+def _whole_order(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:
+    """Return a multiple of a shaft's speed, the slowest multiple first."""
+    found = []
+    for name, speed in machine.speeds.items():
+        each = abs(speed) / (2.0 * np.pi)
+        # Every line is near some multiple of a very slow shaft.
+        if each > 2.5 * tolerance and abs(frequency - round(frequency / each) * each) <= tolerance:
+            found.append((round(frequency / each), f"{round(frequency / each)}× {name}"))
+    return min(found)[1] if found else None

@@ -1,0 +1,116 @@
+"""Sidebands of a mesh harmonic: amplitude and phase modulation by a shaft, as by runout or misalignment of a gear.
+
+A harmonic whose strength and phase vary with the shaft's turn, Re C (1 + a(t)) e^{i(wt + b(t))} with small
+a = m cos(Ωt + α) and b = β cos(Ωt + γ), has the lines C u at w + Ω and C l at w - Ω. The envelope is
+1 + u e^{iΩt} + l e^{-iΩt} ≈ 1 + a + i b, so
+
+    m = |u + l*|    and    β = |u - l*|,
+
+the former exactly for a pure modulation of amplitude, the latter to first order in β (exactly 2 J₁(β)/J₀(β)); see
+Randall, *Vibration-based Condition Monitoring*, 2011.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.errors import CouplingError
+from coupling.signals.spectrum import Window, lines_at
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sideband:
+    """A pair of sidebands of a carrier.
+
+    Attributes
+    ----------
+    carrier : float
+        Frequency [Hz].
+    number : int
+        1 for the lines next to the carrier, at the distance of the modulating frequency; 2 for those at twice that.
+    distance : float
+        From the carrier [Hz].
+    carrier_amplitude, lower, upper : float
+        Peak amplitudes in the signal's unit.
+    amplitude_modulation : float
+        m, a part of the carrier; NaN without one.
+    phase_modulation : float
+        β [rad].
+    """
+
+    carrier: float
+    number: int
+    distance: float
+    carrier_amplitude: float
+    lower: float
+    upper: float
+    amplitude_modulation: float
+    phase_modulation: float
+
+
+def sidebands(
+    signal: FloatArray,
+    interval: float,
+    carriers: Sequence[float],
+    modulating: float,
+    *,
+    count: int = 3,
+    window: Window = "uniform",
+) -> list[Sideband]:
+    """Sidebands of a signal of shape (s,), carrier by carrier, nearest first.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (s,)
+    interval : float
+        Between samples [s].
+    carriers : sequence of float
+        Mesh frequency and harmonics [Hz].
+    modulating : float
+        Frequency of a shaft [Hz].
+    count : int
+        Pairs for each carrier. Those that would reach 0 Hz or half the sampling rate are left out.
+    window : {"uniform", "hann"}
+        Uniform where the record holds whole periods of all these lines.
+
+    Raises
+    ------
+    CouplingError
+        Where the modulating frequency is not positive, or the record is too short to separate the lines.
+    """
+    length = signal.shape[-1] * interval
+    apart = 1.0 if window == "uniform" else 2.0
+    if not modulating * length >= apart * (1.0 - 1e-9):
+        raise CouplingError(
+            f"sidebands {modulating:g} Hz apart in a record of {length:g} s; expected one of {apart:g} periods at least"
+        )
+    places = [
+        (carrier, number)
+        for carrier in carriers
+        for number in range(1, count + 1)
+        if carrier - number * modulating > 0.0 and carrier + number * modulating < 0.5 / interval
+    ]
+    wanted = sorted({carrier + sign * n * modulating for carrier, n in places for sign in (-1, 0, 1)})
+    found = dict(zip(wanted, lines_at(signal, interval, np.array(wanted), window).tolist(), strict=True))
+    result = []
+    for carrier, number in places:
+        middle = found[carrier]
+        lower, upper = found[carrier - number * modulating], found[carrier + number * modulating]
+        below, above = (complex(np.nan, np.nan),) * 2 if middle == 0.0 else (lower / middle, upper / middle)
+        result.append(
+            Sideband(
+                carrier=carrier,
+                number=number,
+                distance=number * modulating,
+                carrier_amplitude=abs(middle),
+                lower=abs(lower),
+                upper=abs(upper),
+                amplitude_modulation=abs(above + below.conjugate()),
+                phase_modulation=abs(above - below.conjugate()),
+            )
+        )
+    return result
