@@ -15,14 +15,14 @@ from coupling.gears import piecewise_cubic as piecewise
 from coupling.periodic import orbit, periodic_response, shooting, superposed_response
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
-from coupling.time.histories import transient_outputs
+from coupling.time.histories import histories, transient_outputs
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
 from gearwhine.solve.machine import build_machine
-from gearwhine.solve.steady_state import solve_steady
+from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion, solve_steady
 
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
 
@@ -91,6 +91,29 @@ def test_what_is_neglected_is_the_difference_of_the_forces(
     different = np.sqrt(np.mean((record.force[:, :2] - total) ** 2, axis=0))
     assert np.all(different < 3.0 * superposed.neglected_force[:2].max())
     assert different.max() > 0.3 * superposed.neglected_force[:2].max()
+
+
+def test_bearing_loads_of_the_sum_are_those_over_the_common_period(
+    machine: CoupledMachine, whole: PeriodicResponse, superposed: SuperposedResponse
+) -> None:
+    """Means by statics, rms by powers; the peak of the sum is a bound, as phases are independent only in the long run."""
+
+    def motion(response: PeriodicResponse, samples: int) -> SteadyMotion:
+        record = response.record(transient_outputs(machine), samples)
+        return SteadyMotion(1.0, response, histories(machine, record), np.inf)
+
+    over_period = SolvedSteady(machine, (motion(whole, 2**14),)).bearing_parts()
+    parts = tuple(motion(one.response, 2048) for one in superposed.motions)
+    sums = SolvedSteady(machine, parts, superposed=superposed).bearing_parts()
+    assert len(sums) == 6
+    for (name, expected), (same, found) in zip(over_period, sums, strict=True):
+        assert same == name
+        largest = np.abs(expected.mean).max()
+        np.testing.assert_allclose(found.mean, expected.mean, atol=1e-6 * largest)
+        np.testing.assert_allclose(found.rms, expected.rms, atol=0.01 * expected.rms.max())
+        # Short of a bound by the force that the sum leaves out.
+        assert np.all(found.peak >= 0.97 * expected.peak)
+        assert np.all(found.peak <= 1.1 * expected.peak + 1e-9 * largest)
 
 
 def test_a_linear_machine_is_superposed_without_error(machine: CoupledMachine) -> None:
