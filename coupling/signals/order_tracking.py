@@ -15,12 +15,14 @@ from scipy.interpolate import make_interp_spline
 
 from coupling.errors import CouplingError
 from coupling.machine.speed_profile import SpeedProfile
+from coupling.signals.decimation import decimation
 from coupling.signals.spectrum import Spectrum, Window, amplitude_spectrum, lines_at
 
 FloatArray = npt.NDArray[np.float64]
 
 _MOST_SAMPLES = 50_000_000  # by angle
 _DEGREE = 5
+_BAND = 0.4  # orders that an anti-aliasing filter passes, over the samples per revolution
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,10 @@ def resample_by_angle(
     turns_per_second : float
         Nominal speed of the leading shaft [Hz], positive.
     per_turn : int, optional
-        Samples per revolution. By default as many as in time at the lowest speed, which excludes aliasing; with fewer,
-        the signal must be free of orders above half of them.
+        Samples per revolution, by default as many as in time at the lowest speed. With fewer, an anti-aliasing filter
+        (:mod:`coupling.signals.decimation`) leaves orders up to 0.4 of them as they are and takes away those that
+        would fold onto them. Half its length, some twenty samples, is made up at both ends of the record by odd
+        reflection.
 
     Raises
     ------
@@ -97,18 +101,34 @@ def resample_by_angle(
     )
     if last - first < 1.0:
         raise CouplingError(f"the record has {end - begin:.3g} turns; expected a whole one at least")
-    needed = int(np.ceil(1.0 / (slowest * interval) - 1e-9)) if per_turn is None else per_turn
-    if needed < 2 or needed * (last - first) > _MOST_SAMPLES:
+    recorded = int(np.ceil(1.0 / (slowest * interval) - 1e-9))
+    per_turn = recorded if per_turn is None else per_turn
+    factor = max(-(-recorded // max(per_turn, 1)), 1)
+    if per_turn < 2 or per_turn * factor * (last - first) > _MOST_SAMPLES:
         raise CouplingError(
-            f"{needed} samples a turn over {last - first:.0f} turns; expected 2 or more, at most {_MOST_SAMPLES} in "
-            "all: say how many a turn, or take a part of the record in which the machine turns faster"
+            f"{per_turn * factor} samples a turn over {last - first:.0f} turns; expected 2 or more, at most "
+            f"{_MOST_SAMPLES} in all: take a part of the record in which the machine turns faster"
         )
-    turns = first + np.arange(int(last - first) * needed) / needed
+    turns = first + np.arange(int(last - first) * per_turn * factor) / (per_turn * factor)
     # The last ones may lie within the last sample's interval, where the spline goes on.
     at = turning.times_of(turns / turns_per_second)
     values = make_interp_spline(times, np.moveaxis(signal, -1, 0), k=_DEGREE)(at)
+    values, at, turns = _decimated(np.asarray(values), factor), at[::factor], turns[::factor]
     speeds = turns_per_second * turning.at(at)[1]
-    return AngleSignal(turns, at, speeds, np.moveaxis(np.asarray(values), 0, -1), needed)
+    return AngleSignal(turns, at, speeds, np.moveaxis(values, 0, -1), per_turn)
+
+
+def _decimated(values: FloatArray, factor: int) -> FloatArray:
+    """Every ``factor``-th of the values, shape (s, ...), without the orders that would fold onto those up to the band."""
+    if factor == 1:
+        return values
+    low_pass = decimation(factor, _BAND)
+    reach = np.arange(1, min(low_pass.delay, len(values) - 1) + 1)
+    before, after = 2.0 * values[0] - values[reach[::-1]], 2.0 * values[-1] - values[-1 - reach]
+    missing = low_pass.delay - len(reach)
+    record = np.concatenate([*[before[:1]] * missing, before, values, after, *[after[-1:]] * missing])
+    kept, _ = low_pass.through(np.zeros((0, values[0].size)), record.reshape(len(record), -1))
+    return kept.reshape(-1, *values.shape[1:])
 
 
 def order_spectrum(turned: AngleSignal, window: Window = "uniform") -> Spectrum:

@@ -24,7 +24,7 @@ _ABOVE = 1.25  # orders up to this over the highest of interest are followed
 _APART, _PARTED = 3.0, 2.0  # lines of a window between orders: as wished, and where Hann's window just parts them
 _FEWEST = 20  # windows that make a course over speed, where the run has turns for them
 _FEWEST_TURNS = 4
-_BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lowest speed
+_BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lowest speed: all that resampling passes
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
     turns_per_second = abs(case.operation.speed) / _TWO_PI
     slowest = turns_per_second * float(turning.at(times)[1].min())
     per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
-    per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * max(named.values())))
+    per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * _ABOVE * max(named.values())))
     length = 2 * len(times) // (_ROWS + 1)
     units, spectra, orders = {}, {}, {}
     signals = {name: (signal, "m/s²") for name, signal in solved.histories.sensor_acceleration.items()}

@@ -205,6 +205,26 @@ def test_orders_that_windows_hold_no_whole_cycles_of_are_followed() -> None:
         order_map(turned, turns=4, follow=[1e6])
 
 
+def test_orders_above_the_samples_of_a_turn_do_not_fold_onto_those_below() -> None:
+    """100 samples a turn pass orders up to 40; orders 93 and 171.5, ten times as strong, would fold to 7 and 28.5."""
+    times = 2e-5 * np.arange(100_000)
+    turns = SHAFT_HZ * (0.5 * times + 0.25 * times**2)
+    high = 5.0 * np.cos(2 * np.pi * 93.0 * turns) + 1.0 * np.cos(2 * np.pi * 171.5 * turns + 0.2)
+    turned = resample_by_angle(np.stack([run_up(times) + high, high]), times, RUN_UP, SHAFT_HZ, per_turn=100)
+    assert turned.values.shape == (2, turned.turns.size)
+    assert turned.turns.size % 100 == 0
+    found = order_map(replace(turned, values=turned.values[0]), turns=4, step=2)
+    inside = slice(1, -1)  # at the ends half a filter's length is made up
+    assert found.order_slice(7.0)[inside] == pytest.approx(np.full(found.times.size - 2, 0.5), abs=1e-6)
+    assert found.order_slice(28.5)[inside] == pytest.approx(np.full(found.times.size - 2, 0.1), abs=1e-6)
+    assert found.order_slice(7.0) == pytest.approx(np.full(found.times.size, 0.5), abs=0.02)
+    assert found.order_slice(28.5) == pytest.approx(np.full(found.times.size, 0.1), abs=0.02)
+    # The samples stand at their own angles: turns 10 to 20 of the low orders, to the last digit of the filter.
+    part = slice(10 * 100, 20 * 100)
+    low = turned.values[0, part] - turned.values[1, part]
+    np.testing.assert_allclose(low, run_up(turned.times[part]), atol=1e-5)
+
+
 def test_at_steady_speed_orders_are_the_lines_of_the_record() -> None:
     """With a whole number of samples each turn nothing is resampled: the same numbers, on another axis."""
     times = np.arange(4000) / 8000.0

@@ -96,7 +96,7 @@ def test_what_is_neglected_is_the_difference_of_the_forces(
 def test_bearing_loads_of_the_sum_are_those_over_the_common_period(
     machine: CoupledMachine, whole: PeriodicResponse, superposed: SuperposedResponse
 ) -> None:
-    """Means by statics, rms by powers; the peak of the sum is a bound, as phases are independent only in the long run."""
+    """Means by statics, rms by powers; peaks add, as phases are independent in the long run."""
 
     def motion(response: PeriodicResponse, samples: int) -> SteadyMotion:
         record = response.record(transient_outputs(machine), samples)
