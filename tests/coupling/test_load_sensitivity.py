@@ -8,8 +8,7 @@ import numpy.typing as npt
 import pytest
 from own_statics import one_stage
 
-from coupling import Machine, MountedBearing
-from coupling.machine import description
+from coupling import Machine, MountedBearing, machine_description
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
 from coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
@@ -75,7 +74,7 @@ def scaled(machine: Machine, number: int, size: float) -> OperatingPoint:
         return replace(made, law=LinearLaw(factor * made.law.stiffness) if linear else Scaled(made.law, factor))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(description, "static_bearing", stiffer)
+        patch.setattr(machine_description, "static_bearing", stiffer)
         return machine.operating_point(GRAVITY)
 
 

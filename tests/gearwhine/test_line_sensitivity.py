@@ -8,13 +8,12 @@ import numpy.typing as npt
 import pytest
 
 import gearwhine as gw
-from coupling import MachineLoads, assemble_machine
+from coupling import MachineLoads, assemble_machine, machine_description
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.loaded.transmission_error import loaded_transmission_error, mesh_period_phases, period_mean
 from coupling.linear import mesh_harmonics
 from coupling.linear.housing_rates import HousingRates
 from coupling.linear.mesh_harmonics import Line, LineModel
-from coupling.machine import description
 from coupling.machine.connectors import MountedBearing
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import adjoint
@@ -189,7 +188,7 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved)
             return replace(bearing, law=Scaled(bearing.law.elements, 1.0 + size))
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(description, "static_bearing", made)
+            patch.setattr(machine_description, "static_bearing", made)
             return machine.operating_point()
 
     either = [at_point(case, solved, stiffer(size)) for size in (5e-4, -5e-4)]
