@@ -62,8 +62,11 @@ def driving(case: Case, rotors: Sequence[RotorComponent]) -> CaseDriving:
         turning = SpeedProfile(times, speeds / nominal)
     torques: list[AnyTorque] = []
     if turning is not None and run is not None and run.free and operation.load is not None:
-        values = np.array([_torque(operation.load, rate * nominal) for rate in turning.rates])
-        torques += [_history(share, turning.times, values) for share in shares]
+        # The torque at the nominal speed is the mean load, about which meshes are linear and their load shuttles.
+        mean = _torque(operation.load, nominal)
+        torques += applied_torques(case, mean)
+        beyond = np.array([_torque(operation.load, rate * nominal) for rate in turning.rates]) - mean
+        torques += [_history(share, turning.times, beyond) for share in shares]
     else:
         torques += applied_torques(case)
     if run is not None and run.free:

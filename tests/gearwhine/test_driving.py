@@ -14,7 +14,8 @@ from coupling import Torque, TransientError, static_equilibrium
 from coupling.gears.contact.tooth_force_kernels import tooth_force
 from coupling.machine.loads import TorqueHistory, TorqueRipple
 from coupling.machine.speed_profile import free_speed
-from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
+from coupling.statics.mean_mesh import mean_meshes
+from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, parse_case
 from gearwhine.from_case.driving import driving, train_inertia
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
@@ -206,6 +207,35 @@ def test_free_run_of_a_geared_machine() -> None:
         0
     ].geometry.driver.base_radius
     assert solved.result.mean_force[0] == pytest.approx(expected, rel=2e-3)
+
+
+def test_the_mesh_of_a_free_run_is_that_of_its_mean_load() -> None:
+    """Where load and motor meet at the nominal speed: mean force, load shuttling and loads of the steady operation."""
+    lines = {
+        "motor": {"speed": ["0 rpm", "3000 rpm", "3300 rpm"], "torque": ["300 N*m", "150 N*m", "0 N*m"]},
+        "load": {"speed": ["0 rpm", "1000 rpm", "3000 rpm"], "torque": ["0 N*m", "20 N*m", "150 N*m"]},
+    }
+    document = tomllib.loads(files("gearwhine.cases").joinpath("helical-pair.toml").read_text(encoding="utf-8"))
+    del document["provenance"]
+    for rotor in document["rotor"]:
+        rotor["modes"] = 2
+    steady = parse_case(document)
+    operation, transient = document["operation"] | lines, {"run": {"from": "2000 rpm", "time": "2 s"}}
+    free = parse_case(document | {"operation": operation, "transient": transient})
+    pairs = solve_gears(steady)
+    expected, machine = (build_machine(case, None, pairs).system for case in (steady, free))
+    np.testing.assert_allclose(machine.load, expected.load, rtol=1e-12)
+    (mean,) = (one for one in mean_meshes(expected) if one is not None)
+    (found,) = (one for one in mean_meshes(machine) if one is not None)
+    assert found == mean
+    shuttling = [load for load in expected.harmonic_loads if load.follows == "turning"]
+    assert shuttling
+    for one, other in zip(shuttling, machine.harmonic_loads, strict=True):
+        np.testing.assert_allclose(other.amplitude, one.amplitude, rtol=1e-9)
+    # At the start the load's line has 85 N m, at the end of a long run the two lines meet.
+    shares = [share.value for share in applied_torques(steady, -65.0)]
+    assert [load.values[0] for load in machine.timed_loads] == pytest.approx(shares)
+    assert [load.values[-1] for load in machine.timed_loads] == pytest.approx([0.0, 0.0], abs=1e-3)
 
 
 def test_torques_of_a_case() -> None:
