@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 _MM = 1e3
 _LINES = 3  # of each sensor
+_OPPOSED = 0.1  # share of a line against it that is told
 _LOUDEST = 5  # lines of the sound
 _MOST_ERROR = 1e-2  # of the energy balance that passes
 _SURE = 0.03  # error of a line by the modal basis that passes
@@ -411,13 +412,17 @@ def _paths_of(row: Document) -> tuple[str, ...]:
 
 
 def _through(row: Document) -> str:
-    """Return the bearing with the largest part of a line, and whether others cancel some of it."""
+    """Return the bearing with the largest share of a line, and the one that works against it most."""
     bearings = row.get("contributions", {}).get("bearings", ())
     if not bearings:
         return ""
-    cancelled = ", cancelled in part" if bearings[0]["share"] > 1.0 else ""
-    opposed = ", against the others" if bearings[0]["share"] < 0.0 else ""
-    return f"{bearings[0]['name']}{cancelled}{opposed}"
+    most, least = (choose(bearings, key=lambda part: part["share"]) for choose in (max, min))
+    against = f", against it {_of_line(least)}" if least["share"] < -_OPPOSED else ""
+    return f"{_of_line(most)}{against}"
+
+
+def _of_line(part: Document) -> str:
+    return f"{part['name']} {100.0 * part['share']:.0f} %"
 
 
 def _near(row: Document) -> str:

@@ -708,7 +708,7 @@ def _near(mode: Document | None) -> str:
 
 def _with_free(parts: Document) -> list[Document]:
     """Bearings, and free vibration where it counts."""
-    return sorted([*parts["bearings"], parts["free_vibration"]], key=lambda part: -part["amplitude_m_per_s2"])
+    return sorted([*parts["bearings"], parts["free_vibration"]], key=lambda part: -abs(part["share"]))
 
 
 def _share(part: Document) -> str:

@@ -24,7 +24,7 @@ from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.part_fits import fit_warnings
-from gearwhine.solve.plausibility import centrifugal_warnings
+from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
 from gearwhine.solve.sound import check_before_modes
 from rotors import Rotor as BuiltRotor
 
@@ -124,6 +124,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     for pair in pairs:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
     warnings += fit_warnings(case, {one.given.name: one.built for one in rotors}, None if mesh is None else mesh.mesh)
+    warnings += operation_warnings(case)
     locations = axial_locations(case)
     speeds = {one.given.name: one.speed for one in rotors if one.speed is not None}
     warnings += centrifugal_warnings(

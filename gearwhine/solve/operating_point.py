@@ -26,7 +26,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.machine import ReducedHousing, reduce_housing
-from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings
+from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings, operation_warnings
 from gearwhine.solve.sensitivity.influences import LoadSensitivity
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
 from rotors import EquilibriumError, RotorError
@@ -317,6 +317,7 @@ def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
     told = bearing_load_warnings(case, {one.name: one.force[:3] for one in solved.point.bearings}, "the equilibrium")
     loads = {entry["bearing"] for entry in told}
     return [
+        *operation_warnings(case),
         *([] if ranked is None or ranked.note is None else [warning("sensitivity", ranked.note)]),
         *_sound_warnings(ranked),
         *told,

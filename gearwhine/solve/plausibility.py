@@ -1,8 +1,9 @@
 """Plausibility of a solved machine: bearing loads and speeds, unstable modes and modal truncation error.
 
-Bearing loads of a run are held against the loads that the bearings' stiffness was computed for. Rolling bearings so
-fast that the centrifugal force of their elements matters are warned of, and coupled modes with negative damping or
-negative stiffness. The modal truncation error is given for the sensors' lines, line by line and by bands.
+Gear pairs that carry nothing, and lines of torque that miss the torque of operation, are warned of before anything is
+solved. Bearing loads of a run are held against the loads that the bearings' stiffness was computed for. Rolling
+bearings so fast that the centrifugal force of their elements matters are warned of, and coupled modes with negative
+damping or negative stiffness. The modal truncation error is given for the sensors' lines, line by line and by bands.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,10 +14,11 @@ import numpy.typing as npt
 
 from coupling import CoupledMachine, coupled_modes
 from coupling import stability as coupled_stability
+from coupling.gears.geometry.pair import pair_label
 from coupling.linear.complex_modes import Stability
 from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
-from gearwhine.case import Case, RollingStiffness, StopStiffness
+from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
 from gearwhine.output.quantity import warning
 from rotors.rolling_bearings import RollingBearing
 
@@ -24,6 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _DIFFERENCE = 0.1  # part of the larger of both forces by which they may differ without a word
 _ROUNDING = 1e-6  # part of the load below which a component is none
+_OFF_LINE = 0.05  # part of the larger torque by which a line may miss the torque of operation without a word
 
 
 def bearing_load_warnings(
@@ -77,6 +80,40 @@ def bearing_load_warnings(
             )
         )
     return found
+
+
+def operation_warnings(case: Case) -> list[dict[str, Any]]:
+    """Warn of gear pairs without torque in a loaded train, and of torque lines that miss the torque of operation.
+
+    Parameters
+    ----------
+    case : Case
+        With an operation; without gear pairs there is nothing to warn of.
+    """
+    operation = case.operation
+    if operation is None or not case.gear_pair:
+        return []
+    warnings = []
+    torques = np.abs(pair_torques(case))
+    for pair, torque in zip(case.gear_pair, torques, strict=True):
+        if torques.max() > 0.0 and torque <= _ROUNDING * torques.max():
+            message = (
+                f"{pair_label(pair.driver, pair.driven)} carries no torque, as nothing is taken off behind it: are its driver and driven "
+                "exchanged, or does an [[operation.output]] lack?"
+            )
+            warnings.append(warning("idle gear pair", message, gear_pair=f"{pair.driver} -> {pair.driven}"))
+    for name, line in (("motor", operation.motor), ("load", operation.load)):
+        if line is None:
+            continue
+        torque = float(np.interp(abs(operation.speed), line.speed, line.torque))
+        if abs(torque - operation.torque) > _OFF_LINE * max(abs(torque), abs(operation.torque)):
+            message = (
+                f"[operation.{name}] has {torque:.4g} N m at the speed of operation, where the torque is "
+                f"{operation.torque:.4g} N m: only a [transient.run] whose speed is free follows the line, all else "
+                "has the torque"
+            )
+            warnings.append(warning("torque line", message, line=name, line_n_m=torque, torque_n_m=operation.torque))
+    return warnings
 
 
 FAST = 5e5

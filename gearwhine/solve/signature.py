@@ -52,9 +52,9 @@ class TracedLine:
         Amplitude [m/s²] and phase at the start of the record.
     named : coupling.signals.LineName
     modes : tuple of Contribution
-        Every housing mode and what their local compliance leaves, largest first: they add up to the line.
+        Every housing mode and what their local compliance leaves, largest share first: they add up to the line.
     bearings : tuple of Contribution
-        Every bearing on the housing, largest first.
+        Every bearing on the housing, largest share first.
     free : Contribution
         What the line has beyond what the bearings' forces account for: free vibration that has not died away, and
         errors of the steps in time.
@@ -284,7 +284,7 @@ def _ranked(
     shares = (values / line).real
     return tuple(
         Contribution(names[i], complex(values[i]), float(shares[i]), None if numbers is None else numbers[i])
-        for i in np.argsort(-np.abs(values), kind="stable").tolist()
+        for i in np.argsort(-np.abs(shares), kind="stable").tolist()
     )
 
 

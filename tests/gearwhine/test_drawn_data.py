@@ -167,7 +167,7 @@ def test_bars_of_a_line_stand_under_its_name_the_largest_on_top(drawn: Drawn) ->
             key=lambda axes: (-axes.get_position().y0, axes.get_position().x0),
         )
         bars = left.patches
-        largest = sorted(line.modes, key=lambda part: -abs(part.value))[:6]
+        largest = sorted(line.modes, key=lambda part: -abs(part.share))[:6]
         assert [bar.get_width() for bar in bars][:6] == pytest.approx([100.0 * part.share for part in largest])
         low, high = left.get_ylim()
         assert low > high  # the first bar is the uppermost

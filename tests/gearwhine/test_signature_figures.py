@@ -1,5 +1,6 @@
 """Pictures of signatures: what they show of signals whose content is known."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -82,6 +83,12 @@ def test_bars_are_the_shares(tmp_path: Path) -> None:
     assert widths[0] == pytest.approx([140.0, -40.0])
     assert widths[1] == pytest.approx([90.0, 10.0])
     assert [text.get_text() for text in figure.axes[0].texts] == ["140", "-40"]
+    # Ranked by the shares that the bars show, whatever stands a quarter period beside them.
+    beside = Contribution("beside", 5.0j, 0.0)
+    figure = draw_contributions("$1", {"top": (replace(line, modes=(beside, *line.modes), bearings=(beside,) * 6),)})
+    widths = [[bar.get_width() for bar in axes.patches] for axes in figure.axes]
+    assert widths[0] == pytest.approx([140.0, -40.0, 0.0])
+    assert widths[1] == pytest.approx([10.0, 0.0, 0.0, 0.0, 0.0, 0.0][: len(widths[1])])
     save(figure, tmp_path / "contributions.png")
 
 

@@ -51,7 +51,7 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
-from gearwhine.output.sections import arrowed
+from gearwhine.output.sections import arrowed, counted
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.signature import Contribution, SolvedSignature, TracedLine
 from gearwhine.solve.transient import SolvedTransient
@@ -193,11 +193,14 @@ def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> 
 
 
 def _gathered(parts: Sequence[Contribution]) -> list[tuple[str, float]]:
-    """Names and shares of the largest parts, and of all others together."""
-    ranked = sorted(parts, key=lambda part: -abs(part.value))
+    """Names and shares of the largest parts, and of all others together where they count."""
+    ranked = sorted(parts, key=lambda part: -abs(part.share))
     named = [(part.name, part.share) for part in ranked[:_PARTS]]
     rest = ranked[_PARTS:]
-    return [*named, (f"{len(rest)} others", sum(part.share for part in rest))] if rest else named
+    together = sum(part.share for part in rest)
+    if 100.0 * abs(together) < _VISIBLE:
+        return named
+    return [*named, (counted(len(rest), "other"), together)]
 
 
 def _draw(axes: Axes, parts: list[tuple[str, float]], color: str) -> None:

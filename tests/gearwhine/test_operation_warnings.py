@@ -1,0 +1,43 @@
+"""Warnings of an operation that loads only part of the train, or whose lines of torque miss its torque."""
+
+import tomllib
+
+import pytest
+from reducer_case import reducer
+
+from gearwhine.case import Case, parse_case
+from gearwhine.solve.case_summary import check_case
+from gearwhine.solve.operating_point import load_warnings, solve_load
+from gearwhine.solve.plausibility import operation_warnings
+
+RUN = {"transient": {"run": {"from": "2000 rpm", "time": "1 s"}}}
+
+
+def case_of(text: str, **operation: object) -> Case:
+    document = tomllib.loads(text)
+    document["operation"] |= operation
+    return parse_case(document | (RUN if operation else {}))
+
+
+def test_a_pair_behind_which_nothing_is_taken_off_is_told() -> None:
+    """With driver and driven of the second stage exchanged the torque leaves at the middle shaft."""
+    assert operation_warnings(case_of(reducer())) == []
+    exchanged = reducer().replace('driver = "c"\ndriven = "d"', 'driver = "d"\ndriven = "c"')
+    (told,) = operation_warnings(case_of(exchanged))
+    assert told["name"] == "idle gear pair"
+    assert told["gear_pair"] == "d -> c"
+    assert "exchanged" in told["message"]
+    idle = case_of(exchanged)
+    assert told in check_case(idle).warnings
+    assert told in load_warnings(idle, solve_load(idle, None))
+    assert operation_warnings(case_of(reducer().replace('torque = "60 N*m"', 'torque = "0 N*m"'))) == []
+
+
+@pytest.mark.parametrize(("at_speed", "warned"), [(62.0, False), (45.0, True)])
+def test_a_line_of_torque_that_misses_the_torque_of_operation_is_told(at_speed: float, *, warned: bool) -> None:
+    motor = {"speed": ["0 rpm", "3000 rpm", "3300 rpm"], "torque": ["90 N*m", "60 N*m", "0 N*m"]}
+    load = {"speed": ["0 rpm", "3000 rpm"], "torque": ["0 N*m", f"{at_speed} N*m"]}
+    told = operation_warnings(case_of(reducer(), motor=motor, load=load))
+    assert [(entry["line"], entry["line_n_m"], entry["torque_n_m"]) for entry in told] == [
+        ("load", pytest.approx(at_speed), 60.0)
+    ] * warned
