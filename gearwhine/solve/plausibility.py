@@ -98,8 +98,8 @@ def operation_warnings(case: Case) -> list[dict[str, Any]]:
     for pair, torque in zip(case.gear_pair, torques, strict=True):
         if torques.max() > 0.0 and torque <= _ROUNDING * torques.max():
             message = (
-                f"{pair_label(pair.driver, pair.driven)} carries no torque, as nothing is taken off behind it: are its driver and driven "
-                "exchanged, or does an [[operation.output]] lack?"
+                f"{pair_label(pair.driver, pair.driven)} carries no torque, as nothing is taken off behind it: are its "
+                "driver and driven exchanged, or does an [[operation.output]] lack?"
             )
             warnings.append(warning("idle gear pair", message, gear_pair=f"{pair.driver} -> {pair.driven}"))
     for name, line in (("motor", operation.motor), ("load", operation.load)):
