@@ -301,7 +301,12 @@ class Study:
         )
 
     def system(
-        self, *, campbell: bool = False, sidebands: int = 0, mesh_phase: float | None = None
+        self,
+        *,
+        campbell: bool = False,
+        sidebands: int = 0,
+        mesh_harmonics: int = 3,
+        mesh_phase: float | None = None,
     ) -> Result[SolvedSystem]:
         """Find the complex modes of the coupled machine; see :func:`gearwhine.analyses.machine.system`."""
         from gearwhine.analyses import machine
@@ -310,6 +315,7 @@ class Study:
             self.case,
             campbell=campbell,
             sidebands=sidebands,
+            mesh_harmonics=mesh_harmonics,
             mesh_phase=mesh_phase,
             housing=self.housing,
             progress=self.progress,

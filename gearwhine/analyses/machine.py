@@ -20,7 +20,7 @@ from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
-from gearwhine.solve.coupled_system import SolvedSystem, solve_system
+from gearwhine.solve.coupled_system import MESH_HARMONICS, SolvedSystem, solve_system
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.machine import basis_error, point_of_pairs, solve_machine, solve_pairs
@@ -206,6 +206,7 @@ def system(
     mesh_phase: float | None = None,
     campbell: bool = False,
     sidebands: int = 0,
+    mesh_harmonics: int = MESH_HARMONICS,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -222,6 +223,9 @@ def system(
         Whether to follow the modes over speed; a case with a `[sweep]` of speeds always does.
     sidebands : int
         Number of shaft-order sidebands drawn on each side of every mesh order.
+    mesh_harmonics : int
+        Number of harmonics of each mesh whose resonances over speed are listed and drawn; more than by default ask for
+        the Campbell diagram.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -246,8 +250,9 @@ def system(
         solved_housing,
         progress,
         mesh_phase=mesh_phase,
-        over_speed=campbell or swept or sidebands > 0,
+        over_speed=campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS,
         sidebands=sidebands,
+        mesh_harmonics=mesh_harmonics,
     )
     document = system_document(solved)
     if load is not None:

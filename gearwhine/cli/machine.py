@@ -119,6 +119,13 @@ def system(
             validator=Number(gte=0, lte=20),
         ),
     ] = 0,
+    mesh_harmonics: Annotated[
+        int,
+        Parameter(
+            help="Number of harmonics of every mesh whose resonances the Campbell diagram lists and draws.",
+            validator=Number(gte=1, lte=50),
+        ),
+    ] = 3,
     mesh_phase: Annotated[
         float | None,
         Parameter(
@@ -139,6 +146,7 @@ def system(
             mesh_phase=mesh_phase,
             campbell=campbell,
             sidebands=sidebands,
+            mesh_harmonics=mesh_harmonics,
             folder=common.output,
             fresh=fresh,
             progress=progress,

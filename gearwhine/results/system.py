@@ -635,6 +635,15 @@ _CROSSING_COLUMNS = (
 )
 
 
+def _harmonics(campbell: Document) -> str:
+    """Return how many harmonics of each mesh a diagram has, and how to see more."""
+    meshes = {line["name"].split(" ", 1)[-1] for line in campbell["lines"] if line["kind"] == "mesh"}
+    if not meshes:
+        return ""
+    count = sum(line["kind"] == "mesh" for line in campbell["lines"]) // len(meshes)
+    return f", mesh orders up to {count}× (more: --mesh-harmonics)"
+
+
 def _crossings(campbell: Document) -> Iterator[str | Table]:
     """Resonant speeds: mesh orders on all modes of the machine, shaft orders on those that bend shafts."""
     kinds = {line["name"]: line["kind"] for line in campbell["lines"]}
@@ -649,7 +658,7 @@ def _crossings(campbell: Document) -> Iterator[str | Table]:
     if not met:
         yield f"No order of a shaft or mesh meets a mode that it excites from {span}."
     else:
-        yield f"Resonant speeds from {span} (of the first driver), modes about the mean contact:"
+        yield f"Resonant speeds from {span} (of the first driver), modes about the mean contact{_harmonics(campbell)}:"
         yield from table_of(_CROSSING_COLUMNS, sorted(nearest, key=lambda one: abs(one["speed_rpm"])))
     if rest := len(campbell["crossings"]) - len(nearest):
         yield f"{counted(rest, 'more crossing')} in the JSON, further off or of orders that hardly excite the mode."

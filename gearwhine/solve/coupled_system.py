@@ -29,6 +29,9 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 
+MESH_HARMONICS = 3
+"""Harmonics of each mesh in a Campbell diagram, by default."""
+
 _LOWEST_HZ = 20.0  # of a frequency response
 _HARMONICS = 4.0  # of the mesh that a response covers where no housing says how far the model goes
 _MODES = 6  # at least so many of the lowest are in a diagram
@@ -97,6 +100,7 @@ def solve_system(
     mesh_phase: float | None = None,
     over_speed: bool = False,
     sidebands: int = 0,
+    mesh_harmonics: int = MESH_HARMONICS,
 ) -> SolvedSystem:
     """Modes, stability and frequency responses at the speed of operation; where asked, the modes over speed.
 
@@ -112,6 +116,8 @@ def solve_system(
         Whether the Campbell diagram and the response to unbalance are wanted.
     sidebands
         How many the diagram shows on either side of each mesh order, at the distance of either gear's shaft order.
+    mesh_harmonics
+        Number of harmonics of each mesh whose resonances the diagram has.
 
     Raises
     ------
@@ -131,7 +137,7 @@ def solve_system(
     solved = SolvedSystem(
         machine, speed, housing, mesh_phase, contact, modes, coupled_stability(modes), responses, error, lines=lines
     )
-    return _over_speed(case, solved, housing, progress, sidebands) if over_speed else solved
+    return _over_speed(case, solved, housing, progress, sidebands, mesh_harmonics) if over_speed else solved
 
 
 def diagram_speeds(case: Case) -> tuple[float, ...]:
@@ -219,11 +225,16 @@ def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:
 
 
 def _over_speed(
-    case: Case, solved: SolvedSystem, housing: SolvedHousing | None, progress: Progress, sidebands: int
+    case: Case,
+    solved: SolvedSystem,
+    housing: SolvedHousing | None,
+    progress: Progress,
+    sidebands: int,
+    mesh_harmonics: int,
 ) -> SolvedSystem:
     machine = solved.machine
     speeds = diagram_speeds(case)
-    lines = excitation_lines(machine, sidebands=sidebands)
+    lines = excitation_lines(machine, mesh_harmonics=range(1, mesh_harmonics + 1), sidebands=sidebands)
     mean = solved.contact if solved.mesh_phase is None else mean_contact(machine.system)
     if housing is not None:
         limit = housing.modes.certificate.limit

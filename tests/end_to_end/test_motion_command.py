@@ -133,6 +133,20 @@ def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
     assert "Spectra along the run: lines through the origin" in page
 
 
+def test_resonances_of_more_mesh_harmonics(gearwhine: Any, answer: Any) -> None:
+    """By default those of three harmonics of the mesh of 28 teeth; the table says so, and how to see more."""
+    orders = {}
+    for count in (3, 5):
+        asked = ("--campbell",) if count == 3 else ("--mesh-harmonics", "5")
+        document = answer("system", "spur-pair", *FEW, *asked, "--json", "-q").document
+        orders[count] = {round(line["order"]) for line in document["campbell"]["lines"] if line["kind"] == "mesh"}
+        met = {crossing["line"] for crossing in document["campbell"]["crossings"]}
+        assert ("5× pinion -> wheel" in met) is (count == 5)
+    assert orders == {3: {28, 56, 84}, 5: {28, 56, 84, 112, 140}}
+    shown = " ".join(gearwhine("system", "spur-pair", *FEW, "--mesh-harmonics", "5", "-q").out.split())
+    assert "mesh orders up to 5× (more: --mesh-harmonics):" in shown
+
+
 def test_sidebands_in_the_diagram_over_speed(answer: Any) -> None:
     document = answer("system", "spur-pair", *FEW, "--campbell", "--sidebands", "1", "--json", "-q").document
     kinds = {(line["kind"], line["order"]) for line in document["campbell"]["lines"]}

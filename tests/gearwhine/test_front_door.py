@@ -180,6 +180,7 @@ def test_sidebands_are_drawn_over_speed() -> None:
     study = gw.load("spur-pair")
     assert study.system().solved.campbell is None
     assert study.system(sidebands=2).solved.campbell is not None
+    assert study.system(mesh_harmonics=4).solved.campbell is not None
 
 
 def test_wrong_input_is_a_value_error_and_a_failed_proof_a_runtime_error() -> None:

@@ -15,8 +15,8 @@ CALLS: list[tuple[Any, str, str, dict[str, Any], dict[str, Any]]] = [
         machine,
         "system",
         "system",
-        {"campbell": True, "sidebands": 3, "mesh_phase": 0.25},
-        {"campbell": True, "sidebands": 3, "mesh_phase": 0.25},
+        {"campbell": True, "sidebands": 3, "mesh_harmonics": 5, "mesh_phase": 0.25},
+        {"campbell": True, "sidebands": 3, "mesh_harmonics": 5, "mesh_phase": 0.25},
     ),
     (
         machine,
