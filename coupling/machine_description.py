@@ -70,7 +70,7 @@ LATERAL_LIMIT_HZ = 8000.0
 """Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Machine:
     """A gearbox or a rotor train as a list of its parts, at one speed and torque.
 
@@ -117,6 +117,14 @@ class Machine:
     housing: HousingComponent | HousingModes | None = None
     torque_at: float = 0.0
     forces: Sequence[ShaftForce] = ()
+
+    def __repr__(self) -> str:
+        """Return the numbers of parts, and the operation; the parts hold arrays of thousands of lines."""
+        parts = {"shaft": self.shafts, "bearing": self.bearings, "gear": self.gears, "gear pair": self.gear_pairs}
+        counts = ", ".join(f"{len(each)} {name}{'' if len(each) == 1 else 's'}" for name, each in parts.items())
+        housing = "without" if self.housing is None else "with a"
+        rpm = self.speed * 30.0 / np.pi
+        return f"<Machine: {counts}, {housing} housing; {rpm:.5g} rpm, {self.torque:.5g} N m>"
 
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""

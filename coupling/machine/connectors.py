@@ -188,6 +188,37 @@ class MountedBearing:
     rolling: RollingBearing | None = None
     offset: FloatArray | None = field(default=None, compare=False)
 
+    @classmethod
+    def from_elements(
+        cls, name: str, at: float, rotor: str, seat: str | None, rolling: RollingBearing, *, damping: float = 0.0
+    ) -> "MountedBearing":
+        """Mount a rolling bearing whose stiffness follows from its load at the machine's operating point.
+
+        Parameters
+        ----------
+        name : str
+        at : float
+            Distance from the rotor's left end [m].
+        rotor : str
+        seat : str or None
+            None for the ground.
+        rolling : RollingBearing
+            Such as that of :func:`rotors.rolling_bearings.catalogue_bearing`.
+        damping : float
+            Along x and y [N s/m].
+
+        Raises
+        ------
+        rotors.RotorError
+            For a place or a damping that no bearing has.
+        """
+        return cls(
+            Bearing(name, at, np.zeros((5, 5)), np.diag([damping, damping, 0.0, 0.0, 0.0])),
+            rotor,
+            seat,
+            rolling=rolling,
+        )
+
     @property
     def elements(self) -> RollingBearing | None:
         """The rolling bearing by its elements; None for a bearing that is described by its stiffness."""

@@ -119,7 +119,7 @@ def resample_by_angle(
 
 
 def _decimated(values: FloatArray, factor: int) -> FloatArray:
-    """Every ``factor``-th of the values, shape (s, ...), without the orders that would fold onto those up to the band."""
+    """Return every ``factor``-th of the values, shape (s, ...), without orders that would fold onto the band."""
     if factor == 1:
         return values
     low_pass = decimation(factor, _BAND)

@@ -268,7 +268,7 @@ class StaticTangent:
     pairs: tuple[FloatArray, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OperatingPoint:
     """Static equilibrium of a machine under its mean load.
 
@@ -298,6 +298,12 @@ class OperatingPoint:
     iterations: int
     free: tuple[str, ...]
     tangent: StaticTangent
+
+    def __repr__(self) -> str:
+        """Return the loads on the bearings and the misalignment of the gear pairs; the rest is arrays."""
+        loads = [f"{one.name} {np.linalg.norm(one.force[:3]):.5g} N" for one in self.bearings]
+        pairs = [f"{' -> '.join(one.names)} {1e6 * one.misalignment:.4g} µrad" for one in self.pairs]
+        return f"<OperatingPoint: {', '.join([*loads, *pairs])}>"
 
     def shaft(self, name: str) -> ShaftDeflection:
         """Return the deflection of the shaft of this name."""

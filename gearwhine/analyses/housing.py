@@ -10,7 +10,7 @@ from gearwhine.from_case import mesh_health
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
-from gearwhine.output.quantity import warning
+from gearwhine.output.quantity import add_warnings, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import (
     COMPARISON,
@@ -236,6 +236,8 @@ def update(
     from gearwhine.solve.updating import updated_case
 
     solved = updating.update_housing(case, progress, null=null, held_back=held_back)
+    document = update_document(case, solved)
+    add_warnings(document, updating.noise_warnings(solved.misfit_after, solved.target.noise))
 
     def files(place: Path, *, pictures: bool) -> None:
         (place / "updated.toml").write_text(updated_case(case, solved), encoding="utf-8")
@@ -244,7 +246,7 @@ def update(
         "update",
         case,
         solved,
-        update_document(case, solved),
+        document,
         _arrays=lambda: update_arrays(case, solved),
         _files=files,
         _data_file="update.nc",

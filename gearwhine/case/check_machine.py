@@ -364,7 +364,11 @@ def _check_run(draft: Draft, operation: Operation) -> Iterator[Finding]:
     elif draft.transient is not None:
         for key in ("motor", "load"):
             if getattr(operation, key) is not None:
-                yield Finding(("operation", key), "a [transient.run] without 'to', whose speed is free to follow it")
+                expected = (
+                    "a [transient.run] without 'to', whose speed is free to follow it; at a given speed --set "
+                    f"operation.{key}= leaves it out"
+                )
+                yield Finding(("operation", key), expected)
 
 
 def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:

@@ -325,8 +325,9 @@ def _loudest(
 
 
 _NO_BRANCH = (
-    "excitations with a short common period, for a branch over speed follows one periodic motion; theirs {}; leave "
-    "unbalance, runout or a stage out, or solve one speed without --curve"
+    "excitations with a short common period, for a branch over speed follows one periodic motion; theirs {}; "
+    "`gearwhine sweep` solves speed by speed, and names the peaks between them; or leave unbalance, runout or a stage "
+    "out, or solve one speed without --curve"
 )
 
 

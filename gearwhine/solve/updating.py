@@ -24,6 +24,7 @@ from statistics import median
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import tomli_w
 from scipy import sparse
 
@@ -41,6 +42,7 @@ from gearwhine.from_case.parametric_housing import (
     with_entry,
 )
 from gearwhine.interruption import each_from_thread, in_thread
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.comparison import map_measured, read_measured
 from housing.correlation import dominance_band, real_shapes
@@ -71,6 +73,9 @@ from housing.updating import (
 from meshes import Mesh
 
 _TWO_PI = 2.0 * np.pi
+FloatArray = npt.NDArray[np.float64]
+
+_EXPLAINED = 2.0  # standard deviations of a frequency that its noise explains
 _MARGIN = 1.0 / 3.0  # of the least gap, for the two measures beside the one that decides
 
 Observer = Callable[[Mesh], sparse.csr_array]
@@ -354,6 +359,34 @@ class UpdatedPair:
     def error_percent(self) -> float:
         """Model minus measured after the update, in per cent of measured."""
         return float(100.0 * np.expm1(self.error))
+
+
+def noise_warnings(misfit: Misfit, noise: FloatArray) -> list[dict[str, Any]]:
+    """Warn of a fit that leaves frequencies further off than their noise explains.
+
+    The posterior covariance takes the residuals for noise of the stated size. Where they are larger, the standard
+    deviations of the fitted numbers are too small.
+
+    Parameters
+    ----------
+    misfit : Misfit
+        Of the fitted housing.
+    noise : ndarray, shape (n,)
+        Relative standard deviation of each measured frequency; infinite where it takes no part.
+    """
+    counted_in = (misfit.pairs != UNPAIRED) & np.isfinite(noise)
+    errors = np.abs(misfit.errors[counted_in])
+    beyond = errors > _EXPLAINED * noise[counted_in]
+    if not beyond.any():
+        return []
+    worst = int(np.argmax(errors / noise[counted_in]))
+    message = (
+        f"the fit leaves {int(beyond.sum())} of {len(errors)} frequencies further off than twice their noise, the "
+        f"worst by {100.0 * errors[worst]:.2f} % where frequency_noise is {100.0 * noise[counted_in][worst]:.2g} %: the "
+        "give or take of the fitted numbers counts the noise alone and is too small; the model lacks something, or the "
+        "noise is larger"
+    )
+    return [warning("fit beyond noise", message, frequencies=int(beyond.sum()))]
 
 
 @dataclass(frozen=True)

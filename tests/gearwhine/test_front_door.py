@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import gearwhine as gw
 from gearwhine.case import Bearing, Material, Rotor
 from gearwhine.cli import run_command
 from gearwhine.failures import explain
+from rotors.rolling_bearings import catalogue_bearing
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -299,3 +301,32 @@ def test_a_changed_study_solves_its_housing_again_only_where_it_has_to(study: gw
     assert (longer.case.title, longer.case.rotor[0].segments[0].length) == ("longer", 0.6)  # type: ignore[union-attr]
     with pytest.raises(gw.CaseError, match="one of 'rod'"):
         built.changed({"rotor.rodd.mass": "lumped"})
+
+
+def test_machines_and_operating_points_print_in_a_line() -> None:
+    machine = gw.load("spur-pair").machine
+    text = repr(machine)
+    assert text == "<Machine: 2 shafts, 4 bearings, 2 gears, 1 gear pair, without housing; 5500 rpm, 71.77 N m>"
+    text = repr(machine.operating_point())
+    assert text.startswith("<OperatingPoint: input-back 859.12 N, input-front 859.12 N, output-back 859.12 N, ")
+    assert text.endswith(" µrad>")
+    assert len(text) < 200
+
+
+def test_rolling_bearings_of_objects_get_their_stiffness_from_the_operating_point() -> None:
+    """Gears stand in the middle of their shafts: a bearing carries half the mesh force, whatever its stiffness."""
+    machine = gw.load("spur-pair").machine
+    elements = catalogue_bearing("deep-groove", 0.025, 0.052, 0.015, clearance=6e-6, dynamic=14.8e3, static=7.8e3)
+    bearings = [
+        gw.MountedBearing.from_elements(one.bearing.name, one.bearing.at, one.rotor, one.seat, elements, damping=500.0)
+        for one in machine.bearings
+    ]
+    assert all(one.needs_load and one.elements is elements for one in bearings)
+    assert bearings[0].bearing.spatial_damping.diagonal().tolist() == [500.0, 500.0, 0.0, 0.0, 0.0]
+    on_rolling = replace(machine, bearings=bearings)
+    loaded = on_rolling.operating_point()
+    for bearing, linear in zip(loaded.bearings, machine.operating_point().bearings, strict=True):
+        np.testing.assert_allclose(bearing.force[:2], linear.force[:2], rtol=1e-6)
+    stiff = on_rolling.at_operating_point(loaded).bearings[0].bearing.spatial_stiffness
+    assert stiff[0, 0] > 1e7
+    assert stiff[1, 1] > 1e7
