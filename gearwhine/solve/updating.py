@@ -383,8 +383,8 @@ def noise_warnings(misfit: Misfit, noise: FloatArray) -> list[dict[str, Any]]:
     message = (
         f"the fit leaves {int(beyond.sum())} of {len(errors)} frequencies further off than twice their noise, the "
         f"worst by {100.0 * errors[worst]:.2f} % where frequency_noise is {100.0 * noise[counted_in][worst]:.2g} %: "
-        "the give or take of the fitted numbers counts the noise alone and is too small; the model lacks something, or the "
-        "noise is larger"
+        "the give or take of the fitted numbers counts the noise alone and is too small; the model lacks something, or "
+        "the noise is larger"
     )
     return [warning("fit beyond noise", message, frequencies=int(beyond.sum()))]
 
