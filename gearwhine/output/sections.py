@@ -5,7 +5,7 @@ folder.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from gearwhine.output.quantity import Quantity
@@ -176,6 +176,8 @@ class Section:
         Behind its own content.
     curves : tuple of Curves
         For the interactive report.
+    shows : Document or None
+        Part of a command's document that it shows, by which a report tells results that stand in it twice.
     """
 
     title: str
@@ -184,6 +186,7 @@ class Section:
     pictures: tuple[Picture, ...] = ()
     inner: tuple["Section", ...] = ()
     curves: tuple[Curves, ...] = ()
+    shows: Document | None = field(default=None, compare=False)
 
     @property
     def place(self) -> str:

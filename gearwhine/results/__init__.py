@@ -1,6 +1,7 @@
 """Results by analysis: each module declares the quantities of one, and the sections that terminal and report show."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from gearwhine.output.sections import Document, Section
 from gearwhine.results.housing import write_shapes
@@ -60,4 +61,4 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
         (housing.render_report, own("command", "render")),
         (steady_state.report, own("motions", "steady")),
     )
-    return tuple(chapter(shown) for chapter, shown in chapters if shown)
+    return tuple(replace(chapter(shown), shows=shown) for chapter, shown in chapters if shown)

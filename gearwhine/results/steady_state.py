@@ -1,5 +1,6 @@
 """Steady state: quantities of periodic motions and of their branch over speed, and how they are shown."""
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -417,13 +418,21 @@ def _motion(motion: Document, name: str) -> Iterator[str | Table]:
 
 def _proof(motion: Document, name: str) -> str:
     if motion["stable"]:
-        stability = f"stable, disturbances fall by {motion['largest_multiplier']:.4g} each period"
+        stability = f"stable, {_decay(motion['largest_multiplier'], motion['period_s'])}"
     else:
         stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
     return (
         f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes to {motion['residual']:.0e}, "
         f"changes by {motion['error']:.0e} with elements half as long"
     )
+
+
+def _decay(multiplier: float, period: float) -> str:
+    """Return the time in which the slowest disturbance falls to a tenth, by its Floquet multiplier."""
+    if not 0.0 < multiplier < 1.0:
+        return "disturbances fall at once" if multiplier <= 0.0 else "the slowest disturbance stays"
+    periods = math.log(10.0) / -math.log(multiplier)
+    return f"the slowest disturbance falls to a tenth in {periods * period:.3g} s"
 
 
 def curve_sentences(curve: Document) -> Iterator[str | Table]:

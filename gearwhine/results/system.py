@@ -481,7 +481,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     if "load" in document:
         yield from brief(document["load"])
     modes, trusted = document["modes"], document.get("trusted_below_hz")
-    shown = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
+    within = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
+    shown = [mode for mode in within if mode["kind"] != "residual"]
     phase = document.get("mesh_phase")
     about = "" if phase is None else f", the first pair's teeth at {phase:g} of their period"
     yield f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm{about}"
@@ -489,8 +490,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield _mesh_sentence(mesh)
     yield from table_of(mode_columns(shown), shown)
     yield "Shares of the kinetic energy; teeth: share of the strain energy."
-    if any(mode["kind"] == "residual" for mode in shown):
-        yield "Residual: local compliance at the seats, no mode of the housing; its frequency means nothing."
+    if residual := len(within) - len(shown):
+        yield f"Left out: {counted(residual, 'residual mode')}, local compliance at the seats, no modes of the housing."
     if certificate := document.get("certificate"):
         yield (
             f"{certificate['found']} of {certificate['expected']} eigenvalues found, {certificate['zeros']} of them "
@@ -500,8 +501,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield from _stability(document["stability"])
     if error := document.get("static_error"):
         yield static_error_sentence(error)
-    if trusted and len(shown) < len(modes):
-        yield f"{counted(len(modes) - len(shown), 'more mode')} above {2.0 * trusted:.5g} Hz."
+    if trusted and len(within) < len(modes):
+        yield f"{counted(len(modes) - len(within), 'more mode')} above {2.0 * trusted:.5g} Hz."
     for response in document.get("transmissibility", ()):
         yield from _peaks(response)
     if document.get("transmissibility"):

@@ -317,6 +317,30 @@ def test_sections_follow_what_the_document_holds() -> None:
     assert chapters_of(RUN["housing"]) == ()  # type: ignore[arg-type]
 
 
+def test_results_that_stand_twice_are_folded_the_second_time(tmp_path: Path) -> None:
+    """A run's housing modes give way to those of the newer `modes`; of another solution both stand open."""
+
+    def open_chapters(newer: dict[str, object]) -> dict[str, bool]:
+        write(tmp_path, {"made_at": "2026-01-01T10:00:00+00:00"} | RUN, 'title = "x"')
+        write(tmp_path / "modes", {"command": "modes", "made_at": "2026-02-01T10:00:00+00:00"} | newer, 'title = "x"')
+        page = report_page(tmp_path, Contents(chapters_of, first_page))
+        found = re.findall(r'<details( open)? class="level3" id="([\w-]+)"><summary><h3>(.*?)</h3>', page)
+        assert all(
+            ("the same as under gearwhine modes" in heading) is not bool(unfolded) for unfolded, _, heading in found
+        )
+        return {name: bool(unfolded) for unfolded, name, _ in found if name.endswith("housing-modes")}
+
+    same: dict[str, object] = RUN["housing"]  # type: ignore[assignment]
+    assert open_chapters(same | {"detail": 1}) == {
+        "run-section-housing-modes": False,
+        "modes-section-housing-modes": True,
+    }
+    assert open_chapters(same | {"mass_kg": 13.0}) == {
+        "run-section-housing-modes": True,
+        "modes-section-housing-modes": True,
+    }
+
+
 def test_what_a_fit_is_worth_is_told_beside_it() -> None:
     worth = {
         "sets": 20,

@@ -184,3 +184,13 @@ def test_a_sensor_is_loudest_where_the_mesh_meets_the_mode_it_sits_on() -> None:
         assert own.std("period_time").values == pytest.approx(one["rms_force_n"], abs=1e-6 * force)
         moment = result.dataset["steady_bearing_moment"].sel(bearing=one["name"])[0].mean("period_time")
         assert moment.values == pytest.approx(one["mean_moment_n_m"], abs=1e-6 * force)
+
+
+def test_decay_of_disturbances_by_the_floquet_multiplier() -> None:
+    """Falls by a tenth each period of 20 ms: to a tenth in log 10 / log (1 / 0.9) = 21.85 of them."""
+    from gearwhine.results.steady_state import _decay
+
+    assert _decay(0.9, 0.02) == "the slowest disturbance falls to a tenth in 0.437 s"
+    assert _decay(0.1, 0.02) == "the slowest disturbance falls to a tenth in 0.02 s"
+    assert _decay(0.0, 0.02) == "disturbances fall at once"
+    assert _decay(1.0, 0.02) == "the slowest disturbance stays"

@@ -104,13 +104,13 @@ class Writer:
         self._pictures, self._live = pictures, live
         self._placed: set[str] = set()
 
-    def chapter(self, section: Section, level: int = 3) -> str:
+    def chapter(self, section: Section, level: int = 3, *, folded: bool = False) -> str:
         """Return a section that folds, with all that is in it."""
         heading = f"<h{level}>{worded(section.title)}{self._note(section)}</h{level}>"
         identifier = self._places.identifier(self._result, section.place)
         inner = "".join(self.chapter(one, level + 1) if one.title else self.content(one) for one in section.inner)
         return (
-            f'<details open class="level{level}" id="{identifier}"><summary>{heading}</summary>\n'
+            f'<details{"" if folded else " open"} class="level{level}" id="{identifier}"><summary>{heading}</summary>\n'
             f"{self.content(section)}{inner}</details>\n"
         )
 

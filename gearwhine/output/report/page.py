@@ -5,7 +5,7 @@ The static form has no script at all. It prints as it reads, and follows the rea
 
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
 from importlib.resources import files
@@ -45,12 +45,16 @@ class Contents:
 
 @dataclass(frozen=True, eq=False)
 class _Result:
-    """Results of one command: their folder, document, chapters, and what does not fit the case any more."""
+    """Results of one command: their folder, document, chapters, and what does not fit the case any more.
+
+    ``repeated`` are the titles of chapters that another result shows as well.
+    """
 
     place: Path
     document: Mapping[str, Any]
     chapters: tuple[Section, ...]
     stale: tuple[str, ...]
+    repeated: frozenset[str] = frozenset()
 
     @property
     def command(self) -> str:
@@ -102,6 +106,7 @@ def report_page(
     titled = [section for section in first if section.title]
     places.add(_SUMMARY, _SUMMARY)
     places.add_sections(_SUMMARY, titled, {})
+    results = _folded(results)
     for result in results:
         places.add(result.name, result.heading)
         places.add_sections(result.name, result.chapters, result.pictures[0])
@@ -152,6 +157,42 @@ def _result(place: Path, document: Mapping[str, Any], present: Mapping[str, Any]
     return _Result(place, document, chapters, tuple(mismatches(place, document, present)))
 
 
+def _folded(results: Sequence[_Result]) -> list[_Result]:
+    """Return the results with the chapters that another one shows as well told apart, with a note of where.
+
+    A chapter of an analysis that a command includes gives way to that analysis' own results, and to newer ones.
+    """
+    folded = []
+    for number, result in enumerate(results):
+        chapters = []
+        repeated = set()
+        for section in result.chapters:
+            elsewhere = next(
+                (
+                    other.heading
+                    for place, other in enumerate(results)
+                    for same in other.chapters
+                    if place != number
+                    and same.title == section.title
+                    and (place < number or same.shows is other.document)
+                    and _same_results(section, same)
+                ),
+                None,
+            )
+            if section.shows is not result.document and elsewhere is not None:
+                section = replace(section, note=f"the same as under {elsewhere}")
+                repeated.add(section.title)
+            chapters.append(section)
+        folded.append(replace(result, chapters=tuple(chapters), repeated=frozenset(repeated)))
+    return folded
+
+
+def _same_results(section: Section, other: Section) -> bool:
+    """Whether all that a chapter shows stands in another one."""
+    mine, theirs = section.shows, other.shows
+    return mine is not None and theirs is not None and all(theirs.get(key) == value for key, value in mine.items())
+
+
 def _documents(results: Sequence[_Result]) -> list[Mapping[str, Any]]:
     return [result.document for result in results]
 
@@ -197,7 +238,10 @@ def _chapters(result: _Result, places: Places, scripts: Scripts | None) -> str:
     """Return one command's results."""
     given, others = result.pictures
     writer = Writer(result.name, places, given, live_parts(scripts, result.place, result.chapters))
-    parts = [writer.chapter(section) if section.title else writer.content(section) for section in result.chapters]
+    parts = [
+        writer.chapter(section, folded=section.title in result.repeated) if section.title else writer.content(section)
+        for section in result.chapters
+    ]
     if others:
         shown = [Shown(path, "") for path in others]
         further = "".join(figure(one, places.identifier(result.name, one.place)) for one in shown)
