@@ -69,6 +69,27 @@ def test_orbits_stand_where_the_shaft_rests(tmp_path: Path) -> None:
     save(figure, tmp_path / "orbits.png")
 
 
+def test_a_run_that_settles_is_drawn_over_time(tmp_path: Path) -> None:
+    """Spectra and windows at one speed would lie on each other over the speed."""
+    times = 1e-4 * np.arange(40_000)
+    turning = SpeedProfile(np.array([0.0, 1.0, 4.0]), np.array([0.5, 1.0, 1.0]))
+    signal = np.cos(2 * np.pi * 28.0 * 20.0 * turning.at(times)[0])
+    orders = order_map(resample_by_angle(signal, times, turning, 20.0), turns=2)
+    figure = draw_order_slices("Free run", orders, {"mesh": 28.0}, unit="m/s²")
+    (axes,) = figure.axes
+    assert axes.get_xlabel() == "time [s]"
+    np.testing.assert_allclose(np.asarray(axes.lines[0].get_xdata()), orders.times)
+    spectra = spectrogram(signal, 1e-4, 1000, 2000)
+    speeds = 60.0 * 20.0 * turning.at(spectra.times)[1]
+    waterfall = draw_run_up_waterfall("Free run", spectra, speeds, unit="m/s²", limit=1200.0, mesh_orders=[28.0])
+    axes = waterfall.axes[0]
+    assert axes.get_ylabel() == "time [s]"
+    # The mesh order follows the speed, and stands still with it.
+    (mesh,) = (line for line in axes.lines if line.get_linestyle() == "--" and line.get_xdata()[-1] == 560.0)
+    np.testing.assert_allclose(mesh.get_xdata(), 28.0 / 60.0 * speeds)
+    save(waterfall, tmp_path / "waterfall.png")
+
+
 def test_bars_are_the_shares(tmp_path: Path) -> None:
     line = TracedLine(
         frequency=2567.0,

@@ -29,6 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT = 80.0  # of the panel of order slices [mm of paper]
 _COLUMNS = 3  # of their legend
+_EVEN = 0.2  # least step of the speed between two spectra, part of the mean one, for an axis of speed
 _DECADES = 5.0  # of amplitude that they show at most
 
 
@@ -44,7 +45,7 @@ def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> 
     names = [name.replace(" -> ", "-") for name in found.spectra]
     pairs = [f"{pair.driver} → {pair.driven}" for pair in case.gear_pair]
     for stem, (name, spectra) in zip(file_stems(names), found.spectra.items(), strict=True):
-        unit, what, told = found.units[name], arrowed(name), f"{case.title}; {run_words(found)}"
+        unit, what, told = found.units[name], arrowed(name), f"{case.title}; {run_words(case, found)}"
         waterfall = draw_run_up_waterfall(
             f"{what}: spectra along the run",
             spectra,
@@ -61,11 +62,26 @@ def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> 
         yield f"run-up-orders-{stem}", slices
 
 
-def run_words(found: RunSignature) -> str:
-    """Return the range of a run's spectra in words."""
+def run_words(case: Case, found: RunSignature) -> str:
+    """Return the kind of a run and the range of its spectra in words."""
     first, last = float(found.speeds_rpm[0]), float(found.speeds_rpm[-1])
+    run = None if case.transient is None else case.transient.run
     kind = "run-up" if abs(last) > abs(first) else "run-down"
+    if run is not None and run.free:
+        kind = "free run"
     return f"{kind}, spectra from {first:.0f} to {last:.0f} rpm"
+
+
+def _axis(speeds_rpm: FloatArray, times: FloatArray) -> tuple[FloatArray, str]:
+    """Values and name of the axis along a run: the speed where it changes evenly enough, else the time.
+
+    Spectra of a machine that settles at a speed, or returns to one, would lie on each other over the speed.
+    """
+    steps = np.diff(speeds_rpm)
+    even = steps.size > 0 and np.abs(steps).min() >= _EVEN * np.abs(steps).mean()
+    if even and (np.all(steps > 0.0) or np.all(steps < 0.0)):
+        return speeds_rpm, "speed of the first driver [rpm]"
+    return times, "time [s]"
 
 
 def draw_run_up_waterfall(
@@ -80,7 +96,7 @@ def draw_run_up_waterfall(
     mesh_names: Sequence[str] = (),
     housing_frequencies: FloatArray | None = None,
 ) -> Figure:
-    """Draw spectra along a run as rows over the speed, as :func:`draw_waterfall` does those of a sweep.
+    """Draw spectra along a run as rows over speed or time, as :func:`draw_waterfall` does those of a sweep.
 
     Parameters
     ----------
@@ -89,7 +105,7 @@ def draw_run_up_waterfall(
     spectra
         Of stretches along the run.
     speeds_rpm
-        (t,): of the leading shaft in the middle of each stretch, distinct.
+        (t,): of the leading shaft in the middle of each stretch.
     unit
         Of the amplitudes.
     limit
@@ -104,12 +120,13 @@ def draw_run_up_waterfall(
     shown = spectra.frequencies <= limit * (1.0 + 1e-9)
     rows = len(speeds_rpm)
     modes = np.empty(0) if housing_frequencies is None else housing_frequencies
+    values, value_name = _axis(speeds_rpm, spectra.times)
     return draw_waterfall(
         title,
-        speeds_rpm,
+        values,
         np.tile(spectra.frequencies[shown], (rows, 1)),
         spectra.amplitude[:, shown],
-        value_name="speed of the first driver [rpm]",
+        value_name=value_name,
         unit=unit,
         note=note,
         mesh_names=mesh_names,
@@ -119,7 +136,7 @@ def draw_run_up_waterfall(
 
 
 def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, unit: str, note: str = "") -> Figure:
-    """Draw the amplitude of some orders over the speed of the leading shaft.
+    """Draw the amplitude of some orders over the speed of the leading shaft, or the time where it settles.
 
     Parameters
     ----------
@@ -142,17 +159,18 @@ def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, 
     below = legend_height(len(named), _COLUMNS)
     figure = sheet(HEAD + _HEIGHT + FOOT + below, title, note)
     axes = panel(figure, FOOT + below, _HEIGHT)
-    speeds, top, least = 60.0 * orders.speeds, 0.0, np.inf
+    values, value_name = _axis(60.0 * orders.speeds, orders.times)
+    top, least = 0.0, np.inf
     handles = []
     for number, (name, order) in enumerate(named.items()):
         amplitude = orders.order_slice(order)
         top, least = max(top, float(amplitude.max(initial=0.0))), min(least, float(amplitude.min(initial=np.inf)))
         style = "-" if number < len(SERIES) else (0, (4, 2))
         handles += axes.plot(
-            speeds, amplitude, color=SERIES[number % len(SERIES)], ls=style, lw=1.2, label=name_in_legend(name, 40)
+            values, amplitude, color=SERIES[number % len(SERIES)], ls=style, lw=1.2, label=name_in_legend(name, 40)
         )
-    axes.set_xlim(float(speeds.min()), float(speeds.max()))
-    axes.set(xlabel="speed of the first driver [rpm]", ylabel=f"amplitude [{unit}, peak]")
+    axes.set_xlim(float(values.min()), float(values.max()))
+    axes.set(xlabel=value_name, ylabel=f"amplitude [{unit}, peak]")
     if top > 0.0:
         log_axis(axes, max(0.7 * least, top * 10.0**-_DECADES), 2.0 * top)
     legend_below(figure, handles, _COLUMNS)
