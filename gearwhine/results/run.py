@@ -660,6 +660,8 @@ def _content(document: Document) -> Iterator[str | Table]:
             "Levels of rms values re 1 µm/s². Shares are in phase with the line and add up to it; "
             "of parts that cancel each other some exceed 100 %."
         )
+    if run := document.get("run_signature"):
+        yield f"Speed from {run['from_rpm']:.0f} to {run['to_rpm']:.0f} rpm between the first and the last spectrum"
     if "steps" in document:
         yield (
             f"Transient: {document['steps']} {_STEPS[document['method']]}, "
