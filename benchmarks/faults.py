@@ -4,7 +4,8 @@ Each fault of `faults.toml` replaces a piece of one file: two axes swapped, a si
 area run on a copy of the tree with the fault in it; where all of them pass, it is missed. The copies, one for each
 worker, stand in a temporary folder with kernels of their own, and the checkout is not touched::
 
-    python benchmarks/faults.py                       # all: an hour on two cores
+    python benchmarks/faults.py                       # all: half a day on two cores
+    python benchmarks/faults.py --sample 60           # as many at random, the same for the same --seed
     python benchmarks/faults.py --area figures --area report
     python benchmarks/faults.py --only 12 --only 40   # by number, with the end of the tests' output
     python benchmarks/faults.py --check               # whether every fault still fits the code; runs no tests
@@ -13,6 +14,7 @@ worker, stand in a temporary folder with kernels of their own, and the checkout 
 import argparse
 import ast
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -159,6 +161,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--area", action="append", help="only faults of this area; may be repeated")
     parser.add_argument("--only", action="append", type=int, help="only the fault of this number; may be repeated")
+    parser.add_argument("--sample", type=int, help="only as many of these, chosen at random")
+    parser.add_argument("--seed", type=int, default=0, help="of that choice")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--check", action="store_true", help="only tell which faults do not fit the code any more")
     given = parser.parse_args()
@@ -174,6 +178,8 @@ def main() -> None:
     ]
     if not chosen:
         parser.error("no fault has these numbers in these areas")
+    if given.sample is not None:
+        chosen = random.Random(given.seed).sample(chosen, min(given.sample, len(chosen)))
     waiting: SimpleQueue[Fault] = SimpleQueue()
     for fault in chosen:
         waiting.put(fault)
