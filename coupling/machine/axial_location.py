@@ -21,7 +21,7 @@ _BOTH = frozenset((1, -1))
 
 @dataclass(frozen=True)
 class AxialSupport:
-    """A bearing as far as it holds its shaft along the axis.
+    """Axial support of a shaft by a bearing.
 
     Attributes
     ----------
@@ -29,9 +29,9 @@ class AxialSupport:
     at : float
         Station from the shaft's left end [m].
     senses : frozenset of int
-        Of the shaft's axial force that it carries: 1 towards +z, -1 towards -z.
+        Senses of the shaft's axial force that the bearing carries: 1 towards +z, -1 towards -z.
     rolling : RollingBearing or None
-        By its elements.
+        Rolling bearing that is described by its elements.
     """
 
     name: str
@@ -46,7 +46,7 @@ class AxialSupport:
 
     @property
     def arrangement(self) -> Literal["O", "X"] | None:
-        """Of two rows within the bearing, one for each sense; None of other bearings."""
+        """Arrangement of two rows within the bearing, one for each sense; None for other bearings."""
         rows = () if self.rolling is None else sorted(self.rolling.rows, key=lambda row: row.position)
         if len(rows) != 2 or rows[0].position == rows[1].position or _spherical(rows[0]):
             return None
@@ -54,7 +54,7 @@ class AxialSupport:
 
     @property
     def has_balls(self) -> bool:
-        """Whether it is a ball bearing by its elements."""
+        """Whether it is a ball bearing that is described by its elements."""
         return self.rolling is not None and isinstance(self.rolling.rows[0], BallRow)
 
     @property
@@ -76,8 +76,8 @@ def axial_support(mounted: MountedBearing, speed: float) -> AxialSupport:
     elements, bearing = mounted.elements, mounted.bearing
     if elements is not None:
         return AxialSupport(bearing.name, bearing.at, elements.thrust_senses, elements)
-    held = bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0
-    return AxialSupport(bearing.name, bearing.at, _BOTH if held else frozenset())
+    has_stiffness = bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0
+    return AxialSupport(bearing.name, bearing.at, _BOTH if has_stiffness else frozenset())
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class AxialLocation:
     ----------
     shaft : str
     bearings : sequence of AxialSupport
-        All of the shaft's; kept from left to right.
+        All bearings of the shaft; sorted from left to right.
     """
 
     shaft: str
@@ -122,8 +122,8 @@ class AxialLocation:
     def warnings(self) -> tuple[str, ...]:
         """Sentences on the rows that carry thrust.
 
-        On rows that all carry it one way, springs that do not press rows against each other, and ball bearings that
-        share it both ways.
+        They concern rows that all carry thrust one way, springs that do not press rows against each other, and ball
+        bearings that share thrust both ways.
         """
         return (*self._one_way(), *self._springs(), *self._shared())
 
@@ -165,16 +165,16 @@ class AxialLocation:
                 f"shaft {self.shaft!r}: the `preload` of {names} is a spring's force on the shaft each, and "
                 f"{forces} {effect}; {_RIGID}",
             )
-        found = []
+        warnings = []
         for one in sprung:
             others = [other.name for other in self.bearings if other.senses and other is not one]
             if others:
-                found.append(
+                warnings.append(
                     f"shaft {self.shaft!r}: the `preload` of {one.name!r} is a spring's force on the shaft, "
                     f"{abs(one.spring):.4g} N towards {_along(one.spring)}, which moves it in {_listed(others)} as "
                     f"well: it does not press them against each other; {_RIGID}"
                 )
-        return tuple(found)
+        return tuple(warnings)
 
 
 ARRANGEMENTS = {"O": "back to back", "X": "face to face"}

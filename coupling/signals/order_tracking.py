@@ -19,7 +19,7 @@ from coupling.signals.spectrum import Spectrum, Window, amplitude_spectrum, line
 
 FloatArray = npt.NDArray[np.float64]
 
-_MOST_SAMPLES = 50_000_000  # by angle
+_MOST_SAMPLES = 50_000_000  # largest number of samples by angle
 _DEGREE = 5
 
 
@@ -30,7 +30,7 @@ class AngleSignal:
     Attributes
     ----------
     turns : ndarray, shape (s,)
-        Revolutions since t = 0, beginning with a whole one.
+        Revolutions since t = 0, beginning with a whole number.
     times : ndarray, shape (s,)
         [s].
     speeds : ndarray, shape (s,)
@@ -123,7 +123,7 @@ class OrderMap:
     Attributes
     ----------
     times : ndarray, shape (w,)
-        Of the middle turn [s].
+        Time of the middle of each window [s].
     speeds : ndarray, shape (w,)
         Mean speed of the leading shaft over each window [Hz].
     orders : ndarray, shape (m,)

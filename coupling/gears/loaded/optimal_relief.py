@@ -42,7 +42,7 @@ class HarrisMap:
     Attributes
     ----------
     forces : ndarray, shape (f,)
-        Along the line of action [N].
+        Loads along the line of action [N].
     phases : ndarray, shape (n,)
         Mesh periods.
     transmission_error : ndarray, shape (f, n)
@@ -107,7 +107,7 @@ _POINTS = 128
 _HIGHEST = 32
 """Highest multiple of the mesh frequency with a weight."""
 _LONGEST = 0.95
-"""Longest relief from the tip, in halves of the path of contact."""
+"""Longest relief from the tip, over half of the path of contact."""
 _DEEPEST = 3.0
 """Largest amount of relief, in mean deflections at the largest load."""
 
@@ -135,7 +135,7 @@ class WeightedHarmonics:
     Attributes
     ----------
     weights : mapping of int to float
-        w_n by n from 1; at least one above 0.
+        Weight w_n by harmonic n from 1; at least one above 0.
 
     Raises
     ------
@@ -167,17 +167,17 @@ class ReliefOptimum:
     Attributes
     ----------
     relief : TipRelief or None
-        By its length along the line of action; None where no relief of the search is better than none.
+        Optimal relief, by its length along the line of action; None where no relief of the search is an improvement.
     geometry : GearPairGeometry
-        The pair with it.
+        The pair with the relief.
     value : ndarray, shape (f,)
-        Objective with it, at each load.
+        Objective with the relief at each load.
     value_unmodified : ndarray, shape (f,)
-        Objective without any tip relief: its largest is never below that of `value`.
+        Objective without any tip relief at each load; its largest value is never below that of `value`.
     peak_to_peak : ndarray, shape (f,)
-        Transmission error with it at each load [m].
+        Peak-to-peak transmission error with the relief at each load [m].
     unmodified : ndarray, shape (f,)
-        Transmission error without any tip relief at each load [m].
+        Peak-to-peak transmission error without any tip relief at each load [m].
     amounts, lengths : ndarray, shapes (a,), (l,)
         Grid of the search [m].
     tried : ndarray, shape (a, l)
@@ -293,8 +293,10 @@ def optimal_tip_relief(
         return worst(float(x[0]) * deepest, float(x[1]) * longest)
 
     start = np.array([amounts[row] / deepest, lengths[column] / longest])
-    found = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
-    relief: TipRelief | None = TipRelief(float(found.x[0] * deepest), length=float(found.x[1] * longest), shape=shape)
+    optimum = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
+    relief: TipRelief | None = TipRelief(
+        float(optimum.x[0] * deepest), length=float(optimum.x[1] * longest), shape=shape
+    )
     pair = with_relief(relief)
     contact = with_flanks_of(plain, pair)
     # The comparison uses all slices of the face; the search may use fewer.

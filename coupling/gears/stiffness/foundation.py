@@ -57,7 +57,7 @@ _SOLID_THICKNESS = 3.0
 
 
 def held_radius(gear: Gear) -> float | None:
-    """Radius at which the body is held [m]: the bore's, or the inside of a rim alone; None where there is neither."""
+    """Radius at which the body is held [m]: the bore or the inside of a rim without web; None for neither."""
     if gear.rim_inner_radius is not None and gear.web_thickness is None:
         return gear.rim_inner_radius
     return 0.5 * gear.bore if gear.bore > 0.0 else None
@@ -151,10 +151,10 @@ def _ring_twist(gear: Gear, thickness: float) -> float:
 
 def _thickness(gear: Gear) -> float:
     """Root radius over the radius of the held circle, h; the middle of the fitted range for a gear in one piece."""
-    held = held_radius(gear)
-    if held is None:
+    inner_radius = held_radius(gear)
+    if inner_radius is None:
         return _SOLID_THICKNESS
-    thickness = gear.root_circle_radius / held
+    thickness = gear.root_circle_radius / inner_radius
     nearest = min(max(thickness, THICKNESS_RANGE[0]), THICKNESS_RANGE[1])
     # Rounding may put an h of exactly 1.4 or 7 beyond the range.
     return nearest if math.isclose(thickness, nearest, rel_tol=1e-9) else thickness
