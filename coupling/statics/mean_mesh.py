@@ -1,9 +1,9 @@
 """Mean mesh stiffness of each contact under its mean mesh force.
 
 Over a mesh period the number of loaded teeth changes, while the mean force of a contact stays that of the torques. So a
-contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the period,
-and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the torques alone
-give F; where meshes share a torque, their stiffness and deviations divide it.
+contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the
+period, and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the
+torques alone give F; where meshes share a torque, their stiffness and deviations divide it.
 
 Linear analyses take the tooth contacts as mesh stiffness and damping about the mean load, or at an instant
 (`ContactState`).
