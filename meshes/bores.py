@@ -44,12 +44,14 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
     sideways = np.abs(normals @ axis) < SIDEWAYS
     corners = np.concatenate([block.corners[:, [0, 1, 2, -1]] for block in boundary])
     pairs = _edge_neighbors(boundary)
-    one, two = pairs[:, 0], pairs[:, 1]
+    first_facet, second_facet = pairs[:, 0], pairs[:, 1]
     # Neighbours round a bore lie in front of each other, and turn, but not by a corner.
-    step = centers[two] - centers[one]
-    hollow = np.minimum(np.einsum("pi,pi->p", normals[one], step), -np.einsum("pi,pi->p", normals[two], step))
-    turn = np.einsum("pi,pi->p", normals[one], normals[two])
-    linked = sideways[one] & sideways[two] & (turn > _SHARPEST)
+    step = centers[second_facet] - centers[first_facet]
+    hollow = np.minimum(
+        np.einsum("pi,pi->p", normals[first_facet], step), -np.einsum("pi,pi->p", normals[second_facet], step)
+    )
+    turn = np.einsum("pi,pi->p", normals[first_facet], normals[second_facet])
+    linked = sideways[first_facet] & sideways[second_facet] & (turn > _SHARPEST)
     linked &= hollow > -1e-6 * np.linalg.norm(step, axis=1)
     pairs = np.concatenate([pairs[linked], pairs[linked][:, ::-1]])
     if len(pairs) == 0:
@@ -185,19 +187,19 @@ def find_bores(
     sides run on along its tangents, where those of a split bore end at the parting plane.
     """
     direction = unit_vector(axis)
-    found: list[CylindricalBore] = []
-    taken = np.zeros(sum(len(block) for block in mesh.boundary), dtype=bool)
+    bores: list[CylindricalBore] = []
+    assigned = np.zeros(sum(len(block) for block in mesh.boundary), dtype=bool)
     for center, radius in candidate_circles(mesh, direction):
-        on = fits_circle(mesh, center, radius, direction, 2 * SLACK * radius) & ~taken
+        on = fits_circle(mesh, center, radius, direction, 2 * SLACK * radius) & ~assigned
         if not on.any():
             continue
         for bore in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
-            if bore.roundness < least_round or any(_same(bore, other, direction) for other in found):
+            if bore.roundness < least_round or any(_same(bore, other, direction) for other in bores):
                 continue
             if not _runs_on(mesh, bore, direction):
-                found.append(bore)
-        taken |= on
-    return tuple(sorted(found, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
+                bores.append(bore)
+        assigned |= on
+    return tuple(sorted(bores, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
 
 
 def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
@@ -214,13 +216,15 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
     smooth, start = list[bool](), 0
     for block in mesh.boundary:
         on = inside[block.corners]
-        own = normals[start : start + len(block)]
+        block_normals = normals[start : start + len(block)]
         start += len(block)
         # Neighbours share an edge with the bore; a facet with all its corners there belongs to it.
-        for facet in np.flatnonzero((on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(own @ axis) < SIDEWAYS)):
+        for facet in np.flatnonzero(
+            (on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(block_normals @ axis) < SIDEWAYS)
+        ):
             edge = mesh.points[block.corners[facet][on[facet]]].mean(axis=0)
             inward = -across(edge[None] - np.asarray(bore.center), axis)[0]
-            smooth.append(bool(own[facet] @ inward > _SMOOTH * np.linalg.norm(inward)))
+            smooth.append(bool(block_normals[facet] @ inward > _SMOOTH * np.linalg.norm(inward)))
     return bool(smooth) and 2 * sum(smooth) > len(smooth)
 
 
@@ -268,15 +272,17 @@ def joined_by_span(
     heights = (mesh.points - np.asarray(center)) @ axis
     low = np.concatenate([heights[block.corners].min(axis=1) for block in facets])
     high = np.concatenate([heights[block.corners].max(axis=1) for block in facets])
-    spans = sorted((float(low[part == one].min()), float(high[part == one].max()), one) for one in np.unique(part))
+    spans = sorted(
+        (float(low[part == number].min()), float(high[part == number].max()), number) for number in np.unique(part)
+    )
     groups: list[tuple[float, float, list[int]]] = []
-    for begin, end, one in spans:
+    for begin, end, number in spans:
         if groups:
             first, last, members = groups[-1]
             if min(end, last) - begin > 0.5 * min(end - begin, last - first):
-                groups[-1] = (first, max(last, end), [*members, one])
+                groups[-1] = (first, max(last, end), [*members, number])
                 continue
-        groups.append((begin, end, [one]))
+        groups.append((begin, end, [number]))
     return tuple(
         _bore(mesh, pick_facets(facets, np.isin(part, members)), np.asarray(center), axis) for _, _, members in groups
     )
@@ -327,9 +333,15 @@ def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray
     covered = np.zeros(_ARC_STEPS, dtype=bool)
     steps = np.arange(_ARC_STEPS)
     for block in facets:
-        own = angles[block.corners]
-        turned = np.mod(own - own[:, :1] + np.pi, 2 * np.pi) - np.pi  # from the first corner, the short way
-        ends = (own[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1)) * _ARC_STEPS / (2 * np.pi)
+        corner_angles = angles[block.corners]
+        turned = (
+            np.mod(corner_angles - corner_angles[:, :1] + np.pi, 2 * np.pi) - np.pi
+        )  # from the first corner, the short way
+        ends = (
+            (corner_angles[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1))
+            * _ARC_STEPS
+            / (2 * np.pi)
+        )
         begin = np.floor(ends[:, 0] + 1e-6).astype(np.int64)
         width = np.ceil(ends[:, 1] - 1e-6).astype(np.int64) - begin
         for start, length in set(zip(begin.tolist(), width.tolist(), strict=True)):

@@ -221,8 +221,8 @@ def facets_of(nodes: IntArray) -> Facets:
         Where facets have another number of nodes.
     """
     if nodes.ndim != 2 or nodes.shape[1] not in _FACET_OF:
-        known = ", ".join(map(str, _FACET_OF))
-        raise GeometryError(f"facets have shape {nodes.shape}; expected (n_facets, n_nodes) with n_nodes of {known}")
+        numbers = ", ".join(map(str, _FACET_OF))
+        raise GeometryError(f"facets have shape {nodes.shape}; expected (n_facets, n_nodes) with n_nodes of {numbers}")
     return (ElementBlock(_FACET_OF[nodes.shape[1]], nodes),)
 
 
@@ -350,9 +350,9 @@ def faces_as_facets(blocks: tuple[ElementBlock, ...], table: FaceTable, chosen: 
     source = table.source[chosen]
     for number, block in enumerate(blocks):
         for place, (kind, local) in enumerate(block.of.faces):
-            here = np.flatnonzero((source[:, 0] == number) & (source[:, 2] == place))
-            if len(here):
-                parts.setdefault(kind, []).append((here, block.nodes[source[here, 1]][:, local]))
+            rows = np.flatnonzero((source[:, 0] == number) & (source[:, 2] == place))
+            if len(rows):
+                parts.setdefault(kind, []).append((rows, block.nodes[source[rows, 1]][:, local]))
     facets = []
     for kind in sorted(parts, key=list(KINDS).index):
         places = np.concatenate([where for where, _ in parts[kind]])

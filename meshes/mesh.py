@@ -56,10 +56,17 @@ class MeshDefect:
 
 
 def mesh_defect(
-    name: str, severity: Severity, what: str, advice: str, count: int, place: FloatArray, *, which: str = "the first at"
+    name: str,
+    severity: Severity,
+    finding: str,
+    advice: str,
+    count: int,
+    place: FloatArray,
+    *,
+    which: str = "the first at",
 ) -> MeshDefect:
     """Make a defect whose message names the fault, one place, and the remedy."""
-    return MeshDefect(name, severity, f"{what}, {which} {place_text(place)}; {advice}", int(count), place)
+    return MeshDefect(name, severity, f"{finding}, {which} {place_text(place)}; {advice}", int(count), place)
 
 
 def place_text(place: FloatArray) -> str:
@@ -253,8 +260,8 @@ class Mesh:
             Where the mesh has no surface of that name; the message lists those it has.
         """
         if name not in self.surfaces:
-            known = ", ".join(sorted(self.surfaces)) or "none"
-            raise GeometryError(f"the mesh has no surface {name!r}; it has: {known}")
+            names = ", ".join(sorted(self.surfaces)) or "none"
+            raise GeometryError(f"the mesh has no surface {name!r}; it has: {names}")
         return self.surfaces[name]
 
     def _check_nodes(self, block: ElementBlock, owner: str, dimension: int) -> None:

@@ -143,7 +143,7 @@ def resolution_defects(mesh: Mesh, wave: WaveCarrier) -> tuple[MeshDefect, ...]:
         coarse = (orders == order) & (longest > length / part)
         if coarse.any():
             number, worst = int(coarse.sum()), int(np.argmax(np.where(coarse, longest, 0.0)))
-            what = (
+            finding = (
                 f"{number} of {mesh.n_elements} elements have edges longer than 1/{part:g} of the shortest wave, "
                 f"{length_text(length)} at {wave.frequency / (2.0 * np.pi):.4g} Hz in walls about "
                 f"{length_text(thickness)} thick"
@@ -152,7 +152,7 @@ def resolution_defects(mesh: Mesh, wave: WaveCarrier) -> tuple[MeshDefect, ...]:
                 f"modes near that frequency come out too high; use elements of at most {length_text(length / part)}"
             )
             which = f"the worst of {length_text(longest[worst])} at"
-            defects.append(mesh_defect("size", "warning", what, advice, number, mesh.centers[worst], which=which))
+            defects.append(mesh_defect("size", "warning", finding, advice, number, mesh.centers[worst], which=which))
     defects += _locking(mesh, thickness)
     return tuple(defects)
 

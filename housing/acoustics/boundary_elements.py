@@ -222,10 +222,10 @@ class SoundField:
         if self.known is None:
             return np.full(len(points), self.source_error.largest)
         require_in_air(self.surface, self.plane, points)
-        known = self.known
-        flux = known.sources.flux(self.surface, self.wavenumber)
-        found = _represent(self.surface, self.plane, points, self.wavenumber, known.pressure, flux)
-        return known.errors_of(points, found)
+        known_field = self.known
+        flux = known_field.sources.flux(self.surface, self.wavenumber)
+        pressure = _represent(self.surface, self.plane, points, self.wavenumber, known_field.pressure, flux)
+        return known_field.errors_of(points, pressure)
 
 
 class BoundaryElements:
@@ -332,17 +332,17 @@ class BoundaryElements:
         They are random means of four vertices, so that they turn and grow with the surface. A thin body has none.
         """
         generator = np.random.default_rng(1968)
-        found: list[FloatArray] = []
+        inner: list[FloatArray] = []
         most = max(_FEWEST_INNER, len(self.surface.points) // 3) + _CHECK_POINTS
         centers, reach = self.surface.corners.mean(axis=1), 0.6 * self.surface.lengths
         for trials in range(400):
             chosen = generator.integers(len(self.surface.points), size=(64, 4))
             trial = np.einsum("ti,tij->tj", generator.dirichlet(np.ones(4), size=64), self.surface.points[chosen])
             trial = trial[(np.linalg.norm(trial[:, None] - centers, axis=2) > reach).all(axis=1)]
-            found += list(trial[_inside(self.surface, self.plane, trial) > 0.99])
-            if len(found) >= most or (trials >= _VAIN and not found):
+            inner += list(trial[_inside(self.surface, self.plane, trial) > 0.99])
+            if len(inner) >= most or (trials >= _VAIN and not inner):
                 break
-        return np.array(found[:most]).reshape(-1, 3)
+        return np.array(inner[:most]).reshape(-1, 3)
 
     @cached_property
     def known_sources(self) -> KnownSources:
@@ -382,31 +382,33 @@ class BoundaryElements:
             raise HousingError(f"a frequency of {frequency_hz:g} Hz; expected a positive one")
         self.require_resolved(frequency_hz)
         self.require_few()
-        given = np.asarray(velocity, dtype=np.complex128)
-        if len(given) != 3 * len(self.surface.triangles):
+        velocities = np.asarray(velocity, dtype=np.complex128)
+        if len(velocities) != 3 * len(self.surface.triangles):
             raise HousingError(
-                f"velocities at {len(given)} corners; expected {3 * len(self.surface.triangles)}, three of each "
+                f"velocities at {len(velocities)} corners; expected {3 * len(self.surface.triangles)}, three of each "
                 "triangle that radiates"
             )
-        given = np.ascontiguousarray(given.reshape(len(given), -1))
-        wavenumber, flux = self.medium.wavenumber(frequency_hz), self.medium.flux(frequency_hz, given)
-        inside = np.zeros((0, given.shape[1]), dtype=np.complex128)
+        velocities = np.ascontiguousarray(velocities.reshape(len(velocities), -1))
+        wavenumber, flux = self.medium.wavenumber(frequency_hz), self.medium.flux(frequency_hz, velocities)
+        inside = np.zeros((0, velocities.shape[1]), dtype=np.complex128)
         if self.baffled:
             assert self.plane is not None
             vertices = self.surface.points
-            own = np.arange(len(vertices))
-            pressure = -2.0 * surface_integrals(self.surface, vertices, own, wavenumber, flux).single
-            return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside)
-        sources, columns = self.known_sources, given.shape[1]
+            vertex_numbers = np.arange(len(vertices))
+            pressure = -2.0 * surface_integrals(self.surface, vertices, vertex_numbers, wavenumber, flux).single
+            return SoundField(self.surface, self.medium, self.plane, frequency_hz, velocities, pressure, inside)
+        sources, columns = self.known_sources, velocities.shape[1]
         every = self._solve_closed(wavenumber, np.hstack([flux, sources.flux(self.surface, wavenumber)]))
         pressure = every[:, :columns].copy()
-        known = None
+        known_field = None
         if len(sources.places):
-            known = KnownField(self.surface, sources, wavenumber, every[:, columns:].copy())
+            known_field = KnownField(self.surface, sources, wavenumber, every[:, columns:].copy())
         if self._checks:
             checks = self._inner_points[: self._checks]
             inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)
-        return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside, known)
+        return SoundField(
+            self.surface, self.medium, self.plane, frequency_hz, velocities, pressure, inside, known_field
+        )
 
     def _solve_closed(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
         """Solve ``c p − ∫ p ∂G/∂n dS = −∫ q G dS`` for the pressure at the vertices, q = ∂p/∂n.
@@ -420,22 +422,22 @@ class BoundaryElements:
         # LAPACK works in place on arrays in Fortran order.
         matrix = np.zeros((rows, count), dtype=np.complex128, order="F")
         right = np.zeros((rows, flux.shape[1]), dtype=np.complex128, order="F")
-        own = np.arange(count)
-        direct = surface_integrals(self.surface, vertices, own, wavenumber, flux)
+        vertex_numbers = np.arange(count)
+        direct = surface_integrals(self.surface, vertices, vertex_numbers, wavenumber, flux)
         matrix[:count], right[:count], free = -direct.double, -direct.single, 1.0 + direct.static
         inside = surface_integrals(self.surface, inner, None, wavenumber, flux)
         matrix[count:], right[count:] = -inside.double, -inside.single
         if self.plane is not None:
             mirrored = self.plane.mirror(vertices)
             touching = np.abs(self.plane.height(vertices)) <= self.surface.rounding
-            image = surface_integrals(self.surface, mirrored, np.where(touching, own, -1), wavenumber, flux)
+            image = surface_integrals(self.surface, mirrored, np.where(touching, vertex_numbers, -1), wavenumber, flux)
             matrix[:count] -= image.double
             right[:count] -= image.single
             free += image.static
             image = surface_integrals(self.surface, self.plane.mirror(inner), None, wavenumber, flux)
             matrix[count:] -= image.double
             right[count:] -= image.single
-        matrix[own, own] += free
+        matrix[vertex_numbers, vertex_numbers] += free
         correction = self._correction
         matrix[correction.row, correction.col] -= free[correction.row] * correction.data
         weights = np.ones(rows)
@@ -478,8 +480,8 @@ def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
     correction = sparse.csr_array((values.ravel(), places), shape=(count, count))
     # Where the whole of a spike at a vertex is taken for curvature, p − B p no longer sees it.
     part = correction.diagonal()
-    kept = np.where(part > _MOST_CURVATURE, _MOST_CURVATURE / np.where(part > _MOST_CURVATURE, part, 1.0), 1.0)
-    return sparse.coo_array(sparse.diags_array(kept) @ correction)
+    factor = np.where(part > _MOST_CURVATURE, _MOST_CURVATURE / np.where(part > _MOST_CURVATURE, part, 1.0), 1.0)
+    return sparse.coo_array(sparse.diags_array(factor) @ correction)
 
 
 def _represent(
@@ -491,11 +493,11 @@ def _represent(
     flux: ComplexArray,
 ) -> ComplexArray:
     """∫ (p ∂G/∂n − q G) dS at points off the surface, with the images in a hard plane."""
-    found = surface_integrals(surface, points, None, wavenumber, flux)
-    field = found.double @ pressure - found.single
+    integrals = surface_integrals(surface, points, None, wavenumber, flux)
+    field = integrals.double @ pressure - integrals.single
     if plane is not None:
-        found = surface_integrals(surface, plane.mirror(points), None, wavenumber, flux)
-        field = field + found.double @ pressure - found.single
+        integrals = surface_integrals(surface, plane.mirror(points), None, wavenumber, flux)
+        field = field + integrals.double @ pressure - integrals.single
     return field
 
 
@@ -549,10 +551,10 @@ def require_in_air(surface: RadiatingSurface, plane: HardPlane | None, points: F
 
 
 def surface_product(
-    surface: RadiatingSurface, one: FloatArray | ComplexArray, other: FloatArray | ComplexArray
+    surface: RadiatingSurface, first: FloatArray | ComplexArray, second: FloatArray | ComplexArray
 ) -> ComplexArray:
     """∫ ūᵢ wⱼ dS of fields that are linear on each triangle, given at its corners."""
-    return np.asarray(one.conj().T @ surface_load(surface, other))
+    return np.asarray(first.conj().T @ surface_load(surface, second))
 
 
 def surface_load(surface: RadiatingSurface, field: FloatArray | ComplexArray) -> ComplexArray:

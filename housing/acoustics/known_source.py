@@ -123,20 +123,20 @@ class KnownSources:
 
     def pressure(self, points: FloatArray, wavenumber: float) -> ComplexArray:
         """Exact pressure exp(−i k r) / r of source and image, shape (n_points, n)."""
-        found = np.zeros((len(points), len(self.places)), dtype=np.complex128)
+        pressure = np.zeros((len(points), len(self.places)), dtype=np.complex128)
         for arm in self._arms(points):
             r = np.linalg.norm(arm, axis=2)
-            found += np.exp(-1j * wavenumber * r) / r
-        return found
+            pressure += np.exp(-1j * wavenumber * r) / r
+        return pressure
 
     def slope(self, points: FloatArray, normals: FloatArray, wavenumber: float) -> ComplexArray:
         """Exact derivative ∂p/∂n of the pressure along normals, shape (n_points, n)."""
-        found = np.zeros((len(points), len(self.places)), dtype=np.complex128)
+        slope = np.zeros((len(points), len(self.places)), dtype=np.complex128)
         for arm in self._arms(points):
             r = np.linalg.norm(arm, axis=2)
             along = np.einsum("psj,pj->ps", arm, normals)
-            found -= (1.0 + 1j * wavenumber * r) * np.exp(-1j * wavenumber * r) * along / r**3
-        return found
+            slope -= (1.0 + 1j * wavenumber * r) * np.exp(-1j * wavenumber * r) * along / r**3
+        return slope
 
     def flux(self, surface: RadiatingSurface, wavenumber: float) -> ComplexArray:
         """∂p/∂n at the corners of the triangles as linear functions, shape (3 n_triangles, n)."""
@@ -148,9 +148,9 @@ class KnownSources:
         Each triangle has its own linear function; a vertex has the mean of those of its triangles.
         """
         corners = linear_projection(surface, lambda points: self.pressure(points, wavenumber))
-        found = np.zeros((len(surface.points), corners.shape[1]), dtype=np.complex128)
-        np.add.at(found, surface.triangles.ravel(), corners)
-        return np.asarray(found / np.bincount(surface.triangles.ravel())[:, None])
+        totals = np.zeros((len(surface.points), corners.shape[1]), dtype=np.complex128)
+        np.add.at(totals, surface.triangles.ravel(), corners)
+        return np.asarray(totals / np.bincount(surface.triangles.ravel())[:, None])
 
 
 @dataclass(frozen=True)
@@ -214,8 +214,8 @@ def over_narrow_gap(surface: RadiatingSurface, plane: HardPlane | None) -> npt.N
 def depths(surface: RadiatingSurface, points: FloatArray) -> FloatArray:
     """Distance of points from the centre of the nearest triangle in its longest edges, shape (n_points,)."""
     centers = surface.corners.mean(axis=1)
-    found = [np.zeros(0)]
+    parts = [np.zeros(0)]
     for start in range(0, len(points), _ROWS):
         apart = np.linalg.norm(points[start : start + _ROWS, None] - centers, axis=2)
-        found.append((apart / surface.lengths).min(axis=1))
-    return np.concatenate(found)
+        parts.append((apart / surface.lengths).min(axis=1))
+    return np.concatenate(parts)

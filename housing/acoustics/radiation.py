@@ -271,22 +271,22 @@ class RadiatedSound:
     def by_mode(self) -> FloatArray:
         """Part of each mode in the surface power of the sum [W], shape (n_modes,): ½ Re q̇̄ᵢ ∫ vᵢ p dS."""
         rates = self.coordinates.sum(axis=1)
-        found = np.zeros(len(rates))
+        powers = np.zeros(len(rates))
         for field, modal in zip(self.fields, self.modal, strict=True):
             pressure = field.pressure_at_corners.sum(axis=1, keepdims=True)
-            found += 0.5 * (rates.conj() * surface_product(field.surface, modal, pressure)[:, 0]).real
-        return found
+            powers += 0.5 * (rates.conj() * surface_product(field.surface, modal, pressure)[:, 0]).real
+        return powers
 
     @cached_property
     def intensity(self) -> FloatArray:
         """Mean sound intensity of the sum out of each triangle [W/m²], of all fields one after the other."""
-        found = []
+        intensities = []
         for field in self.fields:
             shape = (len(field.surface.triangles), 3)
             velocity, pressure = field.velocity.sum(axis=1).reshape(shape), field.pressure_at_corners.sum(axis=1)
             mean = (np.ones((3, 3)) + np.eye(3)) / 12.0
-            found.append(0.5 * np.einsum("ea,ab,eb->e", velocity.conj(), mean, pressure.reshape(shape)).real)
-        return np.concatenate(found)
+            intensities.append(0.5 * np.einsum("ea,ab,eb->e", velocity.conj(), mean, pressure.reshape(shape)).real)
+        return np.concatenate(intensities)
 
     @property
     def by_face(self) -> dict[str, float]:
@@ -328,9 +328,9 @@ class RadiatedSound:
 
 def _of_source(error: SourceError) -> str:
     place, percent = ", ".join(f"{1e3 * one:.4g}" for one in error.place), 100.0 * error.largest
-    told = f"{percent:.3g}" if percent < 999.5 else f"{percent:.0f}"
+    shown = f"{percent:.3g}" if percent < 999.5 else f"{percent:.0f}"
     return (
-        f"the pressure of a known source inside is off by {told} % at the vertex ({place}) mm of the radiating surface"
+        f"the pressure of a known source inside is off by {shown} % at the vertex ({place}) mm of the radiating surface"
     )
 
 
@@ -589,8 +589,8 @@ class HousingRadiation:
     @cached_property
     def _grams(self) -> tuple[FloatArray, ...]:
         return tuple(
-            surface_product(one.surface, modal, modal).real
-            for one, modal in zip(self.elements, self.modal, strict=True)
+            surface_product(element.surface, modal, modal).real
+            for element, modal in zip(self.elements, self.modal, strict=True)
         )
 
     def with_shapes(self, shapes: FloatArray) -> "HousingRadiation":

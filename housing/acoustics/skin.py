@@ -101,8 +101,8 @@ class Skin:
         """
         points, owners = self.samples(spacing)
         tree = cKDTree(np.hstack([points, turned * self.normals[owners]]), balanced_tree=False)
-        _, found = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
-        candidates = owners[np.reshape(found, (len(places), -1))]
+        _, sample_numbers = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
+        candidates = owners[np.reshape(sample_numbers, (len(places), -1))]
         shares = closest_on_triangles(self.corners[candidates], places[:, None])
         feet = np.einsum("mkc,mkci->mki", shares, self.corners[candidates])
         gaps = np.linalg.norm(feet - places[:, None], axis=2)

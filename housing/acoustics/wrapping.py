@@ -143,15 +143,15 @@ def _filled(solid: BoolArray, radius: float) -> BoolArray:
     regions = np.where(cores > 0, cores, np.where(rest, ndimage.maximum_filter(cores, 3), 0))
     open_faces, all_faces = np.zeros(count + 1), np.zeros(count + 1)
     for axis in range(3):
-        for here, there in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
-            own = regions[(slice(None),) * axis + (here,)]
-            other = tuple([slice(None)] * axis + [there])
-            border = (own > 0) & (regions[other] != own)
-            all_faces += np.bincount(own[border], minlength=count + 1)
-            open_faces += np.bincount(own[border & free[other]], minlength=count + 1)
-    kept = open_faces < _OPEN * all_faces
-    kept[0] = False
-    return np.asarray(~_outside(free & ~kept[regions]))
+        for near, far in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            region = regions[(slice(None),) * axis + (near,)]
+            other = tuple([slice(None)] * axis + [far])
+            border = (region > 0) & (regions[other] != region)
+            all_faces += np.bincount(region[border], minlength=count + 1)
+            open_faces += np.bincount(region[border & free[other]], minlength=count + 1)
+    enclosed = open_faces < _OPEN * all_faces
+    enclosed[0] = False
+    return np.asarray(~_outside(free & ~enclosed[regions]))
 
 
 def _require_tight(solid: BoolArray, origin: FloatArray, cell: float, close_holes: float) -> None:
@@ -258,7 +258,7 @@ def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
     number[mixed] = np.arange(np.count_nonzero(mixed))
     faces = []
     for axis in range(3):
-        one, other = (axis + 1) % 3, (axis + 2) % 3
+        second, third = (axis + 1) % 3, (axis + 2) % 3
         below = np.moveaxis(solid, axis, 0)[:-1]
         above = np.moveaxis(solid, axis, 0)[1:]
         for looks_up in (True, False):
@@ -269,8 +269,8 @@ def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
             ring = []
             for step in ((-1, -1), (0, -1), (0, 0), (-1, 0)):
                 corner = place.copy()
-                corner[:, one] += step[0]
-                corner[:, other] += step[1]
+                corner[:, second] += step[0]
+                corner[:, third] += step[1]
                 ring.append(number[tuple(corner.T)])
             faces.append(np.stack(ring if looks_up else ring[::-1], axis=1))
     return np.argwhere(mixed).astype(np.float64) + 1.0, np.concatenate(faces)
@@ -290,8 +290,8 @@ class _OuterSkin:
 
     def nearest(self, places: FloatArray, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the place and normal of the sample that is nearest to each place in place and direction."""
-        _, found = self._tree.query(np.hstack([places, _TURN * self.cell * normals]))
-        return self.places[found], self.normals[found]
+        _, sample_numbers = self._tree.query(np.hstack([places, _TURN * self.cell * normals]))
+        return self.places[sample_numbers], self.normals[sample_numbers]
 
 
 def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[FloatArray, IntArray]:
@@ -329,8 +329,8 @@ def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) 
     side = incident @ ((weight * (plane * direction).sum(axis=1))[:, None] * direction)
     mean = (incident @ (share[:, None] * center)) / (incident @ share)[:, None]
     values, vectors = np.linalg.eigh(matrix)
-    kept = values > _RANK * np.maximum(values[:, -1:], 1e-6)
-    inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
+    determined = values > _RANK * np.maximum(values[:, -1:], 1e-6)
+    inverse = np.where(determined, 1.0 / np.where(determined, values, 1.0), 0.0)
     gap = side - np.einsum("vij,vj->vi", matrix, mean)
     target = mean + np.einsum("vij,vj,vkj,vk->vi", vectors, inverse, vectors, gap, optimize=True)
     step = target - points
@@ -393,8 +393,8 @@ def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[Float
         if lengths[shortest] < _SHORT * cell:
             for gone in _collapse(points, corners, around, a, b, cell):
                 alive[gone] = False
-    kept = np.array(corners)[alive]
-    used, renumbered = np.unique(kept, return_inverse=True)
+    remaining = np.array(corners)[alive]
+    used, renumbered = np.unique(remaining, return_inverse=True)
     return points[used], renumbered.reshape(-1, 3)
 
 
@@ -472,19 +472,19 @@ def _collapse(
     bases = np.concatenate(
         [points[old[before > _FLAT, 0]], points[[corners[n][0] for n in sorted(gone)]][lost > _FLAT]]
     )
-    found: tuple[float, FloatArray] | None = None
+    best: tuple[float, FloatArray] | None = None
     for place in (points[a], points[b], 0.5 * (points[a] + points[b])):
         trial = points[old]
         trial[(old == a) | (old == b)] = place
         after, turned = _shapes(trial)
         cosine = (turned * normal).sum(axis=1) / np.linalg.norm(turned, axis=1) / np.linalg.norm(normal, axis=1)
         sound = (cosine > 0.5) | (before < 0.5 * _POOR)
-        held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _FLAT * cell
-        if held and sound.all() and (found is None or after.min() > found[0]):
-            found = float(after.min()), place.copy()
-    if found is None or found[0] <= min(before.min(), lost.min()):
+        is_held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _FLAT * cell
+        if is_held and sound.all() and (best is None or after.min() > best[0]):
+            best = float(after.min()), place.copy()
+    if best is None or best[0] <= min(before.min(), lost.min()):
         return ()
-    points[a] = found[1]
+    points[a] = best[1]
     for number in moved:
         corners[number] = tuple(a if vertex == b else vertex for vertex in corners[number])
     around[a] = set(moved)

@@ -375,29 +375,29 @@ def _evidence(
 def _look_alikes(
     auto: FloatArray, frequencies: FloatArray, which: npt.NDArray[np.int64], least: float
 ) -> tuple[LookAlikes, ...]:
-    found = []
+    look_alikes = []
     for place, i in enumerate(which):
         for j in which[place + 1 :]:
             if auto[i, j] >= least:
                 near = bool(frequencies[j] - frequencies[i] <= _ONE_FREQUENCY * frequencies[j])
-                found.append(LookAlikes(int(i) + 1, int(j) + 1, float(auto[i, j]), near))
-    return tuple(found)
+                look_alikes.append(LookAlikes(int(i) + 1, int(j) + 1, float(auto[i, j]), near))
+    return tuple(look_alikes)
 
 
 def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[CloseModes, ...]:
     """Each group of close modes, of the model or of the test, with its partners, and the angle between both spaces."""
-    found: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
+    close_groups: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
     for pair in pairs:
         mates = [mate for mate in pairs if _together(pair, mate)]
         model = tuple(sorted({pair.model, *pair.close_model, *(mate.model for mate in mates)}))
         measured = tuple(sorted({pair.measured, *(mate.measured for mate in mates)}))
-        if len(model) > 1 and (model, measured) not in found:
+        if len(model) > 1 and (model, measured) not in close_groups:
             seen = ~np.isnan(psi[list(measured)]).any(axis=0)
-            known = seen.sum() > max(len(model), len(measured))
-            angle = float(principal_angles(phi[list(model)], psi[list(measured)])[0]) if known else float("nan")
+            is_known = seen.sum() > max(len(model), len(measured))
+            angle = float(principal_angles(phi[list(model)], psi[list(measured)])[0]) if is_known else float("nan")
             numbers = tuple(i + 1 for i in model), tuple(j + 1 for j in measured)
-            found[model, measured] = CloseModes(*numbers, angle)
-    return tuple(found.values())
+            close_groups[model, measured] = CloseModes(*numbers, angle)
+    return tuple(close_groups.values())
 
 
 def _together(pair: ShapePair, other: ShapePair) -> bool:

@@ -161,5 +161,5 @@ def _coherence(a: ComplexArray, x: ComplexArray, axis: int) -> FloatArray:
 
 
 def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:
-    known = whole > 0.0
-    return np.asarray(np.where(known, np.minimum(part / np.where(known, whole, 1.0), 1.0), np.nan))
+    is_known = whole > 0.0
+    return np.asarray(np.where(is_known, np.minimum(part / np.where(is_known, whole, 1.0), 1.0), np.nan))

@@ -37,13 +37,13 @@ def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray,
     HousingError
         Where frequencies are negative or descend, or closeness is not from 0 to 1.
     """
-    given = np.asarray(frequencies, dtype=np.float64)
+    values = np.asarray(frequencies, dtype=np.float64)
     if not 0.0 <= closeness < 1.0:
         raise HousingError(f"a closeness of {closeness}; expected a part of the frequency, from 0 to below 1")
-    if np.any(np.diff(given) < 0.0) or np.any(given < 0.0) or not np.isfinite(given).all():
+    if np.any(np.diff(values) < 0.0) or np.any(values < 0.0) or not np.isfinite(values).all():
         raise HousingError("frequencies must ascend from zero or above")
-    apart = np.flatnonzero(np.diff(given) > closeness * given[1:]) + 1
-    return tuple(np.split(np.arange(len(given)), apart))
+    apart = np.flatnonzero(np.diff(values) > closeness * values[1:]) + 1
+    return tuple(np.split(np.arange(len(values)), apart))
 
 
 def span_mac(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> FloatArray:
@@ -88,14 +88,14 @@ def principal_angles(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
     HousingError
         Where the sets do not fit together or have more shapes than shared degrees of freedom.
     """
-    one, other = two_sets(first, second)
-    seen = ~(np.isnan(one).any(axis=0) | np.isnan(other).any(axis=0))
-    largest = max(len(one), len(other))
+    first_set, second_set = two_sets(first, second)
+    seen = ~(np.isnan(first_set).any(axis=0) | np.isnan(second_set).any(axis=0))
+    largest = max(len(first_set), len(second_set))
     if seen.sum() < largest:
         raise HousingError(
             f"{largest} shapes share {int(seen.sum())} degrees of freedom; angles between spans need at least as many"
         )
-    (a, _), (b, _) = filled(one[:, seen]), filled(other[:, seen])
+    (a, _), (b, _) = filled(first_set[:, seen]), filled(second_set[:, seen])
     return np.asarray(linalg.subspace_angles(a.T, b.T))
 
 
@@ -114,10 +114,10 @@ def _projected(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> tuple[npt.NDArray
                 f"{int(modes[0]) + 1} is like anything; expected fewer shapes than degrees of freedom"
             )
         left, sizes, right = np.linalg.svd(phi[:, pattern].T, full_matrices=False)
-        kept = sizes > _RANK * sizes[0]
-        inner = left[:, kept].conj().T @ scaled[np.ix_(modes, pattern)].T
+        independent = sizes > _RANK * sizes[0]
+        inner = left[:, independent].conj().T @ scaled[np.ix_(modes, pattern)].T
         whole = (np.abs(scaled[modes]) ** 2).sum(axis=1)
         part[modes] = (np.abs(inner) ** 2).sum(axis=0) / np.where(whole > 0.0, whole, 1.0)
-        nearest[modes] = ((right[kept].conj().T / sizes[kept]) @ inner).T @ phi
+        nearest[modes] = ((right[independent].conj().T / sizes[independent]) @ inner).T @ phi
     size = np.abs(np.where(seen, psi, 0.0)).max(axis=1, keepdims=True)
     return nearest * size, part

@@ -95,8 +95,8 @@ def assemble(
     except _FoldedError:
         raise _folded(mesh) from None
     whole = blocks.reshape(-1, 3, 3)
-    own = whole[pattern.indptr[:-1]]
-    whole[pattern.indptr[:-1]] = 0.5 * (own + own.transpose(0, 2, 1))  # symmetric but for rounding
+    diagonal = whole[pattern.indptr[:-1]]
+    whole[pattern.indptr[:-1]] = 0.5 * (diagonal + diagonal.transpose(0, 2, 1))  # symmetric but for rounding
     return Matrices(pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), whole, node_mass)
 
 
@@ -201,10 +201,10 @@ def _contribution(mesh: Mesh, chunk: _Chunk, constants: FloatArray, pattern: spa
     rows, columns = nodes[:, first], nodes[:, second]
     below = rows > columns
     for i, k in ((0, 1), (0, 2), (1, 2)):
-        one, other = stiffness[3 * i + k], stiffness[3 * k + i]
-        exchanged = np.where(below, other, one)
-        np.copyto(other, one, where=below)
-        one[:] = exchanged
+        upper, lower = stiffness[3 * i + k], stiffness[3 * k + i]
+        exchanged = np.where(below, lower, upper)
+        np.copyto(lower, upper, where=below)
+        upper[:] = exchanged
     slots = pattern[np.minimum(rows, columns).ravel(), np.maximum(rows, columns).ravel()] - 1
     return _Contribution(np.asarray(slots), stiffness.reshape(9, -1), mass.ravel())
 

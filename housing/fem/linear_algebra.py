@@ -108,15 +108,15 @@ class SymmetricMatrix:
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         """Multiply the symmetric matrix by one vector, shape (n,), or by many, shape (n, m)."""
-        own = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
-        if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(own):
+        diagonal = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
+        if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(diagonal):
             lower = self.lower
             product, upper = at_once([lambda: np.asarray(lower @ vectors), lambda: np.asarray(lower.T @ vectors)])
             product += upper
         else:
             product = np.asarray(self.lower @ vectors)
             product += self.lower.T @ vectors
-        product -= own * vectors
+        product -= diagonal * vectors
         return product
 
 

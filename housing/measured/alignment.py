@@ -208,8 +208,8 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
     ]
     limit = _PROMISING * (min(rms for rms, _ in first) + samples.spacing)
     promising = _parted(first, limit, points, diagonal)
-    found = [_settle(points, surface, motion, diagonal, _STEPS) for motion in promising]
-    fits = _parted(found, min(rms for rms, _ in found) + _EQUAL * diagonal, points, diagonal)
+    settled = [_settle(points, surface, motion, diagonal, _STEPS) for motion in promising]
+    fits = _parted(settled, min(rms for rms, _ in settled) + _EQUAL * diagonal, points, diagonal)
     fits.sort(key=lambda motion: motion.angle_degrees)
     motion = fits[0]
     gaps, _, firmness = surface.gaps(motion.place(points))
@@ -228,10 +228,10 @@ def size_hint(geometry: MeasuredGeometry, mesh: Mesh, part: float = 2.5) -> str 
 
     The survey may be `part` times smaller than the model: one of a part of the housing.
     """
-    own = float(np.linalg.norm(np.ptp(geometry.positions, axis=0)))
-    if not own > 0.0:
+    survey_size = float(np.linalg.norm(np.ptp(geometry.positions, axis=0)))
+    if not survey_size > 0.0:
         return None
-    scale = float(np.linalg.norm(np.ptp(mesh.points, axis=0))) / own
+    scale = float(np.linalg.norm(np.ptp(mesh.points, axis=0))) / survey_size
     return None if 0.4 < scale < part else _scale_remark(scale)
 
 
@@ -267,9 +267,13 @@ def _starts(points: FloatArray, centers: FloatArray) -> Iterator[FloatArray]:
     ]
     onto = [rotation for rotation in onto if np.linalg.det(rotation) > 0.0]
     yield from onto
-    own, theirs = (np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] for places in (points, centers))
-    own, theirs = (axes * np.array([[1.0], [1.0], [np.linalg.det(axes)]]) for axes in (own, theirs))
-    yield from (theirs.T @ rotation @ own for rotation in onto)
+    main_axes, surface_axes = (
+        np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] for places in (points, centers)
+    )
+    main_axes, surface_axes = (
+        axes * np.array([[1.0], [1.0], [np.linalg.det(axes)]]) for axes in (main_axes, surface_axes)
+    )
+    yield from (surface_axes.T @ rotation @ main_axes for rotation in onto)
     yield from Rotation.random(_SPREAD_STARTS, rng=np.random.default_rng(0)).as_matrix()
 
 
@@ -299,19 +303,19 @@ def _settle(
 
 
 def _parted(
-    found: list[tuple[float, RigidMotion]], limit: float, points: FloatArray, diagonal: float
+    settled: list[tuple[float, RigidMotion]], limit: float, points: FloatArray, diagonal: float
 ) -> list[RigidMotion]:
     """Distinct motions whose distance is below a limit, the best first; of nearly equal ones the best alone."""
     parted: list[RigidMotion] = []
-    for rms, motion in sorted(found, key=lambda one: one[0]):
+    for rms, motion in sorted(settled, key=lambda one: one[0]):
         if rms <= limit and all(_distinct(motion, other, points, diagonal) for other in parted):
             parted.append(motion)
     return parted
 
 
-def _distinct(one: RigidMotion, other: RigidMotion, points: FloatArray, diagonal: float) -> bool:
-    turned = RigidMotion(one.rotation @ other.rotation.T, np.zeros(3)).angle_degrees
-    shifted = np.linalg.norm(one.place(points).mean(axis=0) - other.place(points).mean(axis=0))
+def _distinct(motion: RigidMotion, other: RigidMotion, points: FloatArray, diagonal: float) -> bool:
+    turned = RigidMotion(motion.rotation @ other.rotation.T, np.zeros(3)).angle_degrees
+    shifted = np.linalg.norm(motion.place(points).mean(axis=0) - other.place(points).mean(axis=0))
     return bool(turned > _DISTINCT_DEGREES or shifted > _DISTINCT_SHIFT * diagonal)
 
 
@@ -349,11 +353,11 @@ def _turn_text(motion: RigidMotion) -> str:
 
 def _scale_remark(scale: float) -> str:
     """Describe the survey's scale in words, as a mistaken unit where it matches one."""
-    for told, size in UNITS.items():
+    for unit, size in UNITS.items():
         for meant, other in UNITS.items():
-            if told != meant and abs(np.log(scale * size / other)) < 0.3:
+            if unit != meant and abs(np.log(scale * size / other)) < 0.3:
                 return (
-                    f"the model is {scale:.4g} times as large as the survey: its lengths are in {meant}, not in {told}?"
+                    f"the model is {scale:.4g} times as large as the survey: its lengths are in {meant}, not in {unit}?"
                 )
     return f"the model is {scale:.4g} times as large as the survey; a rigid motion does not bring them together"
 
@@ -432,21 +436,21 @@ def map_survey(
     if len(geometry.labels) > 2 and (hint := size_hint(geometry, mesh, _SMALLEST)):
         raise MeasuredDataError(f"the survey is not as large as the housing: {hint}")
     facets = outer_facets(mesh)
-    found = NearestOnSurface(mesh, facets).points(geometry.positions)
-    positions = np.array([point.position for point in found]).reshape(-1, 3)
+    nearest = NearestOnSurface(mesh, facets).points(geometry.positions)
+    positions = np.array([point.position for point in nearest]).reshape(-1, 3)
     distances = np.linalg.norm(positions - geometry.positions, axis=1)
-    if np.count_nonzero(distances > limit) > len(found) / 2:
+    if np.count_nonzero(distances > limit) > len(nearest) / 2:
         hint = size_hint(geometry, mesh)
         advice = f"; {hint}" if hint else "; does the survey stand in the model's frame? It can be aligned"
         raise MeasuredDataError(
-            f"{np.count_nonzero(distances > limit)} of {len(found)} points of the survey are farther than "
+            f"{np.count_nonzero(distances > limit)} of {len(nearest)} points of the survey are farther than "
             f"{length_text(limit)} from the housing's surface, the worst {length_text(float(distances.max()))}{advice}"
         )
-    motions = [point_matrix(mesh, point) for point in found]
+    motions = [point_matrix(mesh, point) for point in nearest]
     rows = [
         sparse.csr_array(direction[None, :] @ motions[point])
         for point, direction in zip(geometry.points, geometry.directions, strict=True)
     ]
     matrix = sparse.vstack(rows, format="csr") if rows else sparse.csr_array((0, 3 * len(mesh.points)))
-    normals = np.array([point.normal for point in found]).reshape(-1, 3)
+    normals = np.array([point.normal for point in nearest]).reshape(-1, 3)
     return MappedSurvey(geometry, positions, normals, distances, sparse.csr_array(matrix), limit, alignment)

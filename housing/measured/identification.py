@@ -128,7 +128,7 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
         growing = [line for number, line in enumerate(growing) if number in going]
         growing += [PoleLine([complex(poles[place])], [(order, place)]) for place in sorted(free)]
     half = len(orders) // 2
-    found = []
+    chosen_lines = []
     for line in ended + growing:
         upper = [index for index, (order, _) in enumerate(line.places) if order >= half]
         line.stability = len(upper) / (len(orders) - half)
@@ -140,8 +140,8 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
                 + np.abs(ratios / np.median(ratios) - 1.0) / rule.damping
             )
             line.chosen = upper[int(np.argmin(unlike))]
-            found.append(line)
-    return sorted(found, key=lambda line: abs(line.pole))
+            chosen_lines.append(line)
+    return sorted(chosen_lines, key=lambda line: abs(line.pole))
 
 
 _TURNS = 200  # of the two least-squares problems
@@ -229,20 +229,20 @@ def identify_modes(
         )
     while True:
         fitted, residues = _residues(model, lines, low, min(high, float(model.freq[-1])))
-        kept = _contributing(lines, model.frf, residues, step, form, rule)
-        if not kept:
+        contributing = _contributing(lines, model.frf, residues, step, form, rule)
+        if not contributing:
             raise MeasuredDataError(
                 f"no stable pole between {low:g} and {high:g} Hz makes a good part of the responses"
             )
-        if len(kept) == len(lines):
+        if len(contributing) == len(lines):
             break
-        lines = kept
+        lines = contributing
     poles = np.array([line.pole for line in lines])
     order = np.argsort(np.abs(poles))
     shapes, rank = _shapes(residues[:, order], measured)
     inside = (model.freq >= low) & (model.freq <= high)
-    own = model.frf[:, inside]
-    misfit = float(np.linalg.norm(fitted[:, inside] - own) / np.linalg.norm(own))
+    in_band = model.frf[:, inside]
+    misfit = float(np.linalg.norm(fitted[:, inside] - in_band) / np.linalg.norm(in_band))
     modes = MeasuredModes(np.abs(poles)[order], (-poles.real / np.abs(poles))[order], shapes, responses.geometry)
     return IdentifiedModes(modes, poles[order], np.array([line.stability for line in lines])[order], misfit, rank)
 
@@ -276,15 +276,15 @@ def _contributing(
     lines: list[PoleLine], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
 ) -> list[PoleLine]:
     """Return the lines whose modes contribute enough to the responses at their own resonance."""
-    kept = []
+    contributing = []
     power = ("receptance", "mobility", "accelerance").index(form)
     for number, line in enumerate(lines):
         omega = abs(line.pole)
         index = min(round(omega / (2.0 * np.pi * step)), rows.shape[1] - 1)
-        own = omega**power * np.linalg.norm(residues[:, number]) / abs(line.pole.real)
-        if own**2 >= rule.contribution * float(np.linalg.norm(rows[:, index])) ** 2:
-            kept.append(line)
-    return kept
+        peak = omega**power * np.linalg.norm(residues[:, number]) / abs(line.pole.real)
+        if peak**2 >= rule.contribution * float(np.linalg.norm(rows[:, index])) ** 2:
+            contributing.append(line)
+    return contributing
 
 
 def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[ComplexArray, FloatArray]:

@@ -193,17 +193,17 @@ def plan_survey(shapes: FloatArray, count: int) -> SurveyPlan:
         raise HousingError(
             f"the {modes} modes look alike at all {candidates} candidates: no choice of sensors parts them"
         )
-    kept = np.arange(candidates)
+    remaining = np.arange(candidates)
     shares = _independence(shapes)
-    while len(kept) > count:
-        kept = np.delete(kept, np.argmin(shares))
-        shares = _independence(shapes[:, kept])
+    while len(remaining) > count:
+        remaining = np.delete(remaining, np.argmin(shares))
+        shares = _independence(shapes[:, remaining])
     order = np.argsort(-shares, kind="stable")
-    chosen = shapes[:, kept] / np.linalg.norm(shapes[:, kept], axis=1, keepdims=True)
+    chosen = shapes[:, remaining] / np.linalg.norm(shapes[:, remaining], axis=1, keepdims=True)
     chosen_sizes = np.linalg.svd(chosen, compute_uv=False)
     places, residues = _driving_points(shapes)
     return SurveyPlan(
-        sensors=kept[order],
+        sensors=remaining[order],
         independence=shares[order],
         condition=float(chosen_sizes[0] / chosen_sizes[-1]),
         auto_mac=(chosen @ chosen.T) ** 2,
@@ -255,8 +255,8 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     samples = sample_surface(mesh, facets)
     free = np.ones(len(samples.points), dtype=np.bool_)
     if without:
-        taken = sample_surface(mesh, without)
-        free = np.asarray(cKDTree(taken.points).query(samples.points)[0] > samples.spacing, dtype=np.bool_)
+        excluded = sample_surface(mesh, without)
+        free = np.asarray(cKDTree(excluded.points).query(samples.points)[0] > samples.spacing, dtype=np.bool_)
     points = samples.points[free]
     if not 0 < count <= len(points) // 4:
         raise HousingError(f"{count} candidates for sensors; the outer surface has room for 1 to {len(points) // 4}")
@@ -268,9 +268,9 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     labels = tuple(str(number) for number in range(1, count + 1))
     # Samples lie between the corners of facets, off a curved surface.
     surface = NearestOnSurface(mesh, facets)
-    found = surface.points(points[chosen])
-    normals = np.array([point.normal for point in found]) + 0.0  # zeros without a sign
-    return MeasuredGeometry(labels, np.array([point.position for point in found]), np.arange(count), normals)
+    surface_points = surface.points(points[chosen])
+    normals = np.array([point.normal for point in surface_points]) + 0.0  # zeros without a sign
+    return MeasuredGeometry(labels, np.array([point.position for point in surface_points]), np.arange(count), normals)
 
 
 def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbours: int = 3) -> MeasuredGeometry:
@@ -285,7 +285,10 @@ def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbo
     count = len(sensors)
     near = cKDTree(positions).query(positions, k=min(neighbours + 1, count))[1].reshape(count, -1)
     joined = {
-        (min(one, other), max(one, other)) for one, row in enumerate(near.tolist()) for other in row if other != one
+        (min(index, other), max(index, other))
+        for index, row in enumerate(near.tolist())
+        for other in row
+        if other != index
     }
     labels = tuple(str(number) for number in range(1, count + 1))
     directions = candidates.directions[sensors]

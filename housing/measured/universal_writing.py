@@ -94,10 +94,10 @@ def _frames(
 ) -> FloatArray:
     """For each point three perpendicular directions, as rows, that hold all directions measured there."""
     seen: list[list[FloatArray]] = [[] for _ in geometry.labels]
-    for one in measured:
-        if one.labels != geometry.labels or not np.array_equal(one.positions, geometry.positions):
+    for measurement in measured:
+        if measurement.labels != geometry.labels or not np.array_equal(measurement.positions, geometry.positions):
             raise MeasuredDataError("shapes and responses of one file need the same points; write two files")
-        for point, direction in zip(one.points, one.directions, strict=True):
+        for point, direction in zip(measurement.points, measurement.directions, strict=True):
             seen[point].append(direction)
     if responses is not None:
         for point, direction in zip(responses.reference_points, responses.reference_directions, strict=True):
@@ -105,12 +105,12 @@ def _frames(
     return np.array([_frame(label, given) for label, given in zip(geometry.labels, seen, strict=True)])
 
 
-def _frame(label: str, given: list[FloatArray]) -> FloatArray:
+def _frame(label: str, directions: list[FloatArray]) -> FloatArray:
     """Return the global axes where the directions lie along them, else the directions completed to three."""
-    if all(np.any(np.abs(_AXES @ direction) > 1.0 - 1e-12) for direction in given):
+    if all(np.any(np.abs(_AXES @ direction) > 1.0 - 1e-12) for direction in directions):
         return _AXES
     frame: list[FloatArray] = []
-    for direction in given:
+    for direction in directions:
         shares = np.array([direction @ axis for axis in frame])
         if len(frame) and np.any(np.abs(shares) > 1.0 - 1e-9):
             continue

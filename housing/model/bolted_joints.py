@@ -128,17 +128,17 @@ def bolted_joint(
         )
     steel = parts if bolt is None else bolt
     modulus, shear = parts.youngs_modulus, parts.shear_modulus
-    own = bolt_stiffness(diameter, grip, steel.youngs_modulus)
+    bolt_only = bolt_stiffness(diameter, grip, steel.youngs_modulus)
     half = frustum_stiffness(grip / 2, _HEAD * diameter, diameter, modulus, outer=outer)
     clamped = half / 2  # two halves, one after the other
     area = clamped * grip / modulus
     width = math.sqrt(4 * area / math.pi + diameter**2)
     bending, bolt_bending = math.pi / 64 * (width**4 - diameter**4), math.pi / 64 * diameter**4
     return BoltedJoint(
-        bolt=own,
+        bolt=bolt_only,
         clamped=clamped,
         stiffness=Axial(
-            axial=own + clamped,
+            axial=bolt_only + clamped,
             # The bolt itself is clamped at both ends, and adds little.
             shear=shear * area / grip + 12 * steel.youngs_modulus * bolt_bending / grip**3,
             tilting=(modulus * bending + steel.youngs_modulus * bolt_bending) / grip,

@@ -63,9 +63,9 @@ class Bushing:
 
     def __post_init__(self) -> None:
         """Check stiffness, damping and axes."""
-        for what, amounts in (("stiffness", self.stiffness), ("damping", self.damping)):
+        for label, amounts in (("stiffness", self.stiffness), ("damping", self.damping)):
             if np.shape(amounts) != (6,) or not all(0.0 <= amount < np.inf for amount in amounts):
-                raise HousingError(f"{what} {amounts}: expected six finite numbers, none of them negative")
+                raise HousingError(f"{label} {amounts}: expected six finite numbers, none of them negative")
         if not any(self.stiffness) and not any(self.damping):
             raise HousingError("six springs and dashpots that are all zero hold nothing: give one of them an amount")
         frame = np.array(self.axes, dtype=np.float64)
@@ -107,8 +107,8 @@ def axes_along(axis: Point, across: Point | None = None) -> Axes:
     if across is None:
         # The global axis farthest from it: with one axis of symmetry every direction across it is equivalent.
         across = GLOBAL_AXES[int(np.argmin(np.abs(along)))]
-    given = _unit(np.array(across, dtype=np.float64), f"axis {across}")
-    x = _unit(given - (given @ along) * along, f"axis {across} beside {axis}", least=1e-6)
+    reference = _unit(np.array(across, dtype=np.float64), f"axis {across}")
+    x = _unit(reference - (reference @ along) * along, f"axis {across} beside {axis}", least=1e-6)
     y = np.cross(along, x)
     frame = [(float(row[0]), float(row[1]), float(row[2])) for row in (x, y, along)]
     return frame[0], frame[1], frame[2]

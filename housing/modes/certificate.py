@@ -228,9 +228,9 @@ def _incomplete(certificate: Certificate) -> IncompleteModesError:
     )
 
 
-def indefinite_stiffness_error(what: str) -> FactorizationError:
+def indefinite_stiffness_error(finding: str) -> FactorizationError:
     """Error for a stiffness with negative energies."""
-    return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
+    return FactorizationError(f"{finding}; the stiffness is not positive semidefinite")
 
 
 def _refined(

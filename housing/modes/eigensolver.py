@@ -98,15 +98,17 @@ def block_lanczos(
 
     algebra = BlockAlgebra(n, threads)
     start = np.random.default_rng(seed).standard_normal((n, width))
-    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
+    block_step = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
     begin, size, checked = 0, 0, 0
-    while found.block.shape[1] and size + found.block.shape[1] <= most + width:
-        previous, begin, size = begin, size, size + found.block.shape[1]
-        basis[:, begin:size], inertia[:, begin:size] = found.block, found.inertia
-        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, algebra)
-        small[:size, begin:size] = found.projections[:size]
-        remainder = found.projections[size:]
-        whole = found.block.shape[1] == 0
+    while block_step.block.shape[1] and size + block_step.block.shape[1] <= most + width:
+        previous, begin, size = begin, size, size + block_step.block.shape[1]
+        basis[:, begin:size], inertia[:, begin:size] = block_step.block, block_step.inertia
+        block_step = _orthonormal(
+            basis[:, :size], inertia[:, :size], size - previous, solve(block_step.inertia), mass, algebra
+        )
+        small[:size, begin:size] = block_step.projections[:size]
+        remainder = block_step.projections[size:]
+        whole = block_step.block.shape[1] == 0
         # Once in a twentieth of the basis: the small eigenproblem must not outgrow the large one.
         if size >= count and (whole or size - checked >= size // 20 or size + width > most):
             checked = size
@@ -120,7 +122,7 @@ def block_lanczos(
                 step = outside / wanted
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
                 order = np.argsort(1.0 / wanted)
-                vectors = algebra.combined(found.block, (step / norms)[:, order])
+                vectors = algebra.combined(block_step.block, (step / norms)[:, order])
                 algebra.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
                 return shift + 1.0 / wanted[order], vectors
         small[size : size + len(remainder), begin:size] = remainder
@@ -173,11 +175,13 @@ def _orthonormal(
     inertia = mass @ block
     products = algebra.products(block, inertia)
     left = np.sqrt(np.maximum(products.diagonal(), 0.0))
-    given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
-    kept = left > _DEPENDENT * given
-    values, turn = np.linalg.eigh(products[np.ix_(kept, kept)] / np.outer(left[kept], left[kept]))
+    norms = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
+    independent = left > _DEPENDENT * norms
+    values, turn = np.linalg.eigh(
+        products[np.ix_(independent, independent)] / np.outer(left[independent], left[independent])
+    )
     mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
-    mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
+    mixture[independent] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[independent, None]
     new, new_inertia, shares = (
         algebra.combined(block, mixture),
         algebra.combined(inertia, mixture),
@@ -185,13 +189,13 @@ def _orthonormal(
     )
     if new.shape[1]:
         # Scaling up the remainder of a block that nearly lay in the basis scales up its rounding: once more.
-        if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
+        if float(np.min(left[independent] / norms[independent])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
             algebra.subtract(new, basis, algebra.products(inertia_of_basis, new))
             new_inertia = mass @ new
             shares = algebra.products(new, inertia)
-        own = algebra.products(new, new_inertia)
-        if np.abs(own - np.eye(len(own))).max() > _ORTHONORMAL:
-            unit = np.linalg.inv(np.linalg.cholesky(own)).T
+        gram = algebra.products(new, new_inertia)
+        if np.abs(gram - np.eye(len(gram))).max() > _ORTHONORMAL:
+            unit = np.linalg.inv(np.linalg.cholesky(gram)).T
             new, new_inertia = algebra.combined(new, unit), algebra.combined(new_inertia, unit)
             shares = algebra.products(new, inertia)
     return _Addition(new, new_inertia, np.vstack([within, shares]))

@@ -151,12 +151,12 @@ def solve_modes(
     factorizer = Factorizer(backend=backend, threads=threads)
     factorizer.order_ahead(system.stiffness)
     search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
-    found = (
+    solution = (
         search.below(frequency_limit, progress)
         if frequency_limit is not None
         else search.lowest(count or 0, progress, draft=draft)
     )
-    values, vectors = found.values, _oriented(found.vectors)
+    values, vectors = solution.values, _oriented(solution.vectors)
     values[np.abs(values) < 1e-6 * search.floor] = 0.0
     if values[0] < -search.floor:
         raise indefinite_stiffness_error(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
@@ -168,11 +168,11 @@ def solve_modes(
         residual_modes, vectors = residual_attachment_modes(
             system.stiffness,
             system.mass,
-            found.factor.solve,
+            solution.factor.solve,
             values,
             vectors,
             ports[:, system.free],
-            shift=found.certificate.limit**2,
+            shift=solution.certificate.limit**2,
             floor=search.floor,
             free=system.free,
             n_nodes=system.n_nodes,
@@ -183,10 +183,10 @@ def solve_modes(
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
         shapes=system.expand(vectors),
-        certificate=found.certificate,
+        certificate=solution.certificate,
         seconds=search.seconds,
-        backend=found.factor.backend,
-        shift=found.shift,
+        backend=solution.factor.backend,
+        shift=solution.shift,
         threads=threads,
         residual_modes=residual_modes,
     )
@@ -336,21 +336,21 @@ class ModeSetExtension:
         if beyond:
             raise HousingError(f"a harmonic load at {beyond[0]:g} rad/s; expected one below the limit of the modes")
         system, residual = self._system, modes.residual_modes
-        known = residual.shapes.reshape(len(residual.shapes), -1).T[system.free]
+        residual_vectors = residual.shapes.reshape(len(residual.shapes), -1).T[system.free]
         inertia = np.asarray(system.mass @ self._vectors)
-        found = [
+        vectors = [
             missing_harmonic_responses(
                 system.shifted(frequency**2),
                 self._factor.solve,
                 load[system.free],
                 self._vectors,
                 inertia,
-                known,
+                residual_vectors,
                 residual.frequencies**2 - frequency**2,
             )
             for frequency, load in loads
         ]
-        return self._joined(modes, np.hstack(found)) if found else modes
+        return self._joined(modes, np.hstack(vectors)) if vectors else modes
 
     def _joined(self, modes: ModeSet, columns: FloatArray) -> ModeSet:
         assert modes.residual_modes is not None

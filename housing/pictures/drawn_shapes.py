@@ -225,8 +225,8 @@ def wireframe(geometry: MeasuredGeometry) -> IntArray:
     places, count = geometry.positions, len(geometry.labels)
     if count < 2:
         return np.zeros((0, 2), dtype=np.int64)
-    found = KDTree(places).query(places, k=min(_NEIGHBOURS + 1, count))
-    distances, near = np.asarray(found[0]), np.asarray(found[1])
+    neighbours = KDTree(places).query(places, k=min(_NEIGHBOURS + 1, count))
+    distances, near = np.asarray(neighbours[0]), np.asarray(neighbours[1])
     edges = {
         (min(point, int(other)), max(point, int(other)))
         for point in range(count)
@@ -253,11 +253,11 @@ def point_motions(geometry: MeasuredGeometry, values: FloatArray) -> FloatArray:
     not measured, or are NaN, are at rest.
     """
     motions = np.zeros((len(geometry.labels), 3))
-    known = np.isfinite(values)
+    measured = np.isfinite(values)
     for point in range(len(motions)):
-        here = np.flatnonzero((geometry.points == point) & known)
-        if here.size:
-            motions[point] = np.linalg.pinv(geometry.directions[here]) @ values[here]
+        freedoms = np.flatnonzero((geometry.points == point) & measured)
+        if freedoms.size:
+            motions[point] = np.linalg.pinv(geometry.directions[freedoms]) @ values[freedoms]
     return motions
 
 
@@ -266,11 +266,11 @@ def laid_over(measured: ComplexArray, model: FloatArray) -> FloatArray:
 
     It is turned by the angle of ψᴴφ, which brings it nearest to φ, and has φ's norm over the measured entries.
     """
-    known = np.isfinite(measured)
-    psi, phi = measured[known], model[known]
+    is_measured = np.isfinite(measured)
+    psi, phi = measured[is_measured], model[is_measured]
     size = float(np.linalg.norm(psi))
     likeness = np.vdot(psi, phi)
     turn = likeness / abs(likeness) if abs(likeness) > 0.0 else 1.0
     laid = np.full(len(measured), np.nan)
-    laid[known] = (psi * turn).real * (float(np.linalg.norm(phi)) / size if size > 0.0 else 0.0)
+    laid[is_measured] = (psi * turn).real * (float(np.linalg.norm(phi)) / size if size > 0.0 else 0.0)
     return laid

@@ -175,8 +175,8 @@ def find_encoder() -> str:
     EncoderUnavailableError
         Where there is neither.
     """
-    if found := shutil.which("ffmpeg"):
-        return found
+    if path := shutil.which("ffmpeg"):
+        return path
     try:
         import imageio_ffmpeg
 

@@ -243,8 +243,8 @@ class Scene:
         """
         if beside:
             self._title.input, self._note.input = " ", "The other side, in the same colours"
-        for one in self._plotter.scalar_bars.values():
-            one.SetVisibility(bar)
+        for scalar_bar in self._plotter.scalar_bars.values():
+            scalar_bar.SetVisibility(bar)
         self._aim(view)
 
     def _aim(self, view: str) -> None:

@@ -114,11 +114,11 @@ class Procedure(Generic[AnyDesign]):
         """Run the search: misfit of the result, by dominant modes, and posterior of the parameters."""
         meshes = Meshes(self.solve, None)
         best = multistart_search(meshes, target, self.parameters, self.start, None, self.effort, self.count)
-        found = polish(self.solve, best, target, self.parameters, self.effort)
-        design, coordinates = found.design, found.design.coordinates
+        polished = polish(self.solve, best, target, self.parameters, self.effort)
+        design, coordinates = polished.design, polished.design.coordinates
         near = design.surrogate().at(coordinates)
         judged = measure(target, design.state, coordinates, strict=True)
-        return judged, posterior(target, found.misfit, coordinates, near)
+        return judged, posterior(target, polished.misfit, coordinates, near)
 
 
 def leave_one_out(
@@ -143,9 +143,9 @@ def leave_one_out(
     first = measure(target, start.state, start.coordinates, strict=True)
     before = start.surrogate().at(start.coordinates)
     modes = range(len(target.noise))
-    held = [replace(target, noise=np.where(np.arange(len(modes)) == mode, np.inf, target.noise)) for mode in modes]
+    targets = [replace(target, noise=np.where(np.arange(len(modes)) == mode, np.inf, target.noise)) for mode in modes]
     rows = []
-    for mode, (misfit, after) in enumerate(each(procedure, held)):
+    for mode, (misfit, after) in enumerate(each(procedure, targets)):
         rows.append(
             LeftOutMode(
                 mode=mode,

@@ -49,15 +49,15 @@ class MeshBias:
     @classmethod
     def between(cls, coarse: ModalState, fine: ModalState) -> "MeshBias":
         """Learn the mesh bias at a design solved on both meshes; modes without a partner get the mean of the others."""
-        own, other = _motions(coarse), _motions(fine)
-        table = modal_assurance_criterion(own, other)
+        motions, fine_motions = _motions(coarse), _motions(fine)
+        table = modal_assurance_criterion(motions, fine_motions)
         rows, columns = linear_sum_assignment(-table)
         sound = (table[rows, columns] >= _LEAST_MAC) & (coarse.frequencies[rows] > 0.0)
         rows, columns = rows[sound], columns[sound]
-        known = np.log(fine.frequencies[columns] / coarse.frequencies[rows])
-        shifts = np.full(len(own), known.mean() if len(known) else 0.0)
-        shifts[rows] = known
-        return cls(np.asarray(np.linalg.pinv(own, rcond=_SEEN), dtype=np.float64), shifts)
+        differences = np.log(fine.frequencies[columns] / coarse.frequencies[rows])
+        shifts = np.full(len(motions), differences.mean() if len(differences) else 0.0)
+        shifts[rows] = differences
+        return cls(np.asarray(np.linalg.pinv(motions, rcond=_SEEN), dtype=np.float64), shifts)
 
     def matrix(self, state: ModalState) -> FloatArray:
         """B among the modes of a coarse state, shape (n_modes, n_modes)."""
@@ -100,19 +100,19 @@ class Debiased(Generic[AnyDesign]):
 
     @cached_property
     def _state(self) -> ModalState:
-        given = self.design.state
+        state = self.design.state
         if self.bias is None:
-            return given
-        own, kept = elastic(given)
-        whole = _mixed(own, *self._turned)
+            return state
+        elastic_state, is_elastic = elastic(state)
+        whole = _mixed(elastic_state, *self._turned)
         # Rigid modes are kept unchanged.
-        frequencies, seats, skin = given.frequencies.copy(), given.seats.copy(), given.skin.copy()
-        frequencies[kept], seats[kept], skin[kept] = whole.frequencies, whole.seats, whole.skin
+        frequencies, seats, skin = state.frequencies.copy(), state.seats.copy(), state.skin.copy()
+        frequencies[is_elastic], seats[is_elastic], skin[is_elastic] = whole.frequencies, whole.seats, whole.skin
         measured = None
-        if given.measured is not None:
+        if state.measured is not None:
             assert whole.measured is not None
-            measured = given.measured.copy()
-            measured[kept] = whole.measured
+            measured = state.measured.copy()
+            measured[is_elastic] = whole.measured
         return ModalState(frequencies, seats, skin, measured)
 
     @property

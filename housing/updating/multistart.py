@@ -141,11 +141,11 @@ class _Run(Generic[AnyDesign]):
         except HousingError:
             return runner, np.inf, ()
         effort = replace(self.effort, seed=self.effort.seed + runner.number)
-        found = search(debiased(solve, self.bias), self.target, self.parameters, Debiased(begin, self.bias), effort)
-        ended = replace(runner, coordinates=found.design.coordinates, judged=None)
+        searched = search(debiased(solve, self.bias), self.target, self.parameters, Debiased(begin, self.bias), effort)
+        ended = replace(runner, coordinates=searched.design.coordinates, judged=None)
         if self.on_fine:
-            ended = replace(ended, judged=found.design.state, design=self.meshes.light(found.design.design))
-        return ended, found.misfit.value, found.steps
+            ended = replace(ended, judged=searched.design.state, design=self.meshes.light(searched.design.design))
+        return ended, searched.misfit.value, searched.steps
 
 
 def multistart_search(
@@ -196,13 +196,13 @@ def multistart_search(
         if best.is_met:
             break
         solves = _FINE_SOLVES[index - 1] if on_fine else max(1, effort.solves // count)
-        own = replace(effort, solves=solves, trust=TRUST[index], starts=_STARTS)
+        round_effort = replace(effort, solves=solves, trust=TRUST[index], starts=_STARTS)
         weighed, off = replace(target, firmness=FIRMNESS[index]), None if on_fine else bias
-        run = _Run(meshes, weighed, tuple(parameters), own, off, on_fine)
+        run = _Run(meshes, weighed, tuple(parameters), round_effort, off, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
         steps += [step for *_, own_steps in ran for step in own_steps]
-        told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
-        progress(f"round {index + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
+        misfits = ", ".join(f"{value:.4g}" for _, value, _ in ran)
+        progress(f"round {index + 1} of {len(going)}: {len(ran)} searches, misfits {misfits}")
         runners = [runner for runner, value, _ in ran if np.isfinite(value)]
         if on_fine:
             best = _best(best, target, runners, progress)
@@ -233,13 +233,13 @@ def polish(
         See :func:`multistart_search`.
     """
     firm = replace(target, firmness=FIRMNESS[-1])
-    own = replace(effort, solves=0 if best.is_met else _POLISHED, trust=_REFINED)
+    polish_effort = replace(effort, solves=0 if best.is_met else _POLISHED, trust=_REFINED)
     begin = solve(best.coordinates, None) if best.design is None else best.design
 
     def is_enough(design: AnyDesign) -> bool:
         return is_met(target, measure(firm, design.state, design.coordinates, strict=True))
 
-    return search(lambda point, _: solve(point, None), firm, parameters, begin, own, progress, is_enough)
+    return search(lambda point, _: solve(point, None), firm, parameters, begin, polish_effort, progress, is_enough)
 
 
 def _best(

@@ -200,16 +200,16 @@ def _add_stiffness(
         strains[:, :, i] = gradients[:, :, i, i]
     for place, (i, j) in enumerate(_PAIRS):
         np.add(gradients[:, :, i, j], gradients[:, :, j, i], out=strains[:, :, 3 + place])
-    own = _stresses(strains, places.volumes, *constants[:2, part.elements])
+    stresses = _stresses(strains, places.volumes, *constants[:2, part.elements])
     for number, span in part.spans:
-        given = changes[number].constants
-        if given is not None and given[:2, part.elements[span]].any():
-            stress = _stresses(strains[span], places.volumes[span], *given[:2, part.elements[span]])
+        constant_changes = changes[number].constants
+        if constant_changes is not None and constant_changes[:2, part.elements[span]].any():
+            stress = _stresses(strains[span], places.volumes[span], *constant_changes[:2, part.elements[span]])
             stiffness[number] += stress.reshape(-1, n_modes).T @ strains[span].reshape(-1, n_modes)
         if number in moving:
             tilt = _tilt(moving[number])
             tilted = tilt @ gradients[span].reshape(-1, *places.volumes.shape[1:], 9, n_modes)
-            half = own[span].reshape(-1, n_modes).T @ tilted.reshape(-1, n_modes)
+            half = stresses[span].reshape(-1, n_modes).T @ tilted.reshape(-1, n_modes)
             stiffness[number] += half + half.T
 
 
@@ -264,9 +264,9 @@ def _add_even_mass(
     for row, (number, span) in zip(amounts, part.spans, strict=True):
         if number in divergences:
             row[span] += constants[2, part.elements[span]] * divergences[number][:, 0]
-        given = changes[number].constants
-        if given is not None:
-            row[span] += given[2, part.elements[span]]
+        constant_changes = changes[number].constants
+        if constant_changes is not None:
+            row[span] += constant_changes[2, part.elements[span]]
     numbers = [number for number, _ in part.spans]
     mass[numbers] += ((amounts * volumes) @ modal).reshape(-1, n_modes, n_modes)
 

@@ -58,9 +58,11 @@ class ModalState:
 def elastic(state: ModalState) -> tuple[ModalState, BoolArray]:
     """Return the elastic modes, and a mask of which modes they are, shape (n_modes,)."""
     eigenvalues = state.frequencies**2
-    kept = eigenvalues > _RIGID * eigenvalues[-1]
-    measured = None if state.measured is None else state.measured[kept]
-    return ModalState(state.frequencies[kept], state.seats[kept], state.skin[kept], measured), kept
+    is_elastic = eigenvalues > _RIGID * eigenvalues[-1]
+    measured = None if state.measured is None else state.measured[is_elastic]
+    return ModalState(
+        state.frequencies[is_elastic], state.seats[is_elastic], state.skin[is_elastic], measured
+    ), is_elastic
 
 
 @dataclass(frozen=True)
@@ -95,8 +97,8 @@ class Neighbour:
 
     def strength_slopes(self, modes: IntArray) -> FloatArray:
         """Return d ln strength of modes by acceleration, velocity and absolute, shape (3, n_parameters, n_modes)."""
-        own, base, turning = self.state, self.surrogate.state, self._turning(modes)
-        seats, skin = own.seats[modes], own.skin[modes]
+        state, base, turning = self.state, self.surrogate.state, self._turning(modes)
+        seats, skin = state.seats[modes], state.skin[modes]
         seats_rate = (turning @ base.seats.reshape(len(base.seats), -1)).reshape(len(turning), *seats.shape)
         skin_rate = turning @ base.skin
         along = (seats * seats_rate).sum(axis=3)  # radial motion times its rate, (n_parameters, n_modes, n_seats)
@@ -148,12 +150,12 @@ class Surrogate:
     @classmethod
     def about(cls, center: FloatArray, state: ModalState, rates: ModalSensitivities) -> "Surrogate":
         """Build the surrogate about a design; rigid modes, which no parameter moves, are left out."""
-        own, kept = elastic(state)
-        eigenvalues = own.frequencies**2
-        stiffness, mass = rates.stiffness[:, kept][:, :, kept], rates.mass[:, kept][:, :, kept]
+        elastic_state, is_elastic = elastic(state)
+        eigenvalues = elastic_state.frequencies**2
+        stiffness, mass = rates.stiffness[:, is_elastic][:, :, is_elastic], rates.mass[:, is_elastic][:, :, is_elastic]
         change = stiffness - 0.5 * (eigenvalues[:, None] * mass + mass * eigenvalues)
         scale = 1.0 / np.sqrt(eigenvalues)
-        return cls(center, own, scale[:, None] * change * scale, mass)
+        return cls(center, elastic_state, scale[:, None] * change * scale, mass)
 
     def at(self, coordinates: FloatArray) -> Neighbour:
         """Modes at other coordinates."""

@@ -144,22 +144,22 @@ def search(
             steps.append(Step(promised, np.inf, False, trust, np.inf))
             trust *= 0.5
             continue
-        found = measure(target, trial.state, trial.coordinates)
-        accepted = found.value < misfit.value
-        steps.append(Step(promised, found.value, accepted, trust, found.rms_percent))
-        kept = (misfit.value - found.value) / (misfit.value - promised)
+        measured = measure(target, trial.state, trial.coordinates)
+        accepted = measured.value < misfit.value
+        steps.append(Step(promised, measured.value, accepted, trust, measured.rms_percent))
+        gain_ratio = (misfit.value - measured.value) / (misfit.value - promised)
         progress(
-            f"solve {len(steps)}: misfit {found.value:.4g} ({'better' if accepted else 'no better'} than "
-            f"{misfit.value:.4g}, {promised:.4g} promised), rms {found.rms_percent:.2f} %, "
-            f"{found.in_words}, "
+            f"solve {len(steps)}: misfit {measured.value:.4g} ({'better' if accepted else 'no better'} than "
+            f"{misfit.value:.4g}, {promised:.4g} promised), rms {measured.rms_percent:.2f} %, "
+            f"{measured.in_words}, "
             f"trust {trust:.3f}"
         )
         enough = until(trial)
         if accepted or enough:
-            design, misfit, surrogate = trial, found, None
+            design, misfit, surrogate = trial, measured, None
         if enough:
             break
-        trust = min(trust * 1.4, 0.4) if kept > 0.6 else trust if kept > 0.25 else trust * 0.5
+        trust = min(trust * 1.4, 0.4) if gain_ratio > 0.6 else trust if gain_ratio > 0.25 else trust * 0.5
     return SearchResult(design, misfit, tuple(steps))
 
 

@@ -76,9 +76,9 @@ class BoxGeometry:
         for name in names:
             if names.count(name) > 1:
                 raise GeometryError(f"two seats are named {name!r}")
-        found = tuple(misfits(self))
-        if found:
-            raise BoxMisfitError(found)
+        problems = tuple(misfits(self))
+        if problems:
+            raise BoxMisfitError(problems)
         patches = {name for bolt in self.bolts for name in (bolt.cover_surface, bolt.body_surface)}
         for bore in self.bores:
             if bore.name in {*FACES, *FOOT_NAMES, *(f"{name}-bolt" for name in FOOT_NAMES), *patches}:

@@ -228,10 +228,10 @@ def _numbers(part: str, sets: dict[str, list[int]]) -> list[int]:
         return [int(part)]
     if not part:
         return []
-    known = {name.upper(): members for name, members in sets.items()}
-    if part.upper() not in known:
+    by_name = {name.upper(): members for name, members in sets.items()}
+    if part.upper() not in by_name:
         raise GeometryError(f"the file names a set {part!r} that is not in it")
-    return known[part.upper()]
+    return by_name[part.upper()]
 
 
 def _content(deck: _Deck, path: Path) -> MeshContent:
@@ -322,10 +322,10 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
         for name, facets in mesh.surfaces.items():
             file.write(f"*SURFACE, TYPE=ELEMENT, NAME={_quoted(name)}\n")
             for block in facets:
-                found = find_faces(mesh, corner_rows(block))
-                if (found < 0).any():
+                faces = find_faces(mesh, corner_rows(block))
+                if (faces < 0).any():
                     raise GeometryError(f"surface {name!r} has facets that are no faces of elements")
-                for number, place in zip(mesh.faces.element[found] + 1, mesh.faces.source[found], strict=True):
+                for number, place in zip(mesh.faces.element[faces] + 1, mesh.faces.source[faces], strict=True):
                     file.write(f"{number}, {_label(mesh.blocks[place[0]], int(place[2]))}\n")
 
 

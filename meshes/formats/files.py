@@ -149,10 +149,10 @@ def _through_meshio(path: Path) -> MeshContent:
     return content_from_meshio(content, path)
 
 
-def _check_ending(path: Path, known: Mapping[str, list[str]]) -> None:
+def _check_ending(path: Path, endings_known: Mapping[str, list[str]]) -> None:
     """Refuse a file whose ending has no reader."""
     endings = ["".join(path.suffixes[first:]).lower() for first in range(len(path.suffixes))]
-    if not any(ending in known for ending in endings):
+    if not any(ending in endings_known for ending in endings):
         raise GeometryError(
             f"mesh file {path}: no format of meshes has the ending {path.suffix!r}; "
             f"such as {' '.join(WRITABLE)} .bdf .nas .e do"
