@@ -43,11 +43,11 @@ class Housing:
     Attributes
     ----------
     mesh : meshes.Mesh
-        Of the solid, with a surface for each seat.
+        Mesh of the solid, with a surface for each seat.
     material : Material
-        Of all elements that are in no volume of ``materials``.
+        Material of all elements that are in no volume of ``materials``.
     materials : mapping of str to Material
-        By the name of a volume of the mesh.
+        Material of each named volume of the mesh.
     fixtures : sequence of Support, Mount, Joint or LumpedMass
         Supports, mounts, joints between parts, and masses.
     seats : sequence of Seat
@@ -58,7 +58,7 @@ class Housing:
     Raises
     ------
     HousingError
-        Where a name is given twice, the mesh lacks a volume, or the damping ratio is none.
+        Where a name is given twice, the mesh lacks a volume, or the damping ratio is not from 0 to 1.
     """
 
     mesh: Mesh
@@ -111,11 +111,11 @@ class Housing:
             Edge length of the tetrahedra [m].
         material : Material
         unit : float, optional
-            Of the lengths in the file [m], where the file does not say.
+            Unit of the lengths in the file [m], where the file does not say.
         seats, fixtures, sensors, damping_ratio
             As :class:`Housing`. A seat with a diameter is found as a bore of the solid.
         order : {1, 2}
-            Of the elements.
+            Order of the elements.
 
         Raises
         ------
@@ -148,7 +148,7 @@ class Housing:
         path : path
         material : Material
         unit : float
-            Of the lengths in the file [m].
+            Unit of the lengths in the file [m].
         seats, fixtures, sensors, damping_ratio
             As :class:`Housing`. A seat with a diameter is found as a bore, unless a surface has its name.
 
@@ -198,7 +198,7 @@ class Housing:
         Parameters
         ----------
         free : Matrices, optional
-            Of :meth:`free_matrices`, where they are at hand.
+            Result of :meth:`free_matrices`, where it is at hand.
 
         Raises
         ------
@@ -233,8 +233,8 @@ class Housing:
         count : int
             Number of the lowest modes.
         bearings : mapping of str to (str, float), optional
-            Where the machine bears on the housing: by bearing, its seat and its distance along z from the centre of the
-            seat [m]. By default each seat stands for one bearing at its centre.
+            Places where the machine bears on the housing: for each bearing, its seat and its distance along z from the
+            centre of the seat [m]. By default each seat stands for one bearing at its centre.
         solver : {"lanczos", "eigsh"}
             Eigensolver, see :func:`housing.solve_modes`.
         progress : callable
@@ -305,9 +305,9 @@ class Housing:
         Parameters
         ----------
         free, whole : Matrices
-            Of :meth:`free_matrices` and :meth:`matrices`.
+            Results of :meth:`free_matrices` and :meth:`matrices`.
         modes : ModeSet
-            Of the latter.
+            Modes of ``whole``.
         """
         solid = mass_properties(self.mesh, self.material, self.materials)
         mass, center = solid.mass, solid.center
@@ -408,9 +408,9 @@ def cover_joints(box: BoxGeometry, material: Material, bolt_material: Material |
     ----------
     box : meshes.BoxGeometry
     material : Material
-        Of the housing and its cover.
+        Material of the housing and its cover.
     bolt_material : Material, optional
-        Of the bolts; that of the housing by default.
+        Material of the bolts; that of the housing by default.
     """
     return [_bolted(bolt, material, bolt_material or material, box.rim_width) for bolt in box.bolts]
 

@@ -95,7 +95,7 @@ def element_constants(mesh: Mesh, material: Material, materials: Mapping[str, Ma
     return constants
 
 
-_DEGREE = 6  # of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
+_DEGREE = 6  # degree of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
 
 
 def enclosed_volume(mesh: Mesh) -> tuple[float, FloatArray]:
@@ -107,9 +107,9 @@ def enclosed_volume(mesh: Mesh) -> tuple[float, FloatArray]:
     Returns
     -------
     volume : float
-        [m³].
+        Volume [m³].
     centroid : ndarray, shape (3,)
-        [m].
+        Centroid [m].
     """
     # About the middle of the body, where the sums cancel least.
     middle = mesh.bounds.mean(axis=0)

@@ -22,7 +22,7 @@ SLACK = 0.01  # corners of a bore may be off its circle by this part of its diam
 _SHARPEST = np.cos(np.radians(75.0))  # neighbours of a bore of five or more facets turn by less
 _LOCAL_FIT = 0.02  # corners of neighbours may be off their circle by this part of its radius
 _MOST_CIRCLES = 500
-_FEWEST_FACETS = 3  # that must propose a circle before it is tried
+_FEWEST_FACETS = 3  # facets that must propose a circle before it is tried
 
 
 def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, float]]:
@@ -76,7 +76,7 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
 def _most_proposed(
     places: FloatArray, radii: FloatArray, first: FloatArray, second: FloatArray
 ) -> list[tuple[FloatArray, float]]:
-    """Circles that agree to their slack, as their medians, those with the most proposals first."""
+    """Medians of the circles that agree to their slack, those with the most proposals first."""
     if len(radii) == 0:
         return []
     size = np.exp(np.round(np.log(radii) / 0.05) * 0.05)  # bins of the same width for radii of the same size
@@ -96,7 +96,7 @@ def fit_circle(points: FloatArray) -> tuple[FloatArray, float]:
 
 
 def _fit_circles(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """As :func:`fit_circle` for many sets, shape (n, n_points, 2); not finite where points are in line."""
+    """Fit circles to n sets of points, shape (n, n_points, 2), by :func:`fit_circle`; not finite for points in line."""
     scale = np.abs(points).max(axis=(1, 2))
     scaled = points / scale[:, None, None]
     matrix = np.concatenate([scaled, np.ones((*scaled.shape[:2], 1))], axis=2)
@@ -153,11 +153,11 @@ class CylindricalBore:
     center : tuple of float
         The middle of its axis [m].
     diameter, length : float
-        Of the circle nearest to its corner nodes, and between its ends [m].
+        Diameter of the circle nearest to its corner nodes, and length between its ends [m].
     roundness : float
         Part of the full circle that its facets cover, 0 to 1.
     facets : tuple of ElementBlock
-        Its facets.
+        Facets of the bore.
     """
 
     center: tuple[float, float, float]
@@ -176,7 +176,7 @@ def find_bores(
     ----------
     mesh : Mesh
     axis : sequence of float
-        Of any length.
+        Direction of the axis, of any length.
     least_round : float
         Part of the full circle that a bore must cover; by default about a half, as in a housing split at the axis.
 
@@ -264,7 +264,7 @@ def joined_by_span(
     ----------
     mesh : Mesh
     facets : tuple of ElementBlock
-        As chosen by :func:`fits_circle`.
+        Facets as chosen by :func:`fits_circle`.
     center, axis
         Of the cylinder.
     """
@@ -336,7 +336,7 @@ def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray
         corner_angles = angles[block.corners]
         turned = (
             np.mod(corner_angles - corner_angles[:, :1] + np.pi, 2 * np.pi) - np.pi
-        )  # from the first corner, the short way
+        )  # angles from the first corner, the short way
         ends = (
             (corner_angles[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1))
             * _ARC_STEPS
@@ -368,7 +368,7 @@ def _connected(facets: Facets) -> IntArray:
 
 
 def _same(bore: CylindricalBore, other: CylindricalBore, axis: FloatArray) -> bool:
-    """Whether two are the same bore, found by two circles that both fit."""
+    """Whether two bores are one, found by two circles that both fit."""
     gap = np.subtract(bore.center, other.center)
     apart = float(np.linalg.norm(across(gap[None], axis)))
     slack = 2 * SLACK * bore.diameter

@@ -279,8 +279,8 @@ def _conformity(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
 LEAST_SHAPE = 0.05
 """Shape number below which an element spoils the stresses around it."""
 
-_LIKELY = 0.5  # of several possible units, the one that makes the housing nearest to this is proposed [m]
-_NO_VOLUME = 1e-9  # of the cube of an element's longest edge
+_LIKELY = 0.5  # size of a housing [m]; of several possible units, the one that comes nearest to it is proposed
+_NO_VOLUME = 1e-9  # least volume, as a part of the cube of an element's longest edge
 
 
 def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[MeshDefect, ...]:

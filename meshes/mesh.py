@@ -36,8 +36,9 @@ class MeshDefect:
     Attributes
     ----------
     name : str
-        Of the mesh itself: ``degenerate``, ``folded``, ``shape``, ``non-manifold``, ``overlapping``, ``disconnected``,
-        ``slit``, ``non-conforming``, ``hinged``, ``unused nodes``, ``unit``. Of its resolution: ``size``, ``locking``.
+        Finding on the mesh itself: ``degenerate``, ``folded``, ``shape``, ``non-manifold``, ``overlapping``,
+        ``disconnected``, ``slit``, ``non-conforming``, ``hinged``, ``unused nodes``, ``unit``; on its resolution:
+        ``size``, ``locking``.
     severity : {"error", "warning"}
         Errors make the modes wrong or impossible; warnings leave the judgement to the user.
     message : str
@@ -45,7 +46,7 @@ class MeshDefect:
     count : int
         Number of nodes, facets, elements or bodies.
     place : ndarray, shape (3,)
-        Of the first or the worst of them [m].
+        Place of the first or the worst of them [m].
     """
 
     name: str
@@ -140,7 +141,7 @@ class Mesh:
         Parameters
         ----------
         points : ndarray, shape (n_nodes, 3)
-            [m].
+            Places of the nodes [m].
         cells : ndarray of int, shape (n_elements, 4) or (n_elements, 10)
         surfaces : mapping of str to ndarray of int, shape (n_facets, 3) or (n_facets, 6)
         volumes : mapping of str to ndarray of int, shape (n,)

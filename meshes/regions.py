@@ -11,10 +11,10 @@ from meshes.elements import Facets, FloatArray, facet_centers, facet_corners, fa
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
 
-_PLANE_SLACK = 1e-4  # of the mesh's diagonal
+_PLANE_SLACK = 1e-4  # part of the mesh's diagonal
 _NORMAL = 0.99  # least cosine between a facet's normal and that of the plane it lies on
-_CIRCLE_SLACK = 0.01  # of the bore's diameter
-_LEAST_ROUND = 0.45  # of the full circle, for less than half a bore holds no bearing
+_CIRCLE_SLACK = 0.01  # part of the bore's diameter
+_LEAST_ROUND = 0.45  # part of the full circle: less than half a bore holds no bearing
 _LISTED = 5
 
 
@@ -45,7 +45,7 @@ def plane_facets(mesh: Mesh, point: Sequence[float], normal: Sequence[float]) ->
     point : sequence of float
         A point of the plane [m].
     normal : sequence of float
-        Its normal, of any length.
+        Normal of the plane, of any length.
 
     Raises
     ------
@@ -135,9 +135,9 @@ def cylinder_facets(
         A point on the bore's axis [m], at most a diameter beyond its ends. Of several bores on that axis the one is
         taken whose middle is nearest along it.
     diameter : float
-        [m].
+        Diameter [m].
     axis : sequence of float
-        Its direction, of any length.
+        Direction of the axis, of any length.
     length : float, optional
         Length of the part that is wanted, half of it to each side of the centre [m]; by default all of the bore.
 

@@ -14,12 +14,11 @@ CHIEF): H. A. Schenck, "Improved integral formulation for acoustic radiation pro
 Society of America 44 (1968), 41-58. Many points, spread at random, and least squares make an accident unlikely that
 all lie on nodal surfaces; points that were not used prove it, see :attr:`SoundField.interior_residual`.
 
-The linear functions of a curved pressure should equal it on the average over a triangle. Those through its values at
-the vertices deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the second
+A curved pressure and its linear functions should be equal on the average over a triangle. Functions through its values
+at the vertices deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the second
 derivatives H lies ``Σ eᵀ H e / 24`` below that of the linear function through its corners. The value in the equation of
 a vertex is therefore ``p − B p`` with the matrix B of :func:`_curvature_correction`, except at edges and corners of the
-surface, where the pressure has no second derivatives. Powers and reciprocity are two to five times as exact as
-without.
+surface, where the pressure has no second derivatives. Powers and reciprocity are two to five times as exact as without.
 
 A hard plane mirrors the surface. Where a body stands on it, the triangles that lie in the plane are covered: they do
 not radiate and are left out, and what is left is one closed body with its mirror image.
@@ -27,7 +26,7 @@ not radiate and are left out, and what is left is one closed body with its mirro
 The equation of Burton and Miller, which couples the normal derivative, needs a smooth surface at the vertices and
 spoils weak radiators at low frequencies; on a sphere and on boxes CHIEF was the more accurate.
 
-Every solution of a closed surface holds that of known sources inside as well, which proves it at every vertex, see
+Every solution of a closed surface includes the field of known sources inside, which proves it at every vertex, see
 :mod:`housing.acoustics.known_source`.
 """
 
@@ -49,21 +48,23 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_INNER_WEIGHT = 5.0  # of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
+_INNER_WEIGHT = 5.0  # weight of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
 _CHECK_POINTS = 12
 _FEWEST_INNER = 30
-_VAIN = 50  # rounds of 64 trials without a point inside after which there is none
+_VAIN = 50  # rounds of 64 trials without a point inside after which the search ends
 _NEAR = 0.01  # longest edges from a triangle below which the quadrature fails: 0.3 % at 0.003 edges, 10 % at 0.001
-_SMOOTH = np.cos(np.deg2rad(15.0))  # between a triangle's normal and the mean one of a vertex that is on no edge
+_SMOOTH = np.cos(
+    np.deg2rad(15.0)
+)  # least cosine between a triangle's normal and the mean one of a vertex that is on no edge
 _MOST_CURVATURE = 0.35
 """Largest part of a spike at a vertex that the correction takes for curvature: without a bound it is a quarter to a
 half on even triangles, and nine tenths where edges differ by half. Known sources in a box of uneven triangles were off
 by 140 % at a bound of 0.5, by 16 % at this one and by 7 % at 0.2; powers, reciprocity and points far away have the
 correction's whole use from 0.3 on."""
-_MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # of linear shape functions on a triangle of unit area
+_MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # linear shape functions' mass matrix on a triangle of unit area
 
 MOST_TRIANGLES = 16_000
-"""Triangles whose equations are still solved: their matrix takes 1.4 GB, and their factorisation minutes."""
+"""Largest number of triangles: their matrix takes 1.4 GB, and their factorisation minutes."""
 
 
 @dataclass(frozen=True)
@@ -73,14 +74,14 @@ class SoundField:
     Attributes
     ----------
     surface : RadiatingSurface
-        What radiates.
+        The radiating surface.
     medium : Medium
     plane : HardPlane or None
     frequency_hz : float
     velocity : ndarray, shape (3 n_triangles, n)
         Normal velocity at the corners of each triangle [m/s].
     pressure : ndarray, shape (n_points, n)
-        At the vertices [Pa], of linear functions that equal the pressure on the average over a triangle.
+        Pressure at the vertices [Pa], of linear functions that equal the pressure on the average over a triangle.
     inside : ndarray, shape (n_checks, n)
         Pressure at points inside that the solution did not use [Pa], where zero is exact. Empty for a baffled face,
         which has no inside, and where no point inside is far enough from the surface, as in a thin plate.
@@ -144,7 +145,7 @@ class SoundField:
 
     @cached_property
     def surface_resistance(self) -> FloatArray:
-        """The same as `resistance` from the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n)."""
+        """The radiation resistance by the intensity on the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n)."""
         product = surface_product(self.surface, self.velocity, self.pressure_at_corners)
         return np.asarray(0.5 * (product + product.conj().T).real)
 
@@ -238,7 +239,7 @@ class BoundaryElements:
     Parameters
     ----------
     surface : RadiatingSurface
-        Closed, or flat in the hard plane.
+        Surface, closed or flat in the hard plane.
     medium : Medium
     plane : HardPlane, optional
         A hard floor, or the baffle of a flat face.
@@ -246,7 +247,7 @@ class BoundaryElements:
     Attributes
     ----------
     surface : RadiatingSurface
-        What radiates: the given surface without its triangles that lie in the floor.
+        The given surface without its triangles that lie in the floor.
     uncovered : ndarray of bool, shape (n_given_triangles,)
         Triangles of the given surface that radiate.
     baffled : bool
@@ -520,11 +521,11 @@ def require_in_air(surface: RadiatingSurface, plane: HardPlane | None, points: F
     Parameters
     ----------
     surface : RadiatingSurface
-        Closed, alone or with its mirror image, or flat in the plane.
+        Surface, closed alone or with its mirror image, or flat in the plane.
     plane : HardPlane or None
-        On it points are in the air.
+        Floor; points on it are in the air.
     points : ndarray, shape (n_points, 3)
-        [m].
+        Places [m].
 
     Raises
     ------

@@ -44,11 +44,11 @@ def _orbits(*orbits: tuple[float, float]) -> FloatArray:
 
 _DEGREE_4 = _orbits((0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322))
 
-_TO_CORNERS = 12.0 * np.linalg.inv(np.ones((3, 3)) + np.eye(3))  # from moments of linear functions to their values
+_TO_CORNERS = 12.0 * np.linalg.inv(np.ones((3, 3)) + np.eye(3))  # turns moments of linear functions into their values
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
-_MOST_LEVELS = 7  # of division by two of a triangle near a point
+_MOST_LEVELS = 7  # most halvings of a triangle near a point
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract", "arcp", "nsz"})
 
@@ -201,7 +201,7 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
     targets, vertex, corners, triangles, normals, areas, sizes, centers, k, rule, places, point_normals, point_weights,
     near_rule, duffy, weights, single, double, static,
 ):  # fmt: skip
-    """Integrals over all triangles for some points; `own` is the vertex that a point is, or -1."""
+    """Integrals over all triangles for some points; `own` is the vertex at a point, or -1."""
     count = rule.shape[0]
     far_g, far_dg, far_dg0 = np.empty((2, places.shape[1])), np.empty((2, places.shape[1])), np.empty(places.shape[1])
     g, dg, dg0 = np.empty(3, np.complex128), np.empty(3, np.complex128), np.empty(3)
@@ -251,7 +251,7 @@ class SourcePoints:
     Attributes
     ----------
     places, normals : ndarray, shape (3, n)
-        [m]
+        Places [m] and unit normals.
     weights : ndarray, shape (n,)
         Area that each stands for [m²].
     triangles : ndarray of int, shape (n_triangles, 3)

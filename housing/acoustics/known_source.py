@@ -6,9 +6,9 @@ A monopole at y inside a closed surface radiates, for the time factor exp(+i ω 
 
 over a hard plane together with its image. That is a sound field of the air outside, and it is the solution for its own
 normal velocity on the surface. The boundary elements solve for the same velocity, beside those of the housing and with
-the same factorisation; what they find is held against the exact pressure, at every vertex and at points in the air.
+the same factorisation; their pressure is compared with the exact one, at every vertex and at points in the air.
 
-It sees what the other proofs do not: where the equations leave one vertex nearly free, its pressure has no part in
+This proof sees what others do not: where the equations leave one vertex nearly free, its pressure has no part in
 them, and hence none in the pressure inside and hardly any in the power.
 
 The error is relative to the amplitude of the source at the same place, Σ 1/r over source and image, which has no
@@ -37,13 +37,13 @@ SOURCE_DEPTH = 1.0
 """Longest edges from the centre of every triangle that a source has to stand away from.
 
 The linear functions of a triangle follow exp(−i k r) / r the worse the nearer the source is. From this distance on
-that no longer counts beside the wave's own: at six edges a wavelength, and at three, sources three times as deep have
+the wavelength alone counts: at six edges a wavelength, and at three, sources three times as deep have
 the same error within a tenth; at twelve the largest is less than twice as much.
 """
 
 _GAP = 0.1  # longest edges between a triangle and the floor that it faces, below which its vertices do not count
 _FACING = -0.5  # cosine of its normal against the floor's
-_APART = 0.6  # of the largest depth that the second source has to have
+_APART = 0.6  # least depth of the second source, as a part of the largest depth
 _ROWS = 64  # points whose distances from all triangles are held at once
 
 
@@ -54,8 +54,8 @@ class SourceError:
     Attributes
     ----------
     largest : float
-        Of all vertices that count, relative to the amplitude of the source there. Infinite where no source can stand,
-        zero where there is nothing to prove.
+        Largest error of all vertices that count, relative to the amplitude of the source there. Infinite where no
+        source can stand, zero where there is nothing to prove.
     rms : float
         Root mean square over the vertices.
     place : tuple of float
@@ -68,9 +68,9 @@ class SourceError:
 
 
 NOTHING_TO_PROVE = SourceError(0.0, 0.0)
-"""Of a flat face and of an estimate, which solve no equations."""
+"""Source error of a flat face and of an estimate, which solve no equations."""
 NO_SOURCE = SourceError(np.inf, np.inf)
-"""Of a body that is too thin, beside its triangles, for a source inside."""
+"""Source error of a body that is too thin, beside its triangles, for a source inside."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class KnownSources:
     Attributes
     ----------
     places : ndarray, shape (n, 3)
-        [m]
+        Places [m].
     plane : HardPlane or None
     """
 
@@ -161,11 +161,11 @@ class KnownField:
     ----------
     surface : RadiatingSurface
     sources : KnownSources
-        At least one.
+        The sources, at least one.
     wavenumber : float
         k [rad/m].
     pressure : ndarray, shape (n_vertices, n)
-        As found, in the unit of the sources' amplitude.
+        The computed pressure, in the unit of the sources' amplitude.
     """
 
     surface: RadiatingSurface
@@ -193,7 +193,7 @@ class KnownField:
         Parameters
         ----------
         points : ndarray, shape (n_points, 3)
-            [m]
+            Points [m].
         found : ndarray, shape (n_points, n)
             Pressure of each source.
         """

@@ -32,7 +32,7 @@ _WEIGHTS = _RULE_WEIGHTS / _RULE_WEIGHTS.sum()
 # Corner values from values at the points: the inverse of the mass matrix area (1 + delta_ij) / 12, times the load.
 _PROJECTION = 12.0 * (np.eye(3) - 0.25) @ (_SHARES * _WEIGHTS[:, None]).T
 
-_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # of a triangle, in its own coordinates
+_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # corners of a triangle in its own coordinates
 
 _SPACING = 0.35  # edges between the samples of a skin
 _TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
@@ -51,9 +51,9 @@ class SurfaceVelocity:
     mesh : Mesh
     surface : RadiatingSurface
     skin : Skin
-        Of the mesh's boundary.
+        Skin of the mesh's boundary.
     nearest : NearestSkin
-        For the six points of each triangle, triangle after triangle.
+        Nearest points of the six points of each triangle, triangle after triangle.
     """
 
     mesh: Mesh
@@ -192,7 +192,7 @@ def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
     mesh : Mesh
         The housing's finite elements.
     surface : RadiatingSurface
-        Around it.
+        Radiating surface around the housing.
     """
     skin = skin_of(mesh, mesh.boundary)
     edge = float(np.sqrt(4.0 / np.sqrt(3.0) * surface.area / len(surface.triangles)))
@@ -295,12 +295,12 @@ def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, SkinPoin
     ----------
     mesh : Mesh
     facets : tuple of ElementBlock
-        Outward.
+        Facets, seen from outside.
 
     Returns
     -------
     surface : RadiatingSurface
-        Open, if the facets are.
+        Surface of the facets, open if they are.
     points : SkinPoints
         The corners of the triangles.
 

@@ -31,12 +31,12 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 _FINE = 3  # fine cells along a cell of the wrap
-_MOST_CELLS = 3e7  # of the fine grid: about 2 GB
+_MOST_CELLS = 3e7  # cells of the fine grid: about 2 GB
 _FILLED = 0.3  # least part of a cell's fine cells that makes it solid: a plate of one layer is a third
 _OPEN = 0.2  # largest open part of the border of a cavity: a cube without its lid has a sixth
 _WIDER = 1.4  # steps of the ball that seeks a leak
 _INSIDE = 0.15  # part of the whole above which a cavity that is open is a leak
-_ROUNDS = 14  # of moving the vertices onto the skin
+_ROUNDS = 14  # rounds that move the vertices onto the skin
 _TURN = 0.7  # cells that a right angle between face and skin counts as distance, over sqrt(2)
 _AGREE = 0.3  # least cosine between a face and the skin that it is moved to
 _LEAST = 0.2  # square cells added to each face's area where faces are weighted
@@ -67,7 +67,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     Returns
     -------
     RadiatingSurface
-        Closed.
+        Closed surface.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     _require_tight(coarse, origin, cell, close_holes)
     points, quads = _surface_net(coarse)
     places, owners = skin.samples(cell / 3.0)
-    # Outer are the samples before which there is air.
+    # A sample with air before it is an outer one.
     ahead = np.floor((places + 1.5 * fine * skin.normals[owners] - origin) / fine).astype(np.int64)
     outer = ~solid[tuple(ahead.T)]
     surface = RadiatingSurface(
@@ -157,7 +157,7 @@ def _filled(solid: BoolArray, radius: float) -> BoolArray:
 def _require_tight(solid: BoolArray, origin: FloatArray, cell: float, close_holes: float) -> None:
     """Refuse a wrap with an inside that is open to the air.
 
-    It has one where a ball wider than the holes to be closed finds a cavity of some size that it cannot enter.
+    The wrap has one where a ball wider than the holes to be closed finds a large cavity that it cannot enter.
     """
     radius, largest = max(0.5 * close_holes / cell, 1.0), 0.5 * max(np.ptp(np.argwhere(solid), axis=0) + 1)
     tight = radius
@@ -204,7 +204,7 @@ _BLOCK = np.array(list(product((0, 1), repeat=3)))  # places of the cells of a b
 
 @cache
 def _repairs() -> IntArray:
-    """For each pattern of solid cells in a block of eight, those with which the surface is manifold there.
+    """For each pattern of solid cells in a block of eight, the solid cells that make the surface manifold there.
 
     Solid cells and others then each hang together through faces: the surface passes once.
     """
@@ -309,7 +309,7 @@ def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[Flo
 def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) -> FloatArray:
     """Move each vertex onto the planes of its faces, and along them to the centroid of its faces.
 
-    Faces farther from the skin than the reach [m] have no plane, as those over holes.
+    Faces farther from the skin than the reach [m], such as faces over holes, have no plane.
     """
     cell = skin.cell
     corners = points[faces]
@@ -410,7 +410,8 @@ def _divided(points: FloatArray, triangles: IntArray, longest: float) -> tuple[F
         if lengths.max() <= longest:
             return points, triangles
         sides = inverse.reshape(-1, 3)  # edge i of a triangle goes from its corner i to the next
-        # Of each triangle the longest edge, the first of equal ones; an edge that is it on both sides is halved.
+        # The longest edge of each triangle, the first of equal ones; an edge that is the longest on both sides is
+        # halved.
         order = np.lexsort((np.arange(len(edges)), -lengths))
         rank = np.empty(len(edges), dtype=np.int64)
         rank[order] = np.arange(len(edges))
@@ -456,7 +457,7 @@ def _flip(
 def _collapse(
     points: FloatArray, corners: list[tuple[int, ...]], around: list[set[int]], a: int, b: int, cell: float
 ) -> tuple[int, ...]:
-    """Collapse the edge from a to b into the best of its ends and its middle, where that helps; the triangles lost."""
+    """Collapse an edge a, b into the best of its ends and its middle where that helps; return the triangles lost."""
     gone = around[a] & around[b]
     ring_a = {vertex for number in around[a] for vertex in corners[number]} - {a, b}
     ring_b = {vertex for number in around[b] for vertex in corners[number]} - {a, b}
@@ -466,7 +467,7 @@ def _collapse(
     old = np.array([corners[number] for number in moved])
     before, normal = _shapes(points[old])
     lost, lost_normal = _shapes(points[[list(corners[number]) for number in sorted(gone)]])
-    # The planes around hold the vertex, but for those of triangles too flat to have one.
+    # The planes of the triangles around hold the vertex; a triangle that is too flat has none.
     normals = np.concatenate([normal[before > _FLAT], lost_normal[lost > _FLAT]])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     bases = np.concatenate(

@@ -48,7 +48,7 @@ def shape_set(shapes: npt.ArrayLike, name: str) -> ShapeArray:
     shapes : array_like, shape (n_modes, n_dofs) or (n_dofs,)
         Real or complex; NaN where a degree of freedom was not measured. One shape alone is a set of one.
     name : str
-        Whose shapes, for messages.
+        Name of the set of shapes, for messages.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def two_sets(
     Raises
     ------
     HousingError
-        Also where they have not as many degrees of freedom.
+        Also where their numbers of degrees of freedom differ.
     """
     first_set, second_set = shape_set(first, names[0]), shape_set(second, names[1])
     if first_set.shape[1] != second_set.shape[1]:
@@ -151,7 +151,7 @@ def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> Compl
     Raises
     ------
     HousingError
-        Where the sets do not fit together or are not as large as each other.
+        Where the sets do not fit together or differ in size.
     """
     target, scaled = two_sets(reference, shapes, ("the reference's", "the scaled"))
     if len(target) != len(scaled):
@@ -173,14 +173,14 @@ def pole_weighted_mac(
         (|v₁ᴴ v₂| / |λ₁* + λ₂| + |v₁ᵀ v₂| / |λ₁ + λ₂|)² / (n₁ n₂),    n = vᴴ v / 2|Re λ| + |vᵀ v| / 2|λ|.
 
     Frequencies that differ by more than the half-power bandwidths make it small, so it judges whether two
-    identifications found the same mode of one machine; a model within a few per cent it condemns. A model and its
+    identifications found the same mode of one machine; it condemns a model within a few per cent. A model and its
     test are shown in both respects by the MAC over both frequencies instead (the FMAC of Fotsch and Ewins 2000), as
     ``comparison.png`` does.
 
     Parameters
     ----------
     first, second : array_like, shapes (a, n_dofs) and (b, n_dofs)
-        Without NaN.
+        Shapes without NaN.
     first_poles, second_poles : array_like of complex, shapes (a,) and (b,)
         λ = -ζω + iω√(1 - ζ²) [rad/s].
 
@@ -233,7 +233,7 @@ def comac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     Parameters
     ----------
     model, measured : array_like, shape (n_pairs, n_dofs)
-        Row by row paired; NaN where not measured.
+        Shapes, paired row by row; NaN where not measured.
 
     Returns
     -------
@@ -331,7 +331,7 @@ def phase_deviation(shapes: npt.ArrayLike) -> FloatArray:
 def real_shapes(shapes: npt.ArrayLike) -> FloatArray:
     """Complex shapes turned on to the real axis by their mean phase, and their real parts; NaN stays.
 
-    Of all real shapes these are nearest to the given ones at any phase: the part dropped is the minor axis of their
+    These real shapes are the nearest to the given ones at any phase: the part dropped is the minor axis of their
     scatter, a part (1 - √MPC) / 2 of their square.
 
     Parameters
@@ -341,7 +341,7 @@ def real_shapes(shapes: npt.ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray, shape (n, n_dofs)
-        Of arbitrary sign.
+        Real shapes of arbitrary sign.
     """
     return np.asarray(_aligned(shapes).real)
 

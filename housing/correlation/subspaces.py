@@ -1,7 +1,7 @@
 """Subspaces of close modes: MAC with a span, nearest combination, principal angles.
 
 Two modes of one frequency have no shapes of their own: any two combinations of them are as good, and a test and a
-model find different ones. Of modes that are merely close a small error of the model mixes them. What is compared then
+model find different ones. A small error of the model mixes modes that are merely close. What is compared then
 is the space that they span: by the angles between two spaces, or by the part of a measured shape that lies in one.
 """
 
@@ -14,7 +14,7 @@ from housing.errors import HousingError
 
 IntArray = npt.NDArray[np.int64]
 
-_RANK = 1e-10  # singular values below so much of the largest are no directions of their own
+_RANK = 1e-10  # singular values below this part of the largest are no directions
 
 
 def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray, ...]:
@@ -25,7 +25,7 @@ def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray,
     frequencies : array_like, shape (n,)
         Ascending, zero for rigid motion, which is close to rigid motion alone.
     closeness : float
-        Of neighbours, as a part of the higher frequency; 0 joins equal ones only.
+        Gap of neighbours, as a part of the higher frequency; 0 joins equal ones only.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def span_mac(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> FloatArray:
     Parameters
     ----------
     basis : array_like, shape (k, n_dofs)
-        Known everywhere; k below the degrees of freedom that each shape has.
+        Shapes without NaN; k below the degrees of freedom that each of ``shapes`` has.
     shapes : array_like, shape (n, n_dofs)
         NaN where not measured.
 
@@ -81,7 +81,7 @@ def principal_angles(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
     """Angles between the spans of two sets, descending, as many as the smaller set has shapes [rad].
 
     All zero: one span holds the other. The largest at π/2: something in one is unlike everything in the other
-    (Björck and Golub 1973). Taken where every shape of both was measured.
+    (Björck and Golub 1973). The degrees of freedom are those where every shape of both was measured.
 
     Raises
     ------

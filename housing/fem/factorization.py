@@ -38,7 +38,7 @@ def available_memory(*, system: Path = Path("/")) -> float:
     Returns
     -------
     float
-        [bytes], not negative.
+        Memory [bytes], not negative.
     """
     return max(min(_machine(system), _group(system), _own_limit(system)), 0.0)
 
@@ -49,9 +49,9 @@ def check_memory(needed: float, task: str) -> None:
     Parameters
     ----------
     needed : float
-        [bytes].
+        Memory needed [bytes].
     task : str
-        The subject of the sentence.
+        Subject of the message's sentence.
 
     Raises
     ------
@@ -218,7 +218,7 @@ class _SuperluFactor:
 Backend = Literal["rslab", "superlu"]
 
 _RESIDUAL_BOUND = 1e-8
-_ERROR_BOUND = 1e-2  # of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
+_ERROR_BOUND = 1e-2  # error of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
 
 
 class _Solver(Protocol):

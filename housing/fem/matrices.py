@@ -40,7 +40,7 @@ class NodeBlocks:
 
     @classmethod
     def summed(cls, rows: IntArray, columns: IntArray, blocks: FloatArray) -> "NodeBlocks":
-        """Blocks in any order, those of one pair added up."""
+        """Take blocks in any order; blocks of one pair of nodes are added up."""
         if len(rows) == 0:
             return NOTHING
         order = np.lexsort((columns, rows))
@@ -57,7 +57,7 @@ class NodeBlocks:
         port : scipy.sparse.csr_array, shape (n_motions, 3 n_nodes)
             Motions from the nodes' displacements.
         small : ndarray, shape (n_motions, n_motions)
-            Symmetric.
+            Symmetric matrix.
         """
         if not small.any():
             return NOTHING
@@ -113,11 +113,11 @@ class Additions:
     Attributes
     ----------
     stiffness : NodeBlocks
-        [N/m].
+        Stiffness [N/m].
     mass : NodeBlocks
-        [kg].
+        Mass [kg].
     damping : NodeBlocks
-        [N s/m].
+        Damping [N s/m].
     fixed : ndarray of int
         Degrees of freedom held at zero, ascending.
     """
@@ -147,7 +147,7 @@ class Matrices:
     Attributes
     ----------
     pointer : ndarray of int, shape (n_nodes + 1,)
-        Where each node's row of blocks begins, with the node's own.
+        Place where each node's row of blocks begins, with the node's own.
     neighbors : ndarray of int, shape (n_blocks,)
         The column node of each block, ascending within a row from the node itself.
     blocks : ndarray, shape (n_blocks, 3, 3)
@@ -279,7 +279,7 @@ class Matrices:
     def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
         """Return the pattern of both triangles.
 
-        Its pointer and neighbours, the place where each block is kept, and whether it stands there transposed.
+        These are its pointer and neighbours, the place where each block is kept, and whether it is kept transposed.
         """
         upper = np.flatnonzero(self.neighbors != self.rows)
         places = np.concatenate([np.arange(len(self.neighbors)), upper])
@@ -309,9 +309,9 @@ class FreeSystem:
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with supports.
+        Matrices of n_nodes nodes, with supports.
     threads : int
-        That multiply K and M with vectors; the products are the same to the last bit for any number.
+        Threads that multiply K and M with vectors; the products are the same to the last bit for any number.
 
     Attributes
     ----------
@@ -384,9 +384,9 @@ class FreeMass:
     ----------
     matrices : Matrices
     free : ndarray of int, shape (n,)
-        Ascending.
+        Free degrees of freedom, ascending.
     threads : int
-        Each multiplies a share of the rows.
+        Number of threads; each multiplies a share of the rows.
     least : int
         Entries that a thread is started for; of a small mass there are fewer threads.
     """

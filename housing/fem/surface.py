@@ -80,7 +80,7 @@ class FlatFace:
     ----------
     facets : tuple of ElementBlock
     area : float
-        [m²].
+        Area [m²].
     center, normal : ndarray, shape (3,)
         Centroid [m] and outward unit normal.
     """
@@ -135,9 +135,9 @@ class SurfacePoint:
     ----------
     nodes : ndarray of int, shape (n_shape,)
     weights : ndarray, shape (n_shape,)
-        Shape functions there; they sum to one.
+        Shape functions at the point; they sum to one.
     position : ndarray, shape (3,)
-        [m].
+        Place [m].
     normal : ndarray, shape (3,)
         Outward unit normal.
     """
@@ -265,9 +265,9 @@ class _Candidates:
     Attributes
     ----------
     bounds : list of int
-        Where those of each place begin, and the end.
+        First candidate of each place, and the end of the last place.
     distances : list of float
-        Of the plane triangles [m].
+        Distances of the plane triangles [m].
     sets : list of int
         Numbers of their sets of triangles.
     members : ndarray of int
@@ -299,10 +299,10 @@ class _Triangles:
     places : ndarray, shape (3, 2)
         Reference coordinates of the corners.
     corners : ndarray, shape (n_facets, 3, 3)
-        [m].
+        Places of the corners [m].
     centers : ndarray, shape (n_facets, 3)
     radii : ndarray, shape (n_facets,)
-        [m].
+        Radii [m].
     """
 
     block: ElementBlock
@@ -329,9 +329,9 @@ class _Triangles:
         rows : ndarray of int, shape (n,)
             The targets.
         distances : ndarray, shape (n,)
-            Of the triangle's nearest point [m].
+            Distance of the triangle's nearest point [m].
         sets : ndarray of int, shape (n,)
-            The `number` given.
+            The parameter `number`.
         members : ndarray of int, shape (n,)
             The triangles.
         starts : ndarray, shape (n, 2)
@@ -354,7 +354,7 @@ def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint
     facets : tuple of ElementBlock
         Outward facets to search.
     place : ndarray, shape (3,)
-        [m].
+        Target [m].
 
     Raises
     ------
@@ -451,8 +451,8 @@ def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[Float
     return best, distance
 
 
-_CELLS = 80  # of a view along the housing's diagonal
-_DIRECTIONS = 60  # of view
+_CELLS = 80  # cells of a view along the housing's diagonal
+_DIRECTIONS = 60  # directions of view
 _FACING = 0.5  # least cosine between a facet's normal and the direction of a view that counts
 _SEEN = 0.25  # least part of the views of a facet in which it is visible; through a bore it is in few
 _DEPTH = 3.0  # cells that a facet may lie behind the foremost in its own: slanting neighbours share cells

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 _ON_A_LINE = 1e-6  # second largest spread of points as a part of the largest, below which they turn about their line
-_SMALLEST = 20.0  # times as large as its survey a housing may be; a millionth of it lies near any surface
-_TOLERANCE = 0.02  # of the housing's diagonal: beyond it a point is not one of this surface
+_SMALLEST = 20.0  # largest size of a housing over that of its survey; a millionth of it lies near any surface
+_TOLERANCE = 0.02  # part of the housing's diagonal beyond which a point is not one of this surface
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class RigidMotion:
     ----------
     rotation : ndarray, shape (3, 3)
     translation : ndarray, shape (3,)
-        [m].
+        Translation [m].
     """
 
     rotation: FloatArray
@@ -121,14 +121,14 @@ def small_motion(points: FloatArray, targets: FloatArray, normals: FloatArray) -
     return RigidMotion(rotation, middle + solution[:3] - rotation @ middle), np.sort(firmness) / np.sqrt(len(points))
 
 
-_FIRST_STEPS, _STEPS = 6, 40  # from every start; from the promising ones
-_PROMISING = 4.0  # times the least distance, and the spacing of the samples, after the first steps
+_FIRST_STEPS, _STEPS = 6, 40  # steps from every start; from the promising ones
+_PROMISING = 4.0  # after the first steps: limit of the rms distance over the least one plus the samples' spacing
 _SPREAD_STARTS = 60  # rotations spread over all there are, beside those of axes onto axes
 _SETTLED = 1e-6  # a step that moves points by less, as a part of the housing's diagonal, is the last
 _EQUAL = (
     0.005  # root mean square distances that differ by less, as a part of the diagonal, do not distinguish positions
 )
-_DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # positions that differ by less, the latter of the diagonal, are one
+_DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # degrees, part of the diagonal: positions that differ by less are one
 _LOOSE = 0.02  # firmness below which the points do not determine a motion; for points all over a box it is 0.3 and more
 _SCALE_OFF = 0.03  # deviation of the scale from 1 beyond which the survey is of another size than the model
 
@@ -140,12 +140,12 @@ class Alignment:
     Attributes
     ----------
     motion : RigidMotion
-        From the survey's frame to the model's.
+        Motion from the survey's frame to the model's.
     rms, largest : float
         Distances left, between landmarks or to the surface [m].
     by : {"landmarks", "surface"}
     others : tuple of RigidMotion
-        Positions of the survey that fit as well; the one nearest to how it was given is `motion`.
+        Other positions of the survey that fit as well; `motion` turns the survey least.
     remarks : tuple of str
         Remarks for the user, a sentence each.
     """
@@ -165,7 +165,7 @@ def align_landmarks(geometry: MeasuredGeometry, landmarks: Mapping[str, tuple[fl
     ----------
     geometry : MeasuredGeometry
     landmarks : dict
-        From the label of a point to its place in the model's frame [m]; three or more, not on one line.
+        Place of each labelled point in the model's frame [m]; three or more, not on one line.
 
     Raises
     ------
@@ -185,9 +185,9 @@ def align_landmarks(geometry: MeasuredGeometry, landmarks: Mapping[str, tuple[fl
 def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
     """Align a survey so that its points lie as near to the housing's outer surface as they can.
 
-    From many rotations, the survey's middle on the housing's, points and the nearest planes of the surface are brought
-    together alternately (:func:`small_motion`). A housing with symmetries, or one measured on too few faces, fits in
-    several positions: the one that turns the survey least is taken, and the others are reported.
+    The search starts from many rotations, with the survey's middle on the housing's, and brings points and the nearest
+    planes of the surface together alternately (:func:`small_motion`). A housing with symmetries, or one measured on too
+    few faces, fits in several positions: the one that turns the survey least is taken, and the others are reported.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
 def size_hint(geometry: MeasuredGeometry, mesh: Mesh, part: float = 2.5) -> str | None:
     """Hint at the cause where the survey is of a very different size than the model; None where it is about as large.
 
-    The survey may be `part` times smaller than the model: one of a part of the housing.
+    The survey may be `part` times smaller than the model where it covers a part of the housing.
     """
     survey_size = float(np.linalg.norm(np.ptp(geometry.positions, axis=0)))
     if not survey_size > 0.0:
@@ -369,11 +369,11 @@ class MappedSurvey:
     Attributes
     ----------
     geometry : MeasuredGeometry
-        In the model's frame, points where they were measured.
+        Geometry in the model's frame, points where they were measured.
     positions, normals : ndarray, shape (n_points, 3)
         The nearest points of the outer surface [m] and their outward normals.
     distances : ndarray, shape (n_points,)
-        From each measuring point to the surface [m].
+        Distance from each measuring point to the surface [m].
     matrix : scipy.sparse.csr_array, shape (n_dofs, 3 n_nodes)
         Motion at each degree of freedom, along its direction, from the nodes' displacements.
     tolerance : float
@@ -418,7 +418,7 @@ def map_survey(
     mesh : Mesh
     geometry : MeasuredGeometry
     alignment : Alignment, optional
-        From the survey's frame to the model's; they are taken for the same where not given.
+        Alignment of the survey's frame with the model's; by default the two are the same.
     tolerance : float, optional
         Distance beyond which a point is called far [m]; by default 2 % of the housing's diagonal.
 

@@ -25,7 +25,7 @@ class StabilityRule:
 
     A pole of one order continues one of the order before where the frequency and the damping ratio differ by no more
     than the two tolerances; each pole continues one at most, the nearest first. A mode is a line of poles that goes on
-    over at least `share` of the upper half of the orders; the one taken is nearest to the line's medians.
+    over at least `share` of the upper half of the orders; the chosen pole is nearest to the line's medians.
 
     Attributes
     ----------
@@ -36,9 +36,9 @@ class StabilityRule:
     damping : float
         Largest change of the damping ratio from one order to the next, as a part.
     largest_damping : float
-        Ratios of poles lie between 0 and this.
+        Largest damping ratio of a pole; the least is 0.
     share : float
-        Of the upper half of the orders that a mode's line covers at least.
+        Least part of the upper half of the orders that a mode's line covers.
     contribution : float
         Least part of the responses' energy near its resonance that a mode contributes; a pole that makes less is noise.
     """
@@ -63,13 +63,13 @@ class PoleLine:
     Attributes
     ----------
     poles : list of complex
-        [rad/s].
+        Poles [rad/s].
     places : list of tuple of int
-        Of each its order, from 0, and its place among the poles of that order.
+        Each pole's order, from 0, and its place among the poles of that order.
     stability : float
         Part of the upper half of the orders that the line covers.
     chosen : int
-        Index of the pole taken.
+        Index of the chosen pole.
     """
 
     poles: list[complex] = field(default_factory=list)
@@ -79,17 +79,17 @@ class PoleLine:
 
     @property
     def pole(self) -> complex:
-        """The pole taken [rad/s]."""
+        """The chosen pole [rad/s]."""
         return self.poles[self.chosen]
 
     @property
     def place(self) -> tuple[int, int]:
-        """Order and place of the pole taken."""
+        """Order and place of the chosen pole."""
         return self.places[self.chosen]
 
 
 def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high: float) -> list[PoleLine]:
-    """Return the lines of stable poles that are modes by a rule, each with the pole taken, ascending in frequency.
+    """Return the lines of stable poles that are modes by a rule, each with its chosen pole, ascending in frequency.
 
     Parameters
     ----------
@@ -144,8 +144,8 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
     return sorted(chosen_lines, key=lambda line: abs(line.pole))
 
 
-_TURNS = 200  # of the two least-squares problems
-_NOTHING = 1e-12  # of a weight, below which nothing was measured
+_TURNS = 200  # iterations of the two least-squares problems
+_NOTHING = 1e-12  # weight below which nothing was measured
 _FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
 
 
@@ -158,7 +158,7 @@ class IdentifiedModes:
     modes : MeasuredModes
         Shapes are the residues over all references, scaled to 1 at their largest.
     poles : ndarray of complex, shape (n_modes,)
-        [rad/s].
+        Poles [rad/s].
     stability : ndarray, shape (n_modes,)
         Part of the upper half of the orders over which each mode's pole went on.
     misfit : float
@@ -186,7 +186,7 @@ def identify_modes(
     Parameters
     ----------
     responses : MeasuredResponses
-        At evenly spaced frequencies; pairs that were not measured are left out.
+        Responses at evenly spaced frequencies; pairs that were not measured are left out.
     band : tuple of float, optional
         Band of the modes [rad/s]; by default all measured frequencies. Poles are estimated on all lines; shapes on
         those of the band, with a residual mass and a residual stiffness for the modes outside.
@@ -266,7 +266,7 @@ def _spacing(hertz: FloatArray) -> tuple[float, int]:
 
 
 def _residues(model: Any, lines: list[PoleLine], low: float, high: float) -> tuple[ComplexArray, ComplexArray]:
-    """Synthesised responses and residues, shape (n_rows, n_modes), of the poles taken."""
+    """Synthesised responses and residues, shape (n_rows, n_modes), of the chosen poles."""
     model.pole_ind = np.array([line.place for line in lines])
     fitted, residues = model.get_constants(method="lsfd", f_lower=low, f_upper=high)
     return np.asarray(fitted), np.asarray(residues)[:, : len(lines)]

@@ -45,7 +45,7 @@ def read_table(path: str | Path, *, unit: str | None = None) -> SurveyData:
     ----------
     path : path
     unit : {"m", "mm", "cm", "in"}, optional
-        Of the lengths, where the header names none; a metre otherwise.
+        Unit of the lengths, where the header names none; a metre otherwise.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def _shapes(rows: list[tuple[int, list[str]]], name: str, unit: str | None) -> S
 
 
 def _header(cells: list[str], name: str, unit: str | None) -> tuple[float, list[str], list[tuple[int, int | None]]]:
-    """Metres in the table's unit, the modes' names, and of each mode the columns of its real and imaginary part."""
+    """Metres in the table's unit, the modes' names, and the columns of each mode's real and imaginary part."""
     units: set[str] = set()
     plain = []
     for cell in cells[:5]:

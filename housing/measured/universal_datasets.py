@@ -180,7 +180,7 @@ class SurveyPoints:
     ----------
     labels : tuple of str
     positions : ndarray, shape (n_points, 3)
-        [m].
+        Positions [m].
     directions : ndarray, shape (n_points, 3, 3)
         The point's own three directions of motion, as rows.
     lines : tuple of tuple of int

@@ -19,7 +19,7 @@ from meshes.lengths import UNITS
 FloatArray = npt.NDArray[np.float64]
 
 CARTESIAN, CYLINDRICAL, SPHERICAL = 0, 1, 2
-_DEEPEST = 100  # systems within each other beyond which they run in a circle
+_DEEPEST = 100  # systems within each other, beyond which they count as a circle
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class CoordinateSystem:
     Attributes
     ----------
     axes : ndarray, shape (3, 3)
-        Its x, y, z axes as rows, unit vectors in the survey's frame.
+        The frame's x, y, z axes as rows, unit vectors in the survey's frame.
     origin : ndarray, shape (3,)
-        In the file's unit of length.
+        Origin in the file's unit of length.
     kind : {0, 1, 2}
         Cartesian; cylindrical r, θ, z; spherical r, θ (about z, from x), φ (from z); angles in degrees.
     """
@@ -147,11 +147,11 @@ def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Fr
     ----------
     path : path
     unit : {"m", "mm", "cm", "in"}, optional
-        Of the file's lengths, in place of its dataset 164. Without either a metre is assumed, with a remark.
+        Unit of the file's lengths, in place of its dataset 164. Without either a metre is assumed, with a remark.
     shape_frame : {"local", "global"}
         Frame of the shapes where points have a displacement system of their own. The format calls the vectors
-        of dataset 55 global; programs for modal tests write them in the points' own directions, as they measured.
-        Functions (58) are always in the points' own.
+        of dataset 55 global; programs for modal tests write them in the points' own directions, as measured.
+        Functions (58) are always in the points' own directions.
 
     Raises
     ------

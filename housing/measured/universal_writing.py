@@ -226,19 +226,19 @@ class UniversalFunction:
     abscissa : ndarray, shape (n,)
         Time [s] or frequency [Hz].
     values : ndarray, shape (n,)
-        Real or complex.
+        Values, real or complex.
     unit : str
-        Of the values: m, m/s, m/s2, N, Pa or another, which the file then calls general.
+        Unit of the values: m, m/s, m/s2, N, Pa or another, which the file then calls general.
     label : str
         Name of the quantity.
     titles : tuple of str
-        At most five lines of text.
+        Lines of text, at most five.
     response : tuple of (str, int, int)
         Name, number of the point, 0 for none, and direction there: 1, 2, 3 for x, y, z, with a sign; 0 for another.
     reference : tuple of (str, int, int)
-        Of the excitation, in the same way.
+        The excitation's name, point and direction.
     reference_unit, reference_label : str
-        Of the excitation's quantity; empty for none.
+        Unit and name of the excitation's quantity; empty for none.
     """
 
     kind: Literal["time response", "frequency response function", "spectrum"]
@@ -266,7 +266,7 @@ def write_functions(
     path : path
     functions : iterable of UniversalFunction
     points : sequence of (float, float, float)
-        [m].
+        Places [m].
     """
     import pyuff
 

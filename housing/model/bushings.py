@@ -27,9 +27,9 @@ class Axial:
     Attributes
     ----------
     axial, shear : float
-        Along the axis and across it, either way [N/m or N s/m].
+        Amounts along the axis and across it [N/m or N s/m].
     tilting, torsional : float
-        About a line across the axis and about the axis [N m/rad or N m s/rad].
+        Amounts about a line across the axis and about the axis [N m/rad or N m s/rad].
     """
 
     axial: float = 0.0
@@ -45,11 +45,11 @@ class Bushing:
     Attributes
     ----------
     stiffness : tuple of six floats
-        Along the own x, y, z [N/m] and about them [N m/rad].
+        Springs along its axes x, y, z [N/m] and about them [N m/rad].
     damping : tuple of six floats
-        Along the own x, y, z [N s/m] and about them [N m s/rad].
+        Dashpots along its axes x, y, z [N s/m] and about them [N m s/rad].
     axes : tuple of three unit vectors
-        The own x, y, z in the global frame, right-handed.
+        Axes x, y, z of the bushing in the global frame, right-handed.
 
     Raises
     ------
@@ -75,7 +75,7 @@ class Bushing:
 
     @classmethod
     def along(cls, axis: Point, stiffness: Axial, damping: Axial | None = None) -> "Bushing":
-        """Springs and dashpots that are symmetric about an axis, given by a vector of any length, as their z.
+        """Make springs and dashpots that are symmetric about an axis z, given by a vector of any length.
 
         Raises
         ------
@@ -101,7 +101,7 @@ def axes_along(axis: Point, across: Point | None = None) -> Axes:
     Raises
     ------
     HousingError
-        Where a direction has no length, or both are one.
+        Where a direction has no length, or both are the same.
     """
     along = _unit(np.array(axis, dtype=np.float64), f"axis {axis}")
     if across is None:
@@ -124,7 +124,7 @@ class Mount:
     patch : Patch
     bushing : Bushing
     center : tuple of float, optional
-        Where its axes meet, so that translations do not tilt it [m]; the middle of the patch where not given.
+        Point where its axes meet, so that translations do not tilt it [m]; the middle of the patch where not given.
     """
 
     name: str
@@ -152,12 +152,12 @@ class Joint:
     first, second : Patch
     bushing : Bushing
     center : tuple of float, optional
-        Where its axes meet [m]; halfway between the middles of the patches where not given.
+        Point where its axes meet [m]; halfway between the middles of the patches where not given.
 
     Raises
     ------
     HousingError
-        Where both patches are one.
+        Where both patches are the same.
     """
 
     name: str

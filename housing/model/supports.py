@@ -30,13 +30,13 @@ class Support:
     surface : str, optional
         Name of a surface of the mesh.
     box : tuple of two points, optional
-        Its low and high corners [m]; the facets inside belong to the patch.
+        Low and high corners of a box [m]; the facets inside belong to the patch.
     fixed : tuple of bool
         Whether x, y and z are held at zero.
     stiffness : tuple of float
         Springs to the ground along x, y, z [N/m], in all, spread evenly over the patch.
     damping : tuple of float
-        Dashpots to the ground along x, y, z [N s/m], spread likewise.
+        Dashpots to the ground along x, y, z [N s/m], in all, spread evenly over the patch.
     plane : tuple of two points, optional
         A point of a plane [m] and its normal; the facets on it belong to the patch.
     """
@@ -100,9 +100,9 @@ class SupportHold:
     fixes : int
         Rigid motions that its fixed components alone would hold, 0 to 6.
     stiffness : ndarray, shape (6,)
-        Of its springs against translations x, y, z [N/m] and rotations about the centre of gravity [N m/rad].
+        Stiffness of its springs against translations x, y, z [N/m] and rotations about the centre of gravity [N m/rad].
     share : ndarray, shape (6,)
-        Of that of all supports' springs; 0 where there is none.
+        Part of the stiffness of all supports' springs; 0 where there is none.
     """
 
     name: str
@@ -140,7 +140,7 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
     ----------
     mesh : Mesh
     supports : sequence of Support or Mount
-        All that connect to the ground.
+        All fixtures that connect to the ground.
     center : ndarray, shape (3,)
         Centre of gravity [m].
     """

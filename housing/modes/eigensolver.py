@@ -35,12 +35,12 @@ from housing.fem.linear_algebra import BlockAlgebra, Operator
 FloatArray = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-9
-"""Of a Ritz pair's residual, as a part of ν."""
+"""Tolerance of a Ritz pair's residual, as a part of ν."""
 
 _BLOCK = 8
 _DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
-_NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
-_ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
+_NEARLY_WITHIN = 1e-4  # remainder of a column, as a part of it, below which its rounding shows
+_ORTHONORMAL = 1e-14  # largest error of the products of a new block's columns from those of orthonormal ones
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
@@ -70,11 +70,12 @@ def block_lanczos(
     above : bool
         Whether the shift lies above the modes wanted, which are then all modes below it, rather than below them.
     seed : int
-        Of the random starting block; each also doubles its width.
+        Seed of the random starting block; each also doubles its width.
     threads : int
         Number of threads that orthogonalise; the modes are the same to the last bit for any number.
     tolerance : float
-        Of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of that.
+        Tolerance of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of
+        that.
 
     Returns
     -------
@@ -229,9 +230,9 @@ def arpack_modes(
     solve, mass, shift, count, above
         As of :func:`block_lanczos`.
     seed : int
-        Of the start vector; each also doubles the basis.
+        Seed of the start vector; each also doubles the basis.
     tolerance : float
-        Of a Ritz pair's residual as a part of ν; 0 is rounding.
+        Tolerance of a Ritz pair's residual as a part of ν; 0 is rounding.
     """
     n = mass.shape[0]
     start = solve(mass @ np.random.default_rng(seed).standard_normal(n))

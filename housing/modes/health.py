@@ -24,7 +24,7 @@ from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-MASS_BOUND = 1e-6  # of mass, and of the centre over the diagonal: curved elements are integrated closely, not exactly
+MASS_BOUND = 1e-6  # error of mass, and of the centre over the diagonal: curved elements are not integrated exactly
 REGULAR_BOUND = 1e-9
 STRAIN_BOUND = 1e-10  # rounding of K R is about 1e-14
 SYMMETRY_BOUND = 1e-12
@@ -112,11 +112,11 @@ def health_report(
     unsupported, supported : Matrices
         The bare solid, and the same with all that is fastened to it.
     supports : sequence of Support or Mount
-        Those of its fixtures that connect to the ground.
+        The fixtures that connect to the ground.
     modes : ModeSet
-        Of ``supported``, with or without residual modes.
+        Modes of ``supported``, with or without residual modes.
     mass : float
-        By geometry: Σ density x volume, with lumped masses [kg].
+        Mass by geometry: Σ density x volume, with lumped masses [kg].
     center : ndarray, shape (3,), optional
         Centre of gravity by geometry, where it is known [m].
     """

@@ -42,11 +42,11 @@ class ModeSet:
     shapes : ndarray, shape (n_modes, n_nodes, 3)
         Displacement at each node, normalised to φᵀ M φ = 1 [1/√kg].
     certificate : Certificate
-        Of the modes as they were found; the residual modes then reduce their residuals further.
+        Certificate of the modes as computed; the residual modes then reduce their residuals further.
     seconds : dict of str to float
         Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
     backend : str
-        Which factorisation was used.
+        Name of the factorisation.
     shift : float
         The eigenvalue about which the modes were searched [rad²/s²].
     threads : int
@@ -105,13 +105,14 @@ def solve_modes(
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with the supports and whatever else is attached to them, see :func:`housing.attach_fixtures`.
+        Matrices of n_nodes nodes, with the supports and whatever else is attached to them, see
+        :func:`housing.attach_fixtures`.
     frequency_limit : float
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
         Number of the lowest modes; a multiple mode at the end is completed.
     draft : bool
-        Of ``count``: skip the inertia count behind the last mode, in two thirds of the time. The last modes are less
+        With ``count``, skip the inertia count behind the last mode, in two thirds of the time. The last modes are less
         accurate (their λ to some 1e-8), and the certificate is not complete.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
         Motions whose static compliance the mode set is to hold exactly, by residual modes.
@@ -119,7 +120,7 @@ def solve_modes(
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
         :func:`housing.modes.residual_modes.residual_attachment_modes`.
     solver : {"lanczos", "eigsh"}
-        Own block Lanczos, or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
+        Block Lanczos or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
     backend, threads
         See :class:`housing.fem.factorization.Factorizer`.
     progress : callable
@@ -195,7 +196,7 @@ def solve_modes(
 def _oriented(vectors: FloatArray) -> FloatArray:
     """Orient mode shapes so that the largest entry is positive, and equal input draws equal pictures.
 
-    Of entries that symmetry makes equally large, the first counts, or rounding would choose.
+    Among entries that symmetry makes equally large, the first counts, or rounding would choose.
     """
     size = np.abs(vectors)
     largest = np.argmax(size >= (1.0 - _ALIKE) * size.max(axis=0), axis=0)
@@ -224,7 +225,7 @@ def add_residual_modes(
     modes : ModeSet
         Complete up to its limit; its own residual modes are replaced.
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-        Such as those of :func:`housing.model.seats.seat_matrix`; the static compliance has their order.
+        Ports such as those of :func:`housing.model.seats.seat_matrix`; the static compliance has their order.
     factor, shift : Factorization and float, optional
         A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
         neither.
@@ -257,7 +258,7 @@ def add_residual_modes(
 
 
 class ModeSetExtension:
-    """Extension of a mode set by further residual modes; what it has stays in its span.
+    """Extension of a mode set by further residual modes; its span keeps all that it has.
 
     One factor of K - σM, σ at the limit of the modes, serves all of them.
 
@@ -285,10 +286,10 @@ class ModeSetExtension:
         Parameters
         ----------
         modes : ModeSet
-            The modes of this extension, with whatever residual modes.
+            The modes of this extension, with any residual modes.
         ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
         orders : int
-            As `port_orders` of :func:`solve_modes`.
+            Number of orders, as `port_orders` of :func:`solve_modes`.
 
         Raises
         ------

@@ -83,7 +83,7 @@ Solve = Callable[[FloatArray], FloatArray]
 
 STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
-_HARMONIC_SETTLED = 1e-7  # the same of what a harmonic response lacks, part of the whole response
+_HARMONIC_SETTLED = 1e-7  # part of a whole harmonic response by which a last sweep may still move its missing part
 _SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
 _ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
@@ -100,7 +100,7 @@ class StaticProof:
     compliance : ndarray, shape (r, r)
         Elastic compliance: motion of one port by a unit load on another [m/N, rad/N, rad/(N m)].
     missing : ndarray, shape (r, r)
-        Its residual part, which the kept modes alone do not hold.
+        Residual part of the compliance, which the kept modes alone do not hold.
     error : float
         Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and residual modes and C
         the exact compliance of Eq. (4).
@@ -191,7 +191,7 @@ def residual_attachment_modes(
     floor : float
         λ up to which a mode counts as rigid [rad²/s²].
     free : ndarray of int, shape (n,)
-        Where these degrees of freedom stand among the mesh's 3 n_nodes.
+        Places of these degrees of freedom among the mesh's 3 n_nodes.
     n_nodes : int
         Nodes of the mesh.
     orders : int
@@ -282,18 +282,18 @@ def extended_residual_modes(
     Parameters
     ----------
     stiffness, mass : matrix or operator, shape (n, n)
-        On the free degrees of freedom.
+        Matrices on the free degrees of freedom.
     residual_modes : ResidualModes
     further : ndarray, shape (n, m)
     vectors : ndarray, shape (n, p)
         Kept modes, orthonormal in M.
     free : ndarray of int, shape (n,)
-        Where the free degrees of freedom stand among all.
+        Places of the free degrees of freedom among all.
 
     Returns
     -------
     ResidualModes
-        With the proof of the given ones, whose static compliance at their ports they keep.
+        Extended modes, with the proof of the given ones, whose static compliance at their ports they keep.
     """
     shapes, frequencies = residual_modes.shapes, residual_modes.frequencies
     span = _extended(stiffness, shapes.reshape(len(shapes), -1).T[free] / frequencies, further)
@@ -330,7 +330,7 @@ def missing_harmonic_responses(
     shapes : ndarray, shape (n, k)
         Residual modes.
     apart : ndarray, shape (k,)
-        Their ω_k² - ω² [rad²/s²].
+        ω_k² - ω² of the modes [rad²/s²].
 
     Returns
     -------
@@ -510,7 +510,7 @@ def leading_residual_modes(
     Parameters
     ----------
     residual_modes : ResidualModes
-        k of them.
+        A set of k residual modes.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes)
         Motions of the ports that they belong to.
     shift : float
@@ -521,9 +521,9 @@ def leading_residual_modes(
     Returns
     -------
     residual_modes : ResidualModes
-        l <= k of them, with the proof of the whole set, whose static compliance they share.
+        A set of l <= k residual modes, with the proof of the whole set, whose static compliance they share.
     mixture : ndarray, shape (k, l)
-        Their coefficients in terms of the given ones.
+        Coefficients of the new modes in terms of the given ones.
 
     Raises
     ------

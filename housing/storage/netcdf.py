@@ -94,7 +94,7 @@ def _bytes(document: Mapping[str, Any]) -> bytes:
 
 
 Variables = dict[str, tuple[Any, Any, dict[str, Any]]]
-"""By name: its dimensions (one as plain text), its values, and its attributes."""
+"""For each name, its dimensions (one as plain text), its values, and its attributes."""
 
 
 def write_netcdf(
@@ -110,11 +110,11 @@ def write_netcdf(
     Parameters
     ----------
     path
-        Of a file that is not there yet.
+        Path of a new file.
     variables, coordinates
         Numbers, truth values or text. An array named after a dimension is a coordinate in either.
     attributes
-        Of the whole file.
+        Attributes of the whole file.
     fill
         Declare NaN as the missing number, as xarray does.
 
@@ -165,7 +165,7 @@ def write_netcdf(
         for name, scale in scales.items():
             scale.attrs["_Netcdf4Dimid"] = numbers[name]
         for name, dataset in datasets.items():
-            # The one dimension of a coordinate is told by its name; to look a number up, readers look at every scale.
+            # A coordinate's name gives its one dimension; to look a number up, readers look at every scale.
             if not dimensions[name] or name in along_itself:
                 continue
             dataset.attrs["_Netcdf4Coordinates"] = np.array(
@@ -181,7 +181,7 @@ _NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable."
 
 
 def _open(shape: tuple[int, ...]) -> dict[str, Any]:
-    """Arguments of an array, of whose lengths those of 0 may grow: NetCDF knows no others of that length."""
+    """Arguments of an array; its lengths of 0 may grow, as NetCDF has no other lengths of 0."""
     return {"maxshape": tuple(size or None for size in shape)} if 0 in shape else {}
 
 
@@ -197,7 +197,7 @@ def read_netcdf(path: Path, names: Collection[str] | None = None) -> tuple[dict[
     ----------
     path : Path
     names : collection of str, optional
-        Of the variables to read, where they are there; every one by default.
+        Variables to read, where they are there; every one by default.
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 Many parameters fit few frequencies, so that a small error proves little. A mode that took no part in the fit tests it;
 and where random frequencies are fitted as well as the measured ones, the fit alone proves nothing about the housing.
-Each of these repeats the whole procedure, from the same start with as many solves; only the mesh is a coarser one.
+Each test repeats the whole procedure, from the same start with as many solves; only the mesh is coarser.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,7 +29,7 @@ class LeftOutMode:
     Attributes
     ----------
     mode : int
-        Its index among the measured ones, from 0.
+        Index among the measured modes, from 0.
     measured, predicted : float
         Circular frequencies [rad/s].
     deviation : float
@@ -39,7 +39,7 @@ class LeftOutMode:
     start : float
         Frequency of the start design [rad/s].
     rms_percent : float
-        Of the modes that were fitted.
+        Root mean square error of the modes that were fitted.
     """
 
     mode: int
@@ -68,7 +68,7 @@ class NullFit:
     Attributes
     ----------
     frequencies : ndarray, shape (n,)
-        Circular [rad/s], ascending.
+        Circular frequencies [rad/s], ascending.
     rms_percent, max_percent : float
         Errors of the dominant modes.
     gap : float
@@ -98,7 +98,7 @@ class Procedure(Generic[AnyDesign]):
         See :data:`housing.updating.Solve`.
     parameters : sequence of Parameter
     start : Design
-        Solved.
+        Start design, solved.
     effort : Effort
     count : int
         Number of starts, the given one among them.
@@ -184,7 +184,7 @@ def null_fits(
     count : int
         Number of random sets.
     seed : int
-        Of their frequencies.
+        Seed of their frequencies.
     each, progress
         See :func:`leave_one_out`.
 

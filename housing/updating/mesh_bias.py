@@ -1,7 +1,7 @@
 """Mesh bias: discretisation error of a coarse mesh's frequencies, learned at one design and corrected at others.
 
 A coarse mesh is too stiff, for some modes more than for others, and nearly alike at all designs. At a design solved on
-both meshes b_k = ln(ω_fine / ω_coarse) of each mode is known. Another design's modes are combinations of that one's, as
+both meshes b_k = ln(ω_fine / ω_coarse) of each mode is known. Another design's modes are combinations of these, as
 far as the motions of seats and skin show it, φ ≈ T φ_known; with b̄ the mean of all b their shifts are the matrix
 
     B = b̄ I + T diag(b - b̄) Tᵀ,
@@ -38,7 +38,7 @@ class MeshBias:
     Attributes
     ----------
     reading : ndarray, shape (n_motions, n_known)
-        From motions of seats and skin to coefficients of the known modes.
+        Matrix from motions of seats and skin to coefficients of the known modes.
     shifts : ndarray, shape (n_known,)
         ln(ω_fine / ω_coarse).
     """
@@ -82,7 +82,7 @@ class Debiased(Generic[AnyDesign]):
     ----------
     design : Design
     bias : MeshBias, or None
-        None where there is one mesh only, and the design is taken as it is.
+        Bias; None where there is one mesh only, and the design stays as it is.
     """
 
     design: AnyDesign

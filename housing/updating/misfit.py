@@ -34,13 +34,13 @@ _LEAST_MAC = 0.5  # below it two shapes are no pair
 _COUNT_SCALE = 0.01  # ln ω on the wrong side of the limit of a known number of modes that costs one σ
 _COUNT_CLEAR = 0.005  # ln ω by which a mode has to be clear of that limit, so that the mesh does not decide
 _TOO_FEW_MODES = 1e6  # J for each mode that a design has too few of to pair
-_WITHIN = 2.0  # largest error in σ of a frequency that is met
-_UNPAIRED_COST = 25.0  # J for each measured mode without partner, beside its shape's: that of an error of five σ
+_WITHIN = 2.0  # largest error of a frequency that counts as met, in σ
+_UNPAIRED_COST = 25.0  # J for each measured mode without partner, beside that of its shape: an error of five σ
 
 
 @dataclass(frozen=True)
 class ModeCount:
-    """A number of modes that is known: from ``least`` to ``most`` below ``limit`` [rad/s]."""
+    """A known number of modes: from ``least`` to ``most`` below ``limit`` [rad/s]."""
 
     limit: float
     least: int
@@ -125,7 +125,7 @@ class Misfit:
     count : int
         Modes below the limit of :class:`ModeCount`; 0 where none is given.
     mac : ndarray, shape (n,), or None
-        Of each pair, where shapes were measured.
+        MAC of each pair, where shapes were measured.
     choice_shortfall : ChoiceShortfall, or None
         Shortfalls of the choice of modes from a clear one, where shapes do not decide.
     """
@@ -275,7 +275,7 @@ def residuals(
     ----------
     target : Target
     misfit : Misfit
-        Of the design: pairs, errors of the frequencies and shortfalls of the mode choice.
+        Misfit of the design: pairs, errors of the frequencies and shortfalls of the mode choice.
     near : Neighbour
         The design's modes, and their slopes.
     penalties : bool

@@ -36,7 +36,7 @@ _CLEAR = 0.01  # ln ω by which a strong mode has to be beyond the end of the ba
 _CLEAR_SCALE = 0.005
 _TURNS = 8
 _SETTLED = 1e-9
-_PLACES = 2  # up and down from the number of modes, of the thresholds to begin with
+_PLACES = 2  # places of the initial thresholds above and below the number of modes
 _FAINT = 1e-300  # strength of modes that have none
 
 
@@ -52,7 +52,7 @@ class ChoiceShortfall:
     sign : ndarray, shape (n,)
         Sign of ln strength (or ln ω) in the shortfall: -1 where more is wanted, 1 where less.
     values : ndarray, shape (n,)
-        Positive.
+        Shortfalls, positive.
     scale : ndarray, shape (n,)
         Unit of each in ln strength or ln ω.
     """
@@ -71,13 +71,13 @@ class ChoiceShortfall:
 
 @dataclass(frozen=True)
 class _Strengths:
-    """Logarithms of the strengths by the measures in use, and the gaps asked of them."""
+    """Logarithms of the strengths by the measures in use, and the gaps required of them."""
 
     rows: IntArray
     logarithms: FloatArray  # (n_measures, n_modes)
     asked: FloatArray  # (n_measures,)
-    scale: float  # of ln strength; either side of a threshold has half of a gap
-    end_scale: float  # of ln ω
+    scale: float  # unit: ln strength; half of a gap lies on either side of a threshold
+    end_scale: float  # unit: ln ω
     beyond: FloatArray  # ln ω beyond the end of the band, negative inside; (n_modes,)
     upward: FloatArray  # 1 where that is the upper end, else -1; (n_modes,)
 
@@ -97,7 +97,7 @@ class _Strengths:
         return np.asarray(np.maximum(lacks, 0.0) / self.scale)
 
     def split(self, chosen: BoolArray, thresholds: FloatArray) -> _Shortfalls:
-        """Shortfalls of the modes chosen, of those left as weak, and of those left as beyond the band.
+        """Shortfalls of the modes chosen, of the modes left as weak, and of the modes left as beyond the band.
 
         Parameters
         ----------
@@ -187,11 +187,11 @@ def choose_modes(
     Parameters
     ----------
     logarithms : ndarray, shape (n,)
-        ln ω of those measured, ascending.
+        ln ω of the measured modes, ascending.
     noise : ndarray, shape (n,)
         Relative standard deviation of each.
     strengths : Dominance
-        Of all modes, of which ``n`` or more are in the band.
+        Strengths of all modes, of which ``n`` or more are in the band.
     band, gap, margin, firmness
         See :func:`choice_shortfall`.
 
@@ -215,7 +215,7 @@ def choose_modes(
     for _ in range(_TURNS):
         before, selection = selection, _best_choices(table, inside, errors, thresholds)
         if np.array_equal(selection, before):
-            break  # the same thresholds and costs again
+            break  # thresholds and costs repeat
         thresholds, (below, above, edge) = _settled(table, selection)
         numbers = np.nonzero(selection[:, inside])[1].reshape(-1, n)
         costs = (
@@ -231,7 +231,7 @@ def choose_modes(
 def _settled(table: _Strengths, selection: BoolArray) -> tuple[FloatArray, _Shortfalls]:
     """Find the thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures).
 
-    Beside them the shortfalls there, as of :meth:`_Strengths.split`.
+    Return with them the shortfalls at these thresholds, as of :meth:`_Strengths.split`.
     """
     inside = table.beyond <= 0.0
     weakest = np.where(selection[..., None, :], table.logarithms, np.inf).min(axis=-1)
@@ -259,7 +259,7 @@ def _best_choices(table: _Strengths, inside: IntArray, errors: FloatArray, thres
     inside : ndarray of int, shape (n_inside,)
         The modes in the band.
     errors : ndarray, shape (n, n_inside)
-        Cost of each as the partner of each measured mode.
+        Cost of each model mode as the partner of each measured mode.
     thresholds : ndarray, shape (n_rows, n_measures)
 
     Returns

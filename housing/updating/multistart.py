@@ -24,16 +24,16 @@ from housing.updating.trust_region import AnyDesign, Effort, SearchResult, Solve
 
 FloatArray = npt.NDArray[np.float64]
 
-_DRAWN = 8  # from the prior for each start that is solved
-_DESCENT = 25  # steps of each on the surrogate
+_DRAWN = 8  # draws from the prior for each start that is solved
+_DESCENT = 25  # steps of each draw on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
 _NEVER_PARTED = (4, 2)  # least number of searches that continue into each round on the fine mesh
-FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the rounds, the first of which is on the coarse mesh
-TRUST = (0.25, 0.15, 0.1)  # likewise
-_FINE_SOLVES = (3, 5)  # of each runner there
-_STARTS = 16  # on the surrogate
-_POLISHED = 6  # final solves where the target is not met
-_REFINED = 0.05  # trust region of these
+FIRMNESS = (0.4, 1.0, 3.0)  # firmness of the penalties in each round, the first on the coarse mesh
+TRUST = (0.25, 0.15, 0.1)  # trust radius in each round
+_FINE_SOLVES = (3, 5)  # full solutions of each runner in the rounds on the fine mesh
+_STARTS = 16  # starts on the surrogate
+_POLISHED = 6  # final full solutions where the target is not met
+_REFINED = 0.05  # trust region of the final solutions
 
 
 class Each(Protocol):
@@ -59,7 +59,7 @@ class Meshes(Generic[AnyDesign]):
     fine : callable
         Solver on the fine mesh, which is made anew at each design; None where there is one mesh only.
     light : callable
-        Reduces a design of that mesh for the next round, so that it is not solved again.
+        Reduces a design of the fine mesh for the next round, so that it is not solved again.
     """
 
     coarse: Solve[AnyDesign]
@@ -80,9 +80,9 @@ class Runner(Generic[AnyDesign]):
     number : int
     coordinates : ndarray, shape (n_parameters,)
     judged : ModalState, or None
-        Modes of the fine mesh here; None where it was not solved yet.
+        Modes of the fine mesh at these coordinates; None where it was not solved yet.
     design : Design, or None
-        The fine mesh's design here, reduced, where the last round was run on it.
+        The fine mesh's design at these coordinates, reduced, where the last round was run on it.
     """
 
     number: int
@@ -98,7 +98,7 @@ class MultistartResult(Generic[AnyDesign]):
     Attributes
     ----------
     coordinates : ndarray, shape (n_parameters,)
-        Of the best design on the fine mesh.
+        Coordinates of the best design on the fine mesh.
     misfit : Misfit
         Misfit of that design.
     is_met : bool
@@ -108,7 +108,7 @@ class MultistartResult(Generic[AnyDesign]):
     seen : tuple of ndarray
         Coordinates of every design solved on the fine mesh.
     design : Design, or None
-        The best on the fine mesh, where it was found there.
+        The best design on the fine mesh, where it was found there.
     """
 
     coordinates: FloatArray
@@ -167,11 +167,11 @@ def multistart_search(
     target : Target
     parameters : sequence of Parameter
     start : Design
-        Solved on the coarse mesh.
+        Start design, solved on the coarse mesh.
     judged : ModalState, or None
         Modes of the start on the fine mesh; None where there is one mesh only.
     effort : Effort
-        Its solves are those of all searches in the round on the coarse mesh.
+        Effort; its solves are those of all searches in the round on the coarse mesh.
     count : int
         Number of starts, the given one among them.
     each : callable
@@ -226,7 +226,8 @@ def polish(
     Parameters
     ----------
     solve : callable
-        On the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the result.
+        Solves a design on the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the
+        result.
     best : MultistartResult
         Result of :func:`multistart_search`.
     target, parameters, effort, progress

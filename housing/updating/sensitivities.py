@@ -33,8 +33,8 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 _WORKING_SET = 2**19  # numbers in the modes' gradients of one chunk: 4 MB, that a core keeps at hand
-_STILL = 1e-10  # part of the largest motion within an element below which another is carried along as it is
-_EVEN = 1e-11  # likewise of a divergence's changes within elements
+_STILL = 1e-10  # part of the largest velocity: nodes of an element that differ by less move as one
+_EVEN = 1e-11  # part of the largest divergence below which its changes within elements are none
 
 _PAIRS = ((0, 1), (1, 2), (2, 0))  # components of the shears, after the three stretches
 
@@ -74,11 +74,11 @@ class Part:
     ----------
     kind : ElementKind
     elements : ndarray of int, shape (n,)
-        Their numbers over all blocks.
+        Numbers of the elements over all blocks.
     nodes : ndarray of int, shape (n, n_nodes)
     affine : bool
     spans : tuple of (int, slice)
-        Numbers of the parameters that concern some of the elements, and the first to the last of those.
+        Each parameter that concerns some of the elements, and the range of these elements.
     """
 
     kind: ElementKind
@@ -255,7 +255,7 @@ def _add_even_mass(
     points, weights = quadrature(part.kind.name, 2 * part.kind.order)
     values = shape_functions(part.kind.name, points)[0]
     n, n_modes = len(part.elements), mass.shape[1]
-    # Of density 1: Nᵀ N over the reference element as Rᵀ R, and the size of the element.
+    # For density 1: Nᵀ N over the reference element as Rᵀ R, and the size of the element.
     unit = values.T @ (weights[:, None] * values) / weights.sum()
     turned = (np.linalg.cholesky(unit).T @ fields).reshape(n, -1, n_modes)
     modal = (turned.transpose(0, 2, 1) @ turned).reshape(n, -1)
@@ -341,7 +341,7 @@ class ModalSensitivities:
         """Return the derivatives of the shapes, c_ab of dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
 
         c_ab = φ_aᵀ (dK - λ_b dM) φ_b / (λ_b - λ_a) and c_bb = -½ φ_bᵀ dM φ_b (Fox and Kapoor 1968). Contributions of
-        modes above those at hand are missing. For multiple modes that separate it has no meaning.
+        modes above those at hand are missing. The result has no meaning for multiple modes that separate.
         """
         eigenvalues = frequencies**2
         apart = eigenvalues[None, :] - eigenvalues[:, None]
@@ -364,7 +364,7 @@ def modal_sensitivities(
     constants : ndarray, shape (3, n_elements)
         λ, μ [Pa] and ρ [kg/m³].
     shapes : ndarray, shape (n_modes, n_nodes, 3)
-        Mass-normalised.
+        Mass-normalised shapes [1/√kg].
     rates : sequence of ModelSensitivity
 
     Raises

@@ -74,7 +74,7 @@ class StaticSensitivity:
         rates : sequence of ModelSensitivity
             Derivatives of the housing's model by each parameter.
         ports : sequence of PortRates
-            Those of the ports.
+            Derivatives of the ports.
         """
         weight = np.broadcast_to(self.gravity, self.displacement.shape)
         fields = np.concatenate([np.stack([self.displacement, weight]), self.adjoint])

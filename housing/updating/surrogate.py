@@ -35,7 +35,7 @@ class ModalState:
     Attributes
     ----------
     frequencies : ndarray, shape (n_modes,)
-        [rad/s].
+        Circular frequencies [rad/s].
     seats : ndarray, shape (n_modes, n_seats, 2)
         x and y translation of each bearing seat in the mass-normalised shapes [1/√kg].
     skin : ndarray, shape (n_modes, n_points)
@@ -118,7 +118,7 @@ class Neighbour:
         surrogate, mixture = self.surrogate, self.mixture
         logarithms = 2.0 * np.log(self.state.frequencies)
         apart = logarithms[modes] - logarithms[:, None]
-        # Modes of one frequency have no shapes of their own, and those of each do not turn into themselves.
+        # Modes of one frequency have no distinct shapes, and do not turn into each other; nor does a mode into itself.
         inverse = np.divide(1.0, apart, out=np.zeros_like(apart), where=np.abs(apart) > _TOGETHER)
         turned = mixture @ ((mixture.T @ (surrogate.rates @ mixture[:, modes])) * inverse)
         whole = turned - 0.5 * _weighted(self.step, surrogate.mass) @ turned
@@ -135,7 +135,7 @@ class Surrogate:
     center : ndarray, shape (n_parameters,)
         The design's coordinates.
     state : ModalState
-        At the design, elastic modes only.
+        State at the design, elastic modes only.
     rates : ndarray, shape (n_parameters, n_modes, n_modes)
         Λ^-½ [...] Λ^-½ of each coordinate.
     mass : ndarray, shape (n_parameters, n_modes, n_modes)

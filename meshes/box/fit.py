@@ -145,7 +145,7 @@ def _on_rim(box: Box, cover: Cover, bolt: Bolt) -> bool:
     return within and math.hypot(*beside) >= radius - SLACK
 
 
-_LEAST_CORNER = 0.25  # of the thinner wall must be left where an edge is rounded
+_LEAST_CORNER = 0.25  # part of the thinner wall that must be left where an edge is rounded
 
 
 def misfits(box: Box) -> Iterator[BoxMisfit]:

@@ -86,7 +86,7 @@ def plate_block(box: Box, cover: Cover) -> Block:
 
 
 def parting_plane(box: Box, face: Face) -> float:
-    """Where cover and body meet, along the normal of the cover's face [m]."""
+    """Place of the plane between cover and body along the normal of the cover's face [m]."""
     normal, way = FACES[face]
     outer = outer_block(box)
     return (outer.high if way > 0 else outer.low)[normal] - way * box.wall.of(face)

@@ -72,7 +72,7 @@ class Bore:
     center : tuple of float
         A point of its axis [m]; its z selects the wall.
     diameter : float
-        [m].
+        Diameter [m].
     boss : Boss, optional
         Material around the bore on the outside of the wall.
     """
@@ -115,7 +115,7 @@ class Rib:
         [m]; the height is taken from the wall.
     side : {"outside", "inside"}
     start, end : float, optional
-        Its ends along its axis [m]; by default it runs the whole length of the wall.
+        Ends of the rib along its axis [m]; by default it runs the whole length of the wall.
     """
 
     face: Face
@@ -173,7 +173,7 @@ class Cover:
     face : str
         The wall; its thickness is the plate's.
     flange : Flange, optional
-        By default the rim is as wide as the walls are thick.
+        Rim; by default as wide as the walls are thick.
     bolts : CoverBolts, optional
         Bolts that hold the plate on the body; needed unless bonded.
     bonded : bool
@@ -206,11 +206,11 @@ class Bolt:
     name : str
         ``bolt-1`` and so on. The mesh's surfaces of its patches are ``bolt-1-cover`` and ``bolt-1-body``.
     position : tuple of float
-        Its middle in the plane between cover and body [m].
+        Middle of the bolt in the plane between cover and body [m].
     axis : tuple of float
         Unit vector from the body to the cover.
     diameter, grip, patch_diameter : float
-        As of :class:`CoverBolts`, defaults resolved [m].
+        Lengths of :class:`CoverBolts`, defaults resolved [m].
     """
 
     name: str

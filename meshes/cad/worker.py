@@ -38,7 +38,7 @@ class Request:
     path : str
     kind : {"step", "iges", "brep"}
     mesh_size : float
-        [m].
+        Mesh size [m].
     order : {1, 2}
     stated, given : float or None
         Units of length [m], as of :func:`meshes.cad.shape.choose_unit`.

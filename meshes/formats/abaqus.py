@@ -16,7 +16,7 @@ from meshes.errors import GeometryError
 from meshes.formats.content import MeshContent, corner_rows, find_faces
 from meshes.mesh import Mesh
 
-_DEPTH = 20  # of files that include files
+_DEPTH = 20  # levels of files that include files
 _COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
 
 
@@ -27,7 +27,7 @@ class Card:
     Attributes
     ----------
     keyword : str
-        Such as ``ELSET``.
+        Keyword, such as ``ELSET``.
     parameters : dict of str to str
         Values without quotes; empty where a parameter has none.
     lines : list of list of str
@@ -162,7 +162,7 @@ def _take(deck: _Deck, card: Card) -> None:
         _add(deck.node_sets, card.parameters.get("NSET"), _members(card, deck.node_sets))
     elif card.keyword == "ELSET":
         _add(deck.element_sets, card.parameters.get("ELSET"), _members(card, deck.element_sets))
-        if "INTERNAL" in card.parameters:  # of a surface, not meant to be seen
+        if "INTERNAL" in card.parameters:  # a surface's set, not meant to be seen
             deck.internal.add(card.parameters.get("ELSET", ""))
     elif card.keyword == "SURFACE":
         name = card.parameters.get("NAME")

@@ -18,7 +18,7 @@ class MeshContent:
     Attributes
     ----------
     points : ndarray, shape (n_points, 3)
-        In the file's unit of length; nodes that no element uses may be among them.
+        Points in the file's unit of length; nodes that no element uses may be among them.
     solids : tuple of ElementBlock
         Elements may be numbered left-handed.
     volumes : mapping of str to ndarray of int
@@ -90,7 +90,7 @@ def find_faces(mesh: Mesh, corners: IntArray) -> IntArray:
     ----------
     mesh : Mesh
     corners : ndarray of int, shape (n, 4)
-        In any order of turn; the fourth is -1 in triangles. A face shared by two elements is that of the first.
+        Corners in any order of turn; the fourth is -1 in triangles. A face shared by two elements is that of the first.
     """
     table = mesh.faces
     numbers = group_rows(np.sort(np.concatenate([table.corners, corners]), axis=1))

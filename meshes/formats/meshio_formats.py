@@ -84,7 +84,7 @@ def content_from_meshio(content: Any, path: Path) -> MeshContent:
 def _groups(content: Any, number: int) -> list[tuple[str, IntArray]]:
     """Named groups of one block, as (name, members).
 
-    Of gmsh's format 4 meshio gives the groups twice, as sets and as tags, and the tags name one group only of an
+    For gmsh's format 4, meshio gives the groups twice, as sets and as tags, and the tags name one group only of an
     element that is in several: the union of both is the file's content.
     """
     groups: dict[str, IntArray] = {}
@@ -150,7 +150,7 @@ def _node_sets(content: Any) -> Iterator[tuple[str, IntArray]]:
             yield name, np.flatnonzero(np.asarray(tags) == tag)
 
 
-_NAME_LENGTH = 80  # of a group in MED
+_NAME_LENGTH = 80  # characters of a group's name in MED
 _LOST = {".med": ("hexahedron27",)}
 
 
