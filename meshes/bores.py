@@ -183,8 +183,8 @@ def find_bores(
     Notes
     -----
     Each facet proposes the circle through its own corners and its neighbours'. The circles with the most proposals are
-    tried first. Facets that lie on one circle all around are a bore. The round end of a slot, or a fillet, is none: its
-    sides run on along its tangents, where those of a split bore end at the parting plane.
+    tried first. Facets that lie on one circle all around are a bore. The round end of a slot, or a fillet, is no bore:
+    its sides run on along its tangents, where the sides of a split bore end at the parting plane.
     """
     direction = unit_vector(axis)
     bores: list[CylindricalBore] = []
@@ -246,7 +246,7 @@ def fits_circle(
     arms = across(mesh.points - np.asarray(center), axis)
     near = np.abs(np.linalg.norm(arms, axis=1) - radius) <= slack
     on = np.concatenate([near[block.corners].all(axis=1) for block in mesh.boundary])
-    # Few do: only these are looked at, for hundreds of circles.
+    # Few facets have their corners on the cylinder: only these are examined, since hundreds of circles are tried.
     few = pick_facets(mesh.boundary, on)
     normals = facet_normals(mesh.points, few)
     inward = -across(facet_centers(mesh.points, few) - np.asarray(center), axis)
@@ -266,7 +266,7 @@ def joined_by_span(
     facets : tuple of ElementBlock
         Facets as chosen by :func:`fits_circle`.
     center, axis
-        Of the cylinder.
+        Centre and axis of the cylinder.
     """
     part = _connected(facets)
     heights = (mesh.points - np.asarray(center)) @ axis

@@ -29,9 +29,9 @@ class Touching:
     Attributes
     ----------
     across : ndarray of int
-        Corners of the surface at the place of one of another body.
+        Corners of the surface at the place of a corner of another body.
     within : ndarray of int
-        Corners of the surface at the place of another one of the same body.
+        Corners of the surface at the place of another corner of the same body.
     hanging : ndarray of int
         Hanging nodes: corners of the surface within facets of other elements, at none of their corners.
     between_bodies : bool

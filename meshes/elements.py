@@ -28,7 +28,7 @@ class ElementKind:
     Attributes
     ----------
     name : str
-        meshio's, such as ``tetra10``.
+        Name in meshio, such as ``tetra10``.
     order : int
         Polynomial order, 1 or 2.
     corners : str
@@ -158,7 +158,7 @@ class ElementBlock:
     Raises
     ------
     GeometryError
-        Where there is no such kind, or the array has not its number of nodes.
+        Where there is no such kind, or the array has another number of nodes.
     """
 
     kind: str
@@ -254,7 +254,7 @@ def facet_normals(points: FloatArray, facets: Facets) -> FloatArray:
     normals = [np.empty((0, 3))]
     for block in facets:
         corners = points[block.corners]
-        # Of a quadrilateral by its diagonals, of a triangle by two sides.
+        # A quadrilateral's normal by its diagonals, a triangle's by two sides.
         last = corners[:, -1] - corners[:, 1] if block.of.n_corners == 4 else corners[:, 2] - corners[:, 1]
         normals.append(np.cross(corners[:, 2] - corners[:, 0], last))
     together = np.concatenate(normals)
@@ -290,7 +290,7 @@ class FaceTable:
     corners : ndarray of int, shape (n_faces, 4)
         Corners of each face in its own order as its element sees it from outside; the fourth is -1 in a triangle.
     element : ndarray of int, shape (n_faces,)
-        The element it belongs to, over all blocks.
+        The element that the face belongs to, over all blocks.
     number : ndarray of int, shape (n_faces,)
         Equal for faces of the same corners.
     sharing : ndarray of int, shape (n_faces,)

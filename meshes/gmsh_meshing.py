@@ -98,7 +98,7 @@ def _signals_kept() -> Iterator[None]:
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
 _GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
-# ... and these are its edges in gmsh's order of the middle nodes.
+# Edges of the tetrahedron in gmsh's order of their middle nodes.
 _GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
 _TET10 = 11
 _WORST_JACOBIAN = 0.05  # least Jacobian of an element over its mean, below which it counts as folded

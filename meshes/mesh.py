@@ -169,7 +169,7 @@ class Mesh:
         Parameters
         ----------
         rotation : ndarray, shape (3, 3)
-            R of x' = R x, proper and orthogonal.
+            Matrix R of x' = R x, proper and orthogonal.
 
         Raises
         ------
@@ -235,7 +235,7 @@ class Mesh:
 
     @cached_property
     def boundary(self) -> Facets:
-        """The facets that belong to one element only, outward: a block for each kind."""
+        """Facets that belong to one element only, seen from outside: a block for each kind."""
         return faces_as_facets(self.blocks, self.faces, np.flatnonzero(self.faces.sharing == 1))
 
     @property

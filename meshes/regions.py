@@ -89,9 +89,9 @@ def circle_facets(mesh: Mesh, center: Sequence[float], normal: Sequence[float], 
     center : sequence of float
         Middle of the circle, on the face or near it [m].
     normal : sequence of float
-        The way that the face looks, out of its material; of any length.
+        Outward normal of the face, of any length.
     diameter : float
-        Facets whose middles lie in the circle belong to it [m].
+        Diameter of the circle [m]; facets whose middles lie in the circle belong to it.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def circle_facets(mesh: Mesh, center: Sequence[float], normal: Sequence[float], 
 
     Notes
     -----
-    Of several such faces one behind the other, as on both sides of a thin plate, it is the one nearest to the centre.
+    Among several such faces one behind the other, as on both sides of a thin plate, the nearest to the centre counts.
     """
     axis = unit_vector(normal)
     offset = facet_centers(mesh.points, mesh.boundary) - np.asarray(center)
@@ -132,8 +132,8 @@ def cylinder_facets(
     ----------
     mesh : Mesh
     center : sequence of float
-        A point on the bore's axis [m], at most a diameter beyond its ends. Of several bores on that axis the one is
-        taken whose middle is nearest along it.
+        A point on the bore's axis [m], at most a diameter beyond its ends. Among several bores on that axis, the one
+        with its middle nearest along the axis counts.
     diameter : float
         Diameter [m].
     axis : sequence of float
@@ -193,7 +193,7 @@ def with_bore(
 
 
 def _no_bore(mesh: Mesh, center: FloatArray, diameter: float, axis: FloatArray) -> str:
-    """Message that names the bore asked for and the bores found, nearest first."""
+    """Message that names the bore asked for and the bores of the mesh, nearest first."""
     message = f"no bore of {1e3 * diameter:.5g} mm around {_place(center)} mm"
     bores = find_bores(mesh, axis=axis)
     if not bores:

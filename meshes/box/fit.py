@@ -138,7 +138,7 @@ def _on_rim(box: Box, cover: Cover, bolt: Bolt) -> bool:
     to_edge = [min(u - outer.low[axis], outer.high[axis] - u) for u, axis in zip(place, axes, strict=True)]
     beside = [max(opening.low[axis] - u, 0.0, u - opening.high[axis]) for u, axis in zip(place, axes, strict=True)]
     rounding = box.fillets.outside
-    if max(to_edge) < rounding:  # in a corner, rounded where the plate is
+    if max(to_edge) < rounding:  # in a corner of the rounded plate
         within = math.hypot(rounding - to_edge[0], rounding - to_edge[1]) + radius <= rounding + SLACK
     else:
         within = min(to_edge) >= radius - SLACK

@@ -36,7 +36,7 @@ class BoxGeometry:
     size : tuple of float
         Outside lengths along x, y, z [m], without bosses, feet, outside ribs and flange.
     wall : WallThickness
-        [m]; that of the cover's face is the thickness of its plate.
+        Thickness of each wall [m]; at the cover's face, the thickness of its plate.
     bores : tuple of Bore
     feet : Feet, optional
     ribs : tuple of Rib
@@ -46,7 +46,7 @@ class BoxGeometry:
     Raises
     ------
     GeometryError
-        Where a size is not positive, a boss is no wider than its bore, or a seat has no name of its own.
+        Where a size is not positive, a boss is no wider than its bore, or a seat has the name of another surface.
     BoxMisfitError
         Where the parts do not fit each other, with everything that does not: walls that meet, feet that touch, bores
         that leave their wall or touch another, ribs, cover, fillets, bolt patches.

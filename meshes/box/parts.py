@@ -112,7 +112,7 @@ class Rib:
     at : float
         Position of its middle plane along the other axis [m].
     height, thickness : float
-        [m]; the height is taken from the wall.
+        Height above the wall and thickness [m].
     side : {"outside", "inside"}
     start, end : float, optional
         Ends of the rib along its axis [m]; by default it runs the whole length of the wall.
@@ -144,7 +144,7 @@ class CoverBolts:
     Attributes
     ----------
     diameter : float
-        Nominal, of the thread [m].
+        Nominal diameter of the thread [m].
     per_edge : tuple of int, optional
         Number along each of the two axes of the cover's plane (in the order x, y, z), corners counted with both, on
         the middle line of the rim.
@@ -171,7 +171,7 @@ class Cover:
     Attributes
     ----------
     face : str
-        The wall; its thickness is the plate's.
+        The wall, whose thickness is that of the plate.
     flange : Flange, optional
         Rim; by default as wide as the walls are thick.
     bolts : CoverBolts, optional

@@ -41,7 +41,7 @@ def stated_unit(path: Path, kind: str) -> float | None:
 def _step_unit(text: str) -> float | None:
     """Read the unit of length of a STEP file's geometry [m]; None unless there is exactly one.
 
-    An inch is itself defined by way of a millimetre, so that converted units, where there are any, decide.
+    An inch is defined by way of a millimetre, so that converted units, where there are any, decide.
     """
     plain: set[float] = set()
     converted: set[float] = set()

@@ -105,7 +105,7 @@ SOLID_TYPES = {
     "15": "wedge15",
 }
 _SOLID_TYPE = re.compile(r"(?:C3D|DC3D|F3D)(\d+)[A-Z]*$")
-# Of the 27-node brick the centre comes before the middles of the faces bottom, top, front, right, back, left.
+# In the 27-node brick the centre comes before the middles of the faces bottom, top, front, right, back, left.
 BRICK_27 = [*range(20), 26, 24, 25, 22, 21, 23, 20]
 _TO_VTK = {"hexahedron27": [BRICK_27.index(place) for place in range(27)]}
 # The faces S1, S2, ... by corners counted from one.
@@ -278,7 +278,7 @@ def _shell_corners(nodes: list[int], place: dict[int, int]) -> list[int]:
 def _face_corners(
     deck: _Deck, part: str, label: str, where: dict[int, tuple[str, int]], place: dict[int, int], name: str
 ) -> Iterator[list[int]]:
-    """Corners of face S1, S2, ... of an element or of those of a set."""
+    """Corners of face S1, S2, ... of an element or of the elements of a set."""
     for number in _numbers(part, deck.element_sets):
         if number in deck.shells:
             yield _shell_corners(deck.shells[number], place)
@@ -336,7 +336,7 @@ def _quoted(name: str) -> str:
 
 
 def _label(block: ElementBlock, face: int) -> str:
-    """Label S1, S2, ... of a face by its number here."""
+    """Label S1, S2, ... of a face, by its number in the element kind."""
     corners = {corner + 1 for corner in block.of.corner_faces[face]}
     labels = [{int(corner) for corner in label} for label in FACE_LABELS[block.of.corners]]
     return f"S{labels.index(corners) + 1}"

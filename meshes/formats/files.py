@@ -39,7 +39,7 @@ def framed_deck(text: str) -> str:
 
 @contextmanager
 def framed_file(path: Path) -> Iterator[Path]:
-    """Write a temporary copy of a deck in this form; files of other formats are given as they are."""
+    """Write a temporary copy of a deck in this form; files of other formats stay as they are."""
     if path.suffix.lower() not in ENDINGS:
         yield path
         return
@@ -131,7 +131,7 @@ def _write(mesh: Mesh, path: Path) -> None:
         write_abaqus(mesh, path)
         return
     meshio = load_meshio()
-    # Version 2.2 of gmsh's format is the one that every reader knows.
+    # Every reader knows version 2.2 of gmsh's format.
     format_name = "gmsh22" if path.suffix == ".msh" else None
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         meshio.write(path, meshio_from_mesh(mesh, path.suffix), file_format=format_name)
