@@ -81,7 +81,7 @@ class CoupledMachine:
         couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
-        In the rotors' couplings.
+        Dashpots in the rotors' couplings.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
     """
@@ -193,16 +193,16 @@ def assemble_machine(
 
     Parameters
     ----------
-    rotors, housing
-        The components.
+    rotors : sequence of RotorComponent
+    housing : HousingComponent or None
     speeds : dict of str to float
         Signed speed of each rotor [rad/s]; at rest see :func:`coupling.machine.gear_train.turning_senses`.
-    bearings, meshes
-        Connectors.
+    bearings : sequence of MountedBearing
+    meshes : sequence of GearMesh
     loads : MachineLoads
-        None by default.
-    dashpots
-        In the rotors' couplings.
+        Loads; by default there are none.
+    dashpots : sequence of ShaftDashpots
+        Dashpots in the rotors' couplings.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of ``speeds``: bearings' tables over speed are
         followed between them.

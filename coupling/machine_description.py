@@ -246,9 +246,9 @@ class Machine:
         Parameters
         ----------
         pairs : sequence of LoadedGearPair, optional
-            By default :meth:`loaded_pairs`.
+            Pairs; by default :meth:`loaded_pairs`.
         components : sequence of RotorComponent, optional
-            By default :meth:`rotor_components`.
+            Components; by default :meth:`rotor_components`.
         driving : Driving
             Torques that vary, motion of the base, gravity.
 
@@ -362,7 +362,7 @@ class Machine:
         Parameters
         ----------
         point : OperatingPoint, optional
-            By default :meth:`operating_point`.
+            Operating point; by default :meth:`operating_point`.
         gravity : sequence of float, optional
             Acceleration of free fall along x, y, z [m/s²].
 

@@ -265,8 +265,10 @@ def joined_by_span(
     mesh : Mesh
     facets : tuple of ElementBlock
         Facets as chosen by :func:`fits_circle`.
-    center, axis
-        Centre and axis of the cylinder.
+    center : sequence of float
+        A point of the cylinder's axis [m].
+    axis : ndarray, shape (3,)
+        Unit vector.
     """
     part = _connected(facets)
     heights = (mesh.points - np.asarray(center)) @ axis

@@ -82,7 +82,7 @@ class Reference(NamedTuple):
     """The linear machine at its mean mesh stiffness, by the motion at its contacts.
 
     The amplitudes of the modes come first; the amplitudes of the steady response to the loads follow, e^{iwt} for each
-    harmonic and a constant 1. No contact changes the latter.
+    harmonic and a constant 1. No contact changes the amplitudes of the response.
     """
 
     eigenvalue: ComplexArray  # (m,) λ; iw; 0

@@ -129,7 +129,7 @@ def carry_on(
     integral: ComplexArray,
     term: FloatArray,
 ) -> None:
-    """As :func:`advance_to`, where the amplitudes at the end of the element are known already, for a part near 1.
+    """Advance as :func:`advance_to`, where the amplitudes at the end of the element are known, for a part near 1.
 
     The power series about the end has as many terms as the fastest mode needs.
     """

@@ -242,8 +242,8 @@ def linear_part(
     rate_unit : float
         See :class:`LinearPart`.
     like : LinearPart, optional
-        Of the same machine at another speed: its basis is reused where the rigid-body motions are the same, its
-        eigenvectors where its matrices are.
+        Linear part of the same machine at another speed: its basis is reused where the rigid-body motions are the same,
+        its eigenvectors where its matrices are.
     repeats : bool
         Whether the motion is periodic, so that the loads on rigid-body motions must balance. They have no part in the
         reference in either case.

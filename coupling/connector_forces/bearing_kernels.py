@@ -196,7 +196,7 @@ def bearing_force(
     Returns
     -------
     energy : float
-        [J].
+        Energy [J].
     slope : float
         Derivative of the energy by the nominal time [J/s]: the power of the rotating cage at nominal speed.
     """

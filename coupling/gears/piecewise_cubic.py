@@ -39,7 +39,7 @@ def chebyshev_interpolant(function: Function, length: float) -> Function:
     Parameters
     ----------
     function : callable
-        From positions (n,) to values (n,).
+        Function from positions (n,) to values (n,).
     length : float
         End of the range.
     """
@@ -191,7 +191,7 @@ def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tol
     Parameters
     ----------
     function : callable
-        From positions (n,) to values (n,).
+        Function from positions (n,) to values (n,).
     breaks : ndarray
         Increasing: the ends of the range and the corners of the function. At corners not among them intervals are
         halved down to `NARROWEST`, where the error is what the function changes over such a length.
@@ -231,7 +231,7 @@ def tabulated(function: Callable[[FloatArray], FloatArray], length: float, toler
     Parameters
     ----------
     function : callable
-        From positions (n,) to values (n,).
+        Function from positions (n,) to values (n,).
     length : float
         End of the range.
     tolerance : float

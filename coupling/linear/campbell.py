@@ -61,7 +61,7 @@ class ModesAtSpeed:
     Attributes
     ----------
     speed : float
-        [rad/s].
+        Speed [rad/s].
     values : ndarray of complex, shape (m,)
     right, left : ndarray of complex, shapes (m, n)
         Vectors, normalised as in :class:`coupling.linear.eigenpairs.Eigenpairs`.
@@ -216,14 +216,14 @@ class SystemCampbell:
     eigenvalues : ndarray of complex, shape (s, b)
         λ [1/s].
     kinds, where : ndarray of str, shape (s, b)
-        As in :class:`coupling.linear.complex_modes.CoupledModes`.
+        Kinds and places as in :class:`coupling.linear.complex_modes.CoupledModes`.
     whirl : ndarray, shape (s, b)
         Whirl sense about +z of the rotor that whirls most.
     teeth : ndarray, shape (s, b)
         Share of the gear meshes in the strain energy.
     lines : tuple of ExcitationLine
     crossings : tuple of SystemCrossing
-        By speed.
+        Crossings in the order of speed.
     unsettled : tuple of str
         Crossings between two speeds that no refinement could prove, in words.
     limit : float
@@ -270,9 +270,9 @@ def system_campbell(
     speeds : sequence of float
         Signed speeds of the leading rotor [rad/s], two or more of one sense, ascending in size; zero may begin them.
     frequency_limit : float
-        Branches below it at some speed are followed [rad/s].
+        Frequency limit: branches below it at some speed are followed [rad/s].
     lines : sequence of ExcitationLine, optional
-        By default those of :func:`coupling.linear.excitation_orders.excitation_lines`.
+        Lines; by default those of :func:`coupling.linear.excitation_orders.excitation_lines`.
     contact : ContactState, optional
         Contact at every speed; by default :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load.
     progress : callable

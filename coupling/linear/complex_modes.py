@@ -36,7 +36,7 @@ ComplexArray = npt.NDArray[np.complex128]
 # Relative distance of eigenvalues within which rounding mixes their shapes: by the eigensolver's error over this.
 # Forward and backward whirl of a round shaft that hardly turns are further apart.
 _SAME = 1e-8
-_INDEPENDENT = 1e-6  # of the largest singular value of a group's shapes, above which a direction is one of theirs
+_INDEPENDENT = 1e-6  # part of the largest singular value of a group's shapes above which a direction is one of theirs
 _NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is none
 
 
@@ -221,7 +221,7 @@ class CoupledModes:
         Share of each kind of coordinate in the mode's kinetic energy, and under ``mesh`` the teeth's share in its
         strain energy.
     shares : ModeShares
-        By component, bearing and gear mesh.
+        Energy shares of components, bearings and gear meshes.
     whirl : ndarray, shape (m, c)
         Whirl of each component: 1 where it whirls counter-clockwise about z in circles, -1 clockwise, 0 in a plane; NaN
         where it has no bending or hardly any in the mode.
@@ -385,7 +385,7 @@ class GrowingMode:
     eigenvalue : complex
         λ [1/s]; real for a divergence without oscillation.
     kind, where : str
-        As in :class:`coupling.linear.complex_modes.CoupledModes`.
+        Kind and place as in :class:`coupling.linear.complex_modes.CoupledModes`.
     feeders : tuple of (Part, float)
         Parts that feed energy into it, the strongest first, with their negative parts of the damping ratio. For a
         divergence by negative stiffness, those parts with minus their shares of the strain energy.

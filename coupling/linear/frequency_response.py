@@ -65,7 +65,7 @@ def receptance(
     frequencies : ndarray, shape (f,)
         w [rad/s], not 0; the response at -w is the conjugate.
     contact : ContactState, optional
-        By default the mean contact.
+        State of the contacts; by default the mean contact.
     modes : CoupledModes, optional
         Modes about the same contact, to be superposed; by default the system is solved at every frequency.
 
@@ -227,7 +227,7 @@ def mesh_error_response(
     mesh : int
         Number of the gear mesh.
     contact : ContactState, optional
-        By default the mean contact.
+        State of the contacts; by default the mean contact.
     modes : CoupledModes, optional
         Modes about the same contact, to be superposed; by default the system is solved at every frequency.
 

@@ -88,7 +88,9 @@ class MeshHarmonicModel:
         force = self.contact.force
         contacts = self.machine.system.contacts
         return tuple(
-            n for n, one in enumerate(contacts) if force is not None and force[n] > 0.0 and one.mesh_frequency != 0.0
+            n
+            for n, contact in enumerate(contacts)
+            if force is not None and force[n] > 0.0 and contact.mesh_frequency != 0.0
         )
 
     def responses(self, limit: float) -> tuple[Response, ...]:

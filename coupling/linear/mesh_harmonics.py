@@ -64,7 +64,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _GAP_STEP = 1e-6  # step over the flanks' compression, in the differences of transmission error and shuttling
-_STIFFNESS_STEP = 0.01  # the same in the differences of k, which steps where a slice comes into touch
+_STIFFNESS_STEP = 0.01  # the step in the differences of k, which jumps where a slice comes into touch
 _STIFFNESS_POINTS = 2000  # number of phases of a mesh period in the differences of k
 _BEARING_STEP = 1e-4  # step over a bearing's deflection, in the differences of its tangent
 _SHAFT_STEP = 1e-5  # step over the shaft's length, in the differences of its motions
@@ -164,7 +164,7 @@ class LineModel(MeshHarmonicModel):
         Returns
         -------
         load : ndarray of complex, shape (5,)
-            [N, N m].
+            Load [N, N m].
         adjoint : ndarray of complex, shape (5,)
             Output per unit of the seat's motion [1/m, 1/rad].
         """

@@ -155,24 +155,24 @@ class AxialLocation:
 
     def _springs(self) -> tuple[str, ...]:
         """Springs of bearings that another bearing of the shaft opposes or shares."""
-        sprung = [one for one in self.bearings if one.spring != 0.0]
-        if len({one.spring > 0.0 for one in sprung}) == 2:
-            names = _listed([one.name for one in sprung])
-            forces = " and ".join(f"{abs(one.spring):.4g} N towards {_along(one.spring)}" for one in sprung)
-            left = abs(sum(one.spring for one in sprung))
+        sprung = [bearing for bearing in self.bearings if bearing.spring != 0.0]
+        if len({bearing.spring > 0.0 for bearing in sprung}) == 2:
+            names = _listed([bearing.name for bearing in sprung])
+            forces = " and ".join(f"{abs(bearing.spring):.4g} N towards {_along(bearing.spring)}" for bearing in sprung)
+            left = abs(sum(bearing.spring for bearing in sprung))
             effect = "cancel and press no element" if left == 0.0 else f"leave {left:.4g} N, which presses one way only"
             return (
                 f"shaft {self.shaft!r}: the `preload` of {names} is a spring's force on the shaft each, and "
                 f"{forces} {effect}; {_RIGID}",
             )
         warnings = []
-        for one in sprung:
-            others = [other.name for other in self.bearings if other.senses and other is not one]
+        for bearing in sprung:
+            others = [other.name for other in self.bearings if other.senses and other is not bearing]
             if others:
                 warnings.append(
-                    f"shaft {self.shaft!r}: the `preload` of {one.name!r} is a spring's force on the shaft, "
-                    f"{abs(one.spring):.4g} N towards {_along(one.spring)}, which moves it in {_listed(others)} as "
-                    f"well: it does not press them against each other; {_RIGID}"
+                    f"shaft {self.shaft!r}: the `preload` of {bearing.name!r} is a spring's force on the shaft, "
+                    f"{abs(bearing.spring):.4g} N towards {_along(bearing.spring)}, which moves it in "
+                    f"{_listed(others)} as well: it does not press them against each other; {_RIGID}"
                 )
         return tuple(warnings)
 

@@ -146,7 +146,7 @@ class RotorComponent(Component):
     def turning(self) -> FloatArray:
         """Coordinates of a rotation of the whole rotor about z by one radian, shape (n,).
 
-        Its first torsional mode, to which the others are orthogonal: as a row, the same is ∫ dI_p of their rotations,
+        The row is the first torsional mode, to which the others are orthogonal: it is ∫ dI_p of their rotations,
         and its square the rotor's polar inertia [kg m²]; not to be written to.
         """
         row = np.zeros(self.size)
@@ -172,7 +172,7 @@ def housing_component(
     Parameters
     ----------
     modes : ModeSet
-        With m modes and, where it has attachments, k of them: n = m + k coordinates.
+        Modes: m of them and, where there are attachments, k further ones: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
         Damping ratios. Attachments take the highest of them.
     seats, seat_z, sensors, participation, seat_axes

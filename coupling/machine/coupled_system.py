@@ -45,7 +45,7 @@ class TimedLoad:
     Attributes
     ----------
     times : ndarray, shape (l,)
-        [s], ascending.
+        Times [s], ascending.
     values : ndarray, shape (l,)
     direction : ndarray, shape (n,)
     """

@@ -74,8 +74,10 @@ def shuttling_loads(
 
     Parameters
     ----------
-    contact, geometry
-        Contact law and geometry of the loaded flanks.
+    contact : ToothContact
+        Contact law of the loaded flanks.
+    geometry : GearPairGeometry
+        Geometry of the loaded flanks.
     force : float
         Mean mesh force F, above 0 [N].
     axial : float

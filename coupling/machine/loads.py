@@ -323,7 +323,7 @@ class MachineCoordinates:
         pairs : sequence of two names
             Rotors that gears connect.
         drives : sequence of Drive
-            At most one for each train; a train without a drive is driven at the left end of its first rotor.
+            Drives, at most one for each train; a train without a drive is driven at the left end of its first rotor.
         """
         total = np.zeros(self.size)
         rotors = [part.name for part in self.components if isinstance(part, RotorComponent)]

@@ -37,7 +37,7 @@ class SpeedProfile:
     Attributes
     ----------
     times : ndarray, shape (k,)
-        [s], ascending.
+        Times [s], ascending.
     rates : ndarray, shape (k,)
         Relative speeds s', not negative: reversed rotation would load the other flanks.
     """
@@ -133,7 +133,7 @@ def free_speed(
     start : float
         Speed at t = 0 [rad/s], not negative.
     duration : float
-        [s].
+        Duration [s].
     nominal : float
         Nominal speed, to which the result is relative [rad/s], positive.
 

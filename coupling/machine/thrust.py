@@ -78,11 +78,11 @@ def axial_forces(
 
     Parameters
     ----------
-    pairs
+    pairs : sequence of ThrustPair
         All gear pairs.
-    speeds
+    speeds : mapping of str to float
         Signed speed of each rotor [rad/s].
-    torques
+    torques : mapping of str to float
         Torque about z on each rotor [N m]; a rotor without one is free to turn.
 
     Notes
@@ -124,9 +124,9 @@ def require_thrust_carried(
     ----------
     pairs, speeds, torques
         See :func:`axial_forces`.
-    bearings
+    bearings : sequence of MountedBearing
         All bearings; those with axial stiffness carry thrust.
-    movable
+    movable : container of str, optional
         Rotors with an axial coordinate; by default all.
 
     Raises

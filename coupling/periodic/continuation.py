@@ -383,7 +383,7 @@ class _Follower:
                     point = self.branch.hold([*self.recent[-3:-1], after, before], speed, self._within(before))
                 if point is None:
                     if self.branch.level > level:
-                        continue  # with finer elements
+                        continue  # again with finer elements
                     break
                 best, value = point, test(point)
                 if value == 0.0 or high - low <= _LOCATED * whole or abs(value) < 1e-8:

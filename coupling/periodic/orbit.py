@@ -49,7 +49,7 @@ def carried(pieces: FloatArray, first: FloatArray, sources: FloatArray) -> Float
 def correction(pieces: FloatArray, misses: FloatArray, monodromy: FloatArray, *, least: bool = False) -> FloatArray:
     """Newton correction that closes a motion at its speed, shape (K, 2 N).
 
-    With ``least``, the smallest one where a multiplier is 1.
+    With ``least``, it is the smallest correction where a multiplier is 1.
 
     Raises
     ------
@@ -130,9 +130,9 @@ class Elements:
     Attributes
     ----------
     starts : ndarray, shape (e,)
-        [s].
+        Starts of the elements [s].
     sizes : ndarray, shape (e,)
-        [s].
+        Sizes of the elements [s].
     slots : ndarray of int, shape (e,)
         Slot of each element's size.
     steps : Steps

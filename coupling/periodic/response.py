@@ -38,7 +38,7 @@ class FloquetMultipliers:
     values : ndarray of complex, shape (2 N,)
         A disturbance along the eigenvector number i is multiplied by values[i] every period.
     period : float
-        [s].
+        Period [s].
     """
 
     values: ComplexArray
@@ -98,7 +98,7 @@ class PeriodicResponse:
     ----------
     system : CoupledSystem
     period : float
-        [s].
+        Period [s].
     displacement, velocity : ndarray, shape (n,)
         Displacements and rates at t = 0. Rigid-body motions have a mean of zero.
     floquet : FloquetMultipliers

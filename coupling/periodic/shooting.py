@@ -141,7 +141,7 @@ class Problem:
     kept : ndarray of int, shape (k,)
         Numbers of the condensed coordinates.
     period : float
-        [s].
+        Period [s].
     part : LinearPart
         Linear part of the condensed system.
     contacts : Contacts
@@ -224,7 +224,7 @@ def periodic_response(
     Parameters
     ----------
     system : CoupledSystem
-        At constant speed.
+        System at constant speed.
     period : float, optional
         Period [s]; by default the shortest common one of mesh phases, runout errors and harmonic loads. A multiple
         finds subharmonic motions too.

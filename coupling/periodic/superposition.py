@@ -216,11 +216,11 @@ def superposed_response(
     Parameters
     ----------
     system : CoupledSystem
-        At constant speed.
+        System at constant speed.
     groups : sequence of ExcitationGroup, optional
-        Those of :func:`excitation_groups` by default.
+        Groups; by default those of :func:`excitation_groups`.
     tolerance : float
-        As for :func:`periodic_response`.
+        Tolerance as for :func:`periodic_response`.
 
     Raises
     ------

@@ -56,7 +56,7 @@ def line_names(
     ----------
     machine : CoupledMachine
     frequencies : sequence of float
-        [Hz].
+        Frequencies [Hz].
     tolerance : float
         Largest distance of a line from the frequency of its cause [Hz]: a small part of the spacing where the record
         holds whole periods, half of it otherwise.

@@ -33,7 +33,7 @@ class AngleSignal:
         Revolutions since t = 0, beginning with a whole number.
     times : ndarray, shape (s,)
         [s].
-    speeds : ndarray, shape (s,)
+    Times [s].
         Revolutions per second [Hz].
     values : ndarray, shape (..., s)
     per_turn : int
@@ -61,7 +61,7 @@ def resample_by_angle(
     ----------
     signal : ndarray, shape (..., s)
     times : ndarray, shape (s,)
-        [s], evenly spaced, s at least 6.
+        Times [s], evenly spaced, s at least 6.
     turning : SpeedProfile
         Speed of the machine over time, relative to the nominal one.
     turns_per_second : float

@@ -27,7 +27,7 @@ ACCELERATION_REFERENCE = 1e-6
 ComplexArray = npt.NDArray[np.complex128]
 Window = Literal["uniform", "hann"]
 
-_NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # of the window, over the spacing of lines
+_NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # bandwidth of the window over the spacing of lines
 
 
 def rms_of_peak(amplitude: npt.ArrayLike) -> FloatArray:
@@ -77,7 +77,7 @@ class Spectrum:
     Attributes
     ----------
     frequencies : ndarray, shape (m,)
-        [Hz].
+        Frequencies [Hz].
     amplitude : ndarray, shape (..., m)
         Peak amplitude of each line, in the signal's unit: a sine a·sin(2πft) of whole periods in the record has
         the line a. The line at 0 Hz is the mean.
@@ -141,7 +141,7 @@ def averaged_spectrum(stretches: Iterable[FloatArray], interval: float, window: 
     Parameters
     ----------
     stretches : iterable of ndarray, shape (..., s)
-        At least one, all of the same shape.
+        Stretches of the signal, at least one, all of the same shape.
     interval, window
         See :func:`amplitude_spectrum`.
     """
@@ -192,7 +192,7 @@ def lines_at(signal: FloatArray, interval: float, frequencies: FloatArray, windo
     interval : float
         Between samples [s].
     frequencies : ndarray, shape (f,)
-        [Hz], above 0 and below half the sampling rate.
+        Frequencies [Hz], above 0 and below half the sampling rate.
     window : {"uniform", "hann"}
     """
     count = signal.shape[-1]
@@ -272,7 +272,7 @@ class PowerDensity:
     Attributes
     ----------
     frequencies : ndarray, shape (m,)
-        [Hz], without 0.
+        Frequencies [Hz], without 0.
     density : ndarray, shape (..., m)
         Power density in the signal's unit squared per Hz: its integral is the mean square.
     stretches : int
@@ -337,7 +337,7 @@ class Spectrogram:
     times : ndarray, shape (t,)
         Middles of the stretches [s].
     frequencies : ndarray, shape (m,)
-        [Hz].
+        Frequencies [Hz].
     amplitude : ndarray, shape (t, m)
         Peak amplitudes in the signal's unit; the mean of the stretch at 0 Hz.
     window : {"uniform", "hann"}

@@ -36,7 +36,7 @@ class Tones:
     Attributes
     ----------
     frequencies : ndarray, shape (t,)
-        [Hz], ascending.
+        Frequencies [Hz], ascending.
     amplitudes : ndarray of complex, shape (n, t)
         Amplitudes a in the unit of each signal, which is the sum of Re a e^{2πift}.
     """

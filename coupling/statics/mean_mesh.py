@@ -135,7 +135,7 @@ class ContactState:
     stiffness : ndarray, shape (c,)
         Stiffness of each contact of the system, drive flanks and back flanks [N/m]; 0 without contact.
     damping : ndarray, shape (c,)
-        [N s/m].
+        Damping of each contact [N s/m].
     force : ndarray, shape (c,), or None
         Mean force about which the contact is linearised [N]; 0 for the stiffness without load.
     """

@@ -427,23 +427,23 @@ class _StaticModel:
         self.housing_first = size
         size += 0 if housing is None else housing.size
         pedestals = {
-            one.mounted.bearing.name: LinearLaw(one.mounted.bearing.pedestal.stiffness)
-            for one in bearings
-            if one.mounted.bearing.pedestal is not None
+            bearing.mounted.bearing.name: LinearLaw(bearing.mounted.bearing.pedestal.stiffness)
+            for bearing in bearings
+            if bearing.mounted.bearing.pedestal is not None
         }
         self.pedestal_first = {name: size + 2 * n for n, name in enumerate(pedestals)}
         self.size = size + 2 * len(pedestals)
         self.stiffness = self._linear_stiffness()
         self.load = self._loads(torques, forces)
-        self.directions = [self._bearing_directions(one.mounted) for one in bearings]
+        self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
         self.twists = [twist for _, twist in approaches]
-        self.laws: list[ConnectorLaw] = [one.law for one in bearings]
+        self.laws: list[ConnectorLaw] = [bearing.law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.contact, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
-        nominal = [one.nominal for one in bearings]
+        nominal = [bearing.nominal for bearing in bearings]
         nominal += [_uniform_stiffness(pair) for pair in pairs]
         nominal += [law.nominal for law in pedestals.values()]
         self.nominal: FloatArray = linalg.block_diag(*nominal)

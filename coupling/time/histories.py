@@ -39,7 +39,7 @@ class Histories:
     Attributes
     ----------
     times : ndarray, shape (s,)
-        [s].
+        Times [s].
     sensor_acceleration : dict of str to ndarray, shape (s,)
         Along each sensor [m/s²].
     gear_motion : dict of str to ndarray, shape (s, 3)
@@ -49,7 +49,7 @@ class Histories:
     mesh_force : dict of str to ndarray, shape (s,)
         Force along the line of action [N], drive flanks and back flanks apart.
     mesh_compression : dict of str to ndarray, shape (s,)
-        [m].
+        Compression of each mesh [m].
     mesh_friction : dict of str to ndarray, shape (s, 2)
         Friction of each contact: force across the line of action [N], and power loss from the nominal
         rotation [W]; see :func:`coupling.machine.tooth_friction.friction_of`.

@@ -25,7 +25,7 @@ from coupling.time.step_matrices import KernelArrays, stored_energy
 
 FloatArray = npt.NDArray[np.float64]
 
-_POINTS_PER_PERIOD = 6  # of the highest natural frequency; the tolerance refines motions that matter
+_POINTS_PER_PERIOD = 6  # points in a period of the highest natural frequency; the tolerance refines motions that matter
 _STEPS_PER_SEGMENT = 64  # largest number of steps between two cuts where no event cuts the time
 _SPEED_GAIN = 2e-4  # change of speed over the nominal one within which a stretch's matrices stay the same
 _SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
@@ -116,7 +116,7 @@ class Checkpoint:
     sample : int
         Samples written.
     time : float
-        [s].
+        Time [s].
     q, v : ndarray, shape (n,)
         Coordinates and their rates, of the condensed system.
     stored : float

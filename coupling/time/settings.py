@@ -25,7 +25,7 @@ class TransientSettings:
     sample_interval : float
         Even spacing at which outputs are written, whatever the steps [s].
     largest_step : float
-        [s].
+        Largest step [s].
     tolerance : float
         Largest local error of a step, relative; see :mod:`coupling.time.integration`.
     beta, gamma : float
@@ -68,7 +68,7 @@ class MotionRecord:
     Attributes
     ----------
     times : ndarray, shape (s,)
-        [s].
+        Times [s].
     displacement, velocity, acceleration : ndarray, shapes (s, k)
         Output rows, see :class:`TransientOutputs`.
     compression : ndarray, shape (s, c)

@@ -239,7 +239,7 @@ class TransientFigures:
     steps, rejected : int
         Steps taken and steps repeated.
     smallest_step : float
-        [s].
+        Smallest step [s].
     error : float
         Largest of the accepted error measures.
     seconds : float

@@ -187,17 +187,17 @@ class KnownField:
         x, y, z = self.surface.points[counted[np.argmax(errors.max(axis=1))]].tolist()
         return SourceError(float(errors.max()), float(np.sqrt((errors**2).mean(axis=0)).max()), (x, y, z))
 
-    def errors_of(self, points: FloatArray, found: ComplexArray) -> FloatArray:
+    def errors_of(self, points: FloatArray, pressure: ComplexArray) -> FloatArray:
         """Error of the pressure found at points in the air, relative to the amplitude there, shape (n_points,).
 
         Parameters
         ----------
         points : ndarray, shape (n_points, 3)
             Points [m].
-        found : ndarray, shape (n_points, n)
+        pressure : ndarray, shape (n_points, n)
             Pressure of each source.
         """
-        apart = np.abs(found - self.sources.pressure(points, self.wavenumber)) / self.sources.amplitude(points)
+        apart = np.abs(pressure - self.sources.pressure(points, self.wavenumber)) / self.sources.amplitude(points)
         return np.asarray(apart.max(axis=1))
 
 

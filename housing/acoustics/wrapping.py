@@ -168,9 +168,9 @@ def _require_tight(solid: BoolArray, origin: FloatArray, cell: float, close_hole
         leaking = tight / _WIDER
         for _ in range(6):
             middle = 0.5 * (leaking + tight)
-            found = _large_cavity(solid, middle)
-            if found[0] > 0.0:
-                tight, opening = middle, found[1]
+            larger = _large_cavity(solid, middle)
+            if larger[0] > 0.0:
+                tight, opening = middle, larger[1]
             else:
                 leaking = middle
         x, y, z = 1e3 * (origin + cell * (opening + 0.5))

@@ -44,8 +44,8 @@ def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder
 
     Parameters
     ----------
-    mesh, modes
-        The housing and its modes.
+    mesh : Mesh
+    modes : ModeSet
     numbers : sequence of int
         Numbers of the modes, from 1.
     folder : path

@@ -45,8 +45,8 @@ def render_modes(
 
     Parameters
     ----------
-    mesh, modes
-        The housing and its modes.
+    mesh : Mesh
+    modes : ModeSet
     numbers : sequence of int
         Numbers of the modes, from 1.
     folder : path

@@ -109,14 +109,14 @@ def write_netcdf(
 
     Parameters
     ----------
-    path
+    path : path
         Path of a new file.
-    variables, coordinates
+    variables, coordinates : mapping of str to (dimensions, values, attributes)
         Numbers, truth values or text. An array named after a dimension is a coordinate in either.
-    attributes
+    attributes : mapping
         Attributes of the whole file.
-    fill
-        Declare NaN as the missing number, as xarray does.
+    fill : bool
+        Whether to declare NaN as the missing number, as xarray does.
 
     Raises
     ------

@@ -22,9 +22,9 @@ class BoxMisfitError(GeometryError):
         Everything that does not fit.
     """
 
-    def __init__(self, found: tuple[BoxMisfit, ...]) -> None:
-        self.misfits = found
-        super().__init__("\n".join(str(misfit) for misfit in found))
+    def __init__(self, all_misfits: tuple[BoxMisfit, ...]) -> None:
+        self.misfits = all_misfits
+        super().__init__("\n".join(str(misfit) for misfit in all_misfits))
 
 
 @dataclass(frozen=True)

@@ -250,17 +250,17 @@ class BoxMorph:
 class _Harmonic:
     """Harmonic extension of a component from given corners to all of them: ∇²u = 0 by linear tetrahedra."""
 
-    def __init__(self, mesh: Mesh, vertices: IntArray, held: npt.NDArray[np.bool_]) -> None:
+    def __init__(self, mesh: Mesh, vertices: IntArray, prescribed: npt.NDArray[np.bool_]) -> None:
         laplacian = _laplacian(mesh)[vertices][:, vertices]
-        self._held = held
-        self._coupling = laplacian[~held][:, held]
-        free = sparse.csc_array(laplacian[~held][:, ~held])
+        self._prescribed = prescribed
+        self._coupling = laplacian[~prescribed][:, prescribed]
+        free = sparse.csc_array(laplacian[~prescribed][:, ~prescribed])
         self._factor = splu(free) if free.shape[0] else None
 
     def extended(self, values: FloatArray) -> FloatArray:
         whole = values.copy()
         if self._factor is not None:
-            whole[~self._held] = self._factor.solve(-(self._coupling @ values[self._held]))
+            whole[~self._prescribed] = self._factor.solve(-(self._coupling @ values[self._prescribed]))
         return whole
 
 

@@ -71,7 +71,7 @@ class Branch:
     eigenvalues : ndarray of complex, shape (s,)
         Eigenvalues [rad/s].
     direction, axial_share : ndarray, shape (s,)
-        As in `rotors.WhirlModes`.
+        Directions and shares as in `rotors.WhirlModes`.
     """
 
     eigenvalues: ComplexArray
@@ -308,9 +308,9 @@ class Campbell(ComplexFrequencies):
     eigenvalues : ndarray of complex, shape (s, m)
         Eigenvalues [rad/s].
     direction : ndarray, shape (s, m)
-        As in `rotors.WhirlModes`.
+        Directions as in `rotors.WhirlModes`.
     axial_share : ndarray, shape (s, m)
-        As in `rotors.WhirlModes`.
+        Axial shares as in `rotors.WhirlModes`.
     proved : ndarray of bool, shape (s,)
         Speeds at which the number of roots was proved.
     """

@@ -212,16 +212,16 @@ def _profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Prof
             section_of_span.append(section)
             edges.append(left + end * (right - left) if end < 1.0 else right)
             lengths.append((end - start) * part.length)
-    coefficients = np.zeros((len(powers), 10, max(one.shape[1] for one in powers)))
-    for row, one in enumerate(powers):
-        coefficients[row, :, : one.shape[1]] = one
+    coefficients = np.zeros((len(powers), 10, max(power.shape[1] for power in powers)))
+    for row, power in enumerate(powers):
+        coefficients[row, :, : power.shape[1]] = power
     return Profile(
         edges=np.array(edges),
         lengths=np.array(lengths),
         section_of_span=np.array(section_of_span, dtype=np.intp),
         coefficients=coefficients,
         bounds=np.array(bounds),
-        uniform=np.array([one.shape[1] == 1 for one in powers]),
+        uniform=np.array([power.shape[1] == 1 for power in powers]),
     )
 
 

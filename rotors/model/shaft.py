@@ -177,7 +177,8 @@ class ShaftSpans:
     nodes : ndarray, shape (s + 1,)
         Ends of the spans [m].
     kind, start, end, lengths : ndarray, shape (s,)
-        As in `rotors.transfer_matrix.discretised_shaft.ContinuousShaft`, the kinds those of the rotor's profile.
+        Kinds and lengths as in `rotors.transfer_matrix.discretised_shaft.ContinuousShaft`, the kinds those of the
+        rotor's profile.
     inertias : ndarray, shape (s + 1, 3)
         Mass [kg], diametral and polar moment of inertia [kg·m²] at the nodes.
     """

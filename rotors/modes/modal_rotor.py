@@ -257,8 +257,8 @@ def modal_rotor(
     IncompleteModesError
         The modes fail their proof.
     """
-    one = (frequency_limit is None) != (count is None)
-    require(one, "frequency_limit and count", (frequency_limit, count), "one of the two")
+    exactly_one = (frequency_limit is None) != (count is None)
+    require(exactly_one, "frequency_limit and count", (frequency_limit, count), "one of the two")
     supports = tuple(bearing.mean_support for bearing in bearings)
     _require_few(rotor, supports, frequency_limit, count)
     lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
@@ -272,7 +272,11 @@ def modal_rotor(
         torsional = solve_torsional_modes(rotor, count=int(least))
     # A lumped rotor has no more motions than its modes.
     if rotor.mass_model == "distributed":
-        tilted = [one.at for one in bearings if one.spatial_stiffness[3:].any() or one.spatial_damping[3:].any()]
+        tilted = [
+            bearing.at
+            for bearing in bearings
+            if bearing.spatial_stiffness[3:].any() or bearing.spatial_damping[3:].any()
+        ]
         lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
         torsional = add_rod_attachment_modes(torsional, gears_at)
     axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)

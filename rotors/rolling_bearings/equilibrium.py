@@ -138,9 +138,9 @@ class RollingElements:
     Parameters
     ----------
     bearing : RollingBearing
-        By its geometry.
+        The bearing, by its geometry.
     speed : float
-        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on the elements.
+        Speed of the inner ring [rad/s], the outer at rest: adds centrifugal forces on the elements.
     cage_angle : float
         Azimuth of the first element of every row [rad].
 
@@ -234,7 +234,7 @@ def rolling_equilibrium(
     Parameters
     ----------
     bearing : RollingBearing
-        By its geometry.
+        The bearing, by its geometry.
     load : sequence of float or ndarray, shape (5,)
         Force x, y, z [N] and moment about x and y [N·m] on the inner ring at the bearing's centre. The constraint
         carries the load on a held coordinate.
@@ -242,7 +242,7 @@ def rolling_equilibrium(
         Displacement of constrained coordinates, by their names in `COORDINATES`, m and rad. Rotations held at zero
         represent a stiff, aligned shaft.
     speed : float
-        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on the elements.
+        Speed of the inner ring [rad/s], the outer at rest: adds centrifugal forces on the elements.
     cage_angle : float
         Azimuth of the first element of every row [rad].
 
@@ -314,7 +314,7 @@ def rolling_state(
     Parameters
     ----------
     bearing : RollingBearing
-        By its geometry.
+        The bearing, by its geometry.
     displacement : sequence of float or ndarray, shape (5,)
         Displacement over `COORDINATES` [m, rad].
     speed, cage_angle : float
@@ -432,7 +432,7 @@ def linearised_bearing(state: RollingState, name: str, at: float, *, damping: np
     Parameters
     ----------
     state : RollingState
-        From `rolling_equilibrium`.
+        State from `rolling_equilibrium`.
     name, at : str, float
         Name of the bearing in messages, and place of its centre from the rotor's left end [m].
     damping : array_like, shape (2, 2) or (5, 5), optional

@@ -106,15 +106,15 @@ class RollerSlices:
         raceway, thrown = 2.0**_POWER * stiffness, self._slice_force
         outwards = thrown / raceway
         alone = outwards ** (1.0 / _POWER)
-        held = deep > alone
-        inner = 0.5 * np.where(held, deep, 2.0 * alone)
+        on_both = deep > alone
+        inner = 0.5 * np.where(on_both, deep, 2.0 * alone)
         for _ in range(_STEPS):
             root = inner ** (_POWER - 1.0)
             both = root * inner + outwards
             outer = both ** (1.0 / _POWER)
             inner = np.maximum(inner - (inner + outer - deep) / (1.0 + root * outer / both), 0.0)
-        inner = np.where(held, inner, 0.0)
-        outer = np.where(held, deep - inner, alone)
+        inner = np.where(on_both, inner, 0.0)
+        outer = np.where(on_both, deep - inner, alone)
         root, outer_root = inner ** (_POWER - 1.0), outer ** (_POWER - 1.0)
         load = raceway * root * inner
         # The outer approach under the centrifugal force alone has no energy.

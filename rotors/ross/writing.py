@@ -50,7 +50,7 @@ def write_ross(
     rotor : Rotor
         Rotor of distributed mass.
     bearings : sequence of Bearing
-        Its bearings.
+        Bearings of the rotor.
     element_length : float, optional
         Longest element [m]; by default a twentieth of the rotor.
 

@@ -253,7 +253,7 @@ class ContinuousShaft:
     node_inertia, node_stiffness : ndarray, shape (s + 1, n)
         Inertia and stiffness at the nodes; ``node_polar`` (s + 1,) is the polar inertia.
     length_unit, displacement_unit : float, ndarray
-        As in `rotors.transfer_matrix.discretised_shaft.DiscretisedShaft`.
+        Units as in `rotors.transfer_matrix.discretised_shaft.DiscretisedShaft`.
     """
 
     label: str

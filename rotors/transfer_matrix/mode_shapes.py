@@ -123,7 +123,7 @@ class ShaftFields:
         motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))
         energy_rows(
             self.frequency_squared,
-            np.ascontiguousarray(self.states),  # as wherever the kernel is called, which is compiled for each layout
+            np.ascontiguousarray(self.states),  # contiguous at every call: the kernel is compiled for each layout
             GAUSS_FRACTIONS,
             table.lengths,
             table.coefficients,

@@ -56,8 +56,8 @@ class ShaftElements:
     lengths : ndarray, shape (e,)
         Lengths of the elements.
     coefficients : ndarray, shape (e, 6, j) or (e, 2, j)
-        In bending 1/(κGA + P), 1/EI, ρA, ρI, g and g P; for a rod 1/EA and ρA, or 1/GJ and ρJ. The last axis has the
-        coefficients of 1, s, s², ...; j is 1 where all elements are uniform.
+        Coefficients; in bending 1/(κGA + P), 1/EI, ρA, ρI, g and g P; for a rod 1/EA and ρA, or 1/GJ and ρJ. The last
+        axis has the coefficients of 1, s, s², ...; j is 1 where all elements are uniform.
     """
 
     lengths: FloatArray

@@ -126,7 +126,7 @@ class ContourCount:
 
 
 def count_by_argument_principle(
-    equations: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray = NONE
+    equations: WhirlEquations, sector: Sector, speed: Speed, known_roots: ComplexArray = NONE
 ) -> ContourCount:
     """Count the roots in a sector by the winding number of the determinant along its edge.
 
@@ -138,7 +138,7 @@ def count_by_argument_principle(
         Region of the count.
     speed : Speed
         Speed of rotation as an analytic function of λ.
-    known : ndarray of complex, shape (k,)
+    known_roots : ndarray of complex, shape (k,)
         Known roots, inside or outside; an inexact root costs samples only [rad/s].
 
     Raises
@@ -154,7 +154,7 @@ def count_by_argument_principle(
         sector.bounds,
         (base, rate),
         equations.total_mass,
-        known,
+        known_roots,
         # With both senses and a speed that is real at real λ, roots come in conjugate pairs.
         len(equations.blocks) > 1 and base.imag == 0.0 == rate.imag,
         matrix.arrays,

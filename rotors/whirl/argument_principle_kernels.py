@@ -70,26 +70,26 @@ def _put_edge(bounds: FloatArray, edge: ComplexArray) -> None:
 
 @inner(error_model="python")
 def _divide(
-    known: ComplexArray, mirrored: bool, bounds: FloatArray, divided: ComplexArray, left: ComplexArray
+    known_roots: ComplexArray, mirrored: bool, bounds: FloatArray, divided: ComplexArray, left: ComplexArray
 ) -> tuple[int, int, int]:
     """Sort known roots into those divided out and those left inside; numbers of both, and of divided roots inside.
 
     ``mirrored`` roots have conjugates that are roots.
     """
     away, near, inside = 0, 0, 0
-    for k in range(known.size):
-        place = logarithm(known[k])
+    for k in range(known_roots.size):
+        place = logarithm(known_roots[k])
         distance = edge_distance(place, bounds)
         if abs(distance) <= TOO_NEAR:
             if distance < 0.0:
-                left[near] = known[k]
+                left[near] = known_roots[k]
                 near += 1
             continue
         inside += distance < 0.0
-        divided[away] = known[k]
+        divided[away] = known_roots[k]
         away += 1
         if mirrored and edge_distance(place.conjugate(), bounds) > TOO_NEAR:
-            divided[away] = known[k].conjugate()
+            divided[away] = known_roots[k].conjugate()
             away += 1
     return away, near, inside
 
@@ -99,7 +99,7 @@ def follow_contour(
     bounds: FloatArray,
     speed: tuple[complex, complex],
     mass: float,
-    known: ComplexArray,
+    known_roots: ComplexArray,
     mirrored: bool,
     table: Table,
     pattern: Pattern,
@@ -114,8 +114,8 @@ def follow_contour(
     """
     edge = np.empty(4 * (SIDE_SAMPLES - 1) + 1, dtype=np.complex128)
     _put_edge(bounds, edge)
-    divided, left = np.empty(2 * known.size, dtype=np.complex128), np.empty(known.size, dtype=np.complex128)
-    away, near, inside = _divide(known, mirrored, bounds, divided, left)
+    divided, left = np.empty(2 * known_roots.size, dtype=np.complex128), np.empty(known_roots.size, dtype=np.complex128)
+    away, near, inside = _divide(known_roots, mirrored, bounds, divided, left)
     divided, left = divided[:away], left[:near]
     scale = force_unit(complex(math.exp(bounds[1]), 0.0), mass)
     rows, columns, envelope, lower, upper = pattern

@@ -168,19 +168,19 @@ def certified_roots(
 
 
 def count_roots(
-    equations: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
+    equations: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known_roots: ComplexArray = NONE
 ) -> int:
     """Count the roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
     if conservative:
         edges = np.array([sector.least, sector.most])
         low, high = negative_count(equations, edges, speed).tolist()
         return int(high - low)
-    return count_by_argument_principle(equations, sector, speed, known).count
+    return count_by_argument_principle(equations, sector, speed, known_roots).count
 
 
-def search(equations: WhirlEquations, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
+def search(equations: WhirlEquations, known_roots: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
     """All roots in a sector: the known ones, and the missing ones by the argument principle and power sums."""
-    roots, waiting, cuts = known, [sector], 0
+    roots, waiting, cuts = known_roots, [sector], 0
     while waiting:
         part = waiting.pop()
         counted = count_by_argument_principle(equations, part, speed, roots.eigenvalues)
@@ -204,12 +204,12 @@ def search(equations: WhirlEquations, known: ExactRoots, speed: Speed, sector: S
     return roots.take(sector.holds(roots.eigenvalues))
 
 
-def _cut(equations: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
+def _cut(equations: WhirlEquations, sector: Sector, speed: Speed, known_roots: ComplexArray) -> list[Sector]:
     """Two parts of a sector without a root on their common side."""
     for nudge in range(MOST_NUDGES):
         halves = sector.halves(0.5 + 0.037 * nudge)
         try:
-            count_by_argument_principle(equations, halves[0], speed, known)
+            count_by_argument_principle(equations, halves[0], speed, known_roots)
         except RootOnContourError:
             continue
         return list(halves)

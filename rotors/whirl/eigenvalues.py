@@ -367,7 +367,7 @@ def _settled(
         if again is not None and again.eigenvalues.size == roots.eigenvalues.size:
             return again
     if spread.size == 1 or spread.max() > ONE_ROOT:
-        return roots  # with infinite residuals: not converged
+        return roots  # infinite residuals: not converged
     # Independent vectors of the space that belongs to the group: the shape, and principal vectors.
     projected = span.conj().T @ roots.solutions.T
     basis = span @ np.linalg.qr(projected)[0]

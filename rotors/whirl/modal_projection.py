@@ -137,7 +137,7 @@ class ModalProjection:
     basis : PlanarBasis
         Basis of the motions of one plane.
     blocks : tuple of int
-        As of `rotors.whirl.equations.WhirlEquations`.
+        Blocks as of `rotors.whirl.equations.WhirlEquations`.
     axial_frequencies, axial_shapes : ndarray, shapes (a,) and (a, bearings)
         Frequencies of the free axial modes [rad/s], and their shapes at the bearings; empty where no bearing needs
         them.
@@ -284,7 +284,7 @@ class Pencil:
     Attributes
     ----------
     blocks : tuple of int
-        As of `rotors.whirl.equations.WhirlEquations`.
+        Blocks as of `rotors.whirl.equations.WhirlEquations`.
     still, turning : ndarray, shape (2N, 2N)
         Constant part [1/s], and part per rad/s of the speed Ω.
     planes : CoupledPlanes or None

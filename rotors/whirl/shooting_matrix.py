@@ -71,14 +71,14 @@ class Layout:
     bearings: tuple[BearingPlaces, ...]
 
     @classmethod
-    def of(cls, blocks: tuple[int, ...], kept: IntArray, node_bearings: Sequence[NodeBearing]) -> "Layout":
+    def of(cls, blocks: tuple[int, ...], nodes: IntArray, node_bearings: Sequence[NodeBearing]) -> "Layout":
         """Layout of the blocks at the nodes with unknowns, (r + 1,), and of the bearings at some of them."""
         widths = np.array([len(BLOCK_COORDINATES[block]) for block in blocks])
         n, width = int(widths.sum()), np.repeat(widths, widths)
         # The displacements of a block and then its forces follow those of the previous blocks.
         offsets = np.arange(n) + np.repeat(np.cumsum(widths) - widths, widths)
-        at = [int(kept.searchsorted(node_bearing.node)) for node_bearing in node_bearings]
-        extra = np.zeros(kept.size, dtype=np.intp)
+        at = [int(nodes.searchsorted(node_bearing.node)) for node_bearing in node_bearings]
+        extra = np.zeros(nodes.size, dtype=np.intp)
         for node, node_bearing in zip(at, node_bearings, strict=True):
             extra[node] += len(node_bearing.directions) + len(node_bearing.foot)
         # The first node has no continuity equations, the last no forces.
@@ -159,10 +159,10 @@ def shooting_matrix(
     axial: DiscretisedShaft | None,
     blocks: tuple[int, ...],
     node_bearings: Sequence[NodeBearing],
-    kept: IntArray,
+    nodes: IntArray,
     layout: Layout,
 ) -> ShootingMatrix:
-    """Assemble the shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
+    """Assemble the shooting matrix with unknowns at ``nodes``, (r + 1,), in the given layout."""
     first, terms, runs = 0, _Terms(), []
     states = np.stack([layout.displacements[:-1], layout.forces])
     reached = np.stack([layout.continuity, layout.balances[1:]])
@@ -172,35 +172,35 @@ def shooting_matrix(
         rows, columns = (np.concatenate([*places[:, :, block_columns]], axis=1) for places in (reached, states))
         runs.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
         first = block_columns.stop
-    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], FORCE_DENOMINATOR)
+    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, nodes, blocks)], FORCE_DENOMINATOR)
     terms.add(layout.continuity, layout.displacements[1:], [1.0])
     terms.add(layout.balances[:-1], layout.forces, [1.0])
     for node_bearing, own_places in zip(node_bearings, layout.bearings, strict=True):
-        node = int(kept.searchsorted(node_bearing.node))
+        node = int(nodes.searchsorted(node_bearing.node))
         _add_node_bearing(terms, node_bearing, layout.balances[node], layout.displacements[node], own_places)
     places, numerators, denominators, constants = terms.parted()
     rows, columns = np.concatenate(runs + places, axis=1)
     return ShootingMatrix(
         BandPattern.of(rows, columns, layout.order),
         np.array(blocks, dtype=np.intp),
-        _runs(bending, kept),
-        NO_RUNS if axial is None else _runs(axial, kept),
+        _runs(bending, nodes),
+        NO_RUNS if axial is None else _runs(axial, nodes),
         numerators,
         denominators,
         constants,
     )
 
 
-def _runs(shaft: DiscretisedShaft, kept: IntArray) -> Runs:
+def _runs(shaft: DiscretisedShaft, nodes: IntArray) -> Runs:
     first: dict[bytes, int] = {}
-    elements = [shaft.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
+    elements = [shaft.element[left:right].tobytes() for left, right in pairwise(nodes.tolist())]
     like = [first.setdefault(same, run) for run, same in enumerate(elements)]
-    return shaft.table.lengths, shaft.table.coefficients, shaft.element, kept, np.array(like, dtype=np.intp)
+    return shaft.table.lengths, shaft.table.coefficients, shaft.element, nodes, np.array(like, dtype=np.intp)
 
 
-def _inertias(shaft: DiscretisedShaft, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
+def _inertias(shaft: DiscretisedShaft, nodes: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
     """Terms −M and the gyroscopic term of λΩ, (r + 1, n) both, of the inertias at nodes."""
-    inertia, polar = shaft.node_inertia[kept], shaft.node_polar[kept]
+    inertia, polar = shaft.node_inertia[nodes], shaft.node_polar[nodes]
     squared, turning = [], []
     for block in blocks:
         squared += [-inertia[:, 0], -inertia[:, -1]][: len(BLOCK_COORDINATES[block])]

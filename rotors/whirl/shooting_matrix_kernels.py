@@ -153,7 +153,7 @@ def node_states(
 ) -> None:
     """Fill in the states (w, p + 1, 2n) of one block at all nodes, those inside runs from the nodes before them.
 
-    Of ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, zero where a place
+    In ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, zero where a place
     is negative, their forces in units of ``scale`` (w,); ω² are those of ``translation`` and ``rotation``, (w,) both.
     """
     lengths, coefficients, element, run_ends, _ = runs

@@ -531,7 +531,7 @@ def tooth_contact(
     corner_contact : bool
         Whether pairs touch beyond their path of contact as well, where a load closes the gap to a corner.
     faces : FaceSlices or None
-        From `face_slices`, where the face is not loaded evenly; None for a uniform load.
+        Slices from `face_slices`, where the face is not loaded evenly; None for a uniform load.
 
     Returns
     -------
@@ -577,7 +577,7 @@ def with_flanks_of(contact: ToothContact, geometry: GearPairGeometry) -> ToothCo
         for faults_of_variant in pair_variants(geometry).faults
     )
     variants = (
-        replace(one, deviation=faults_of_variant)
-        for one, faults_of_variant in zip(contact.variants, others, strict=True)
+        replace(variant, deviation=faults_of_variant)
+        for variant, faults_of_variant in zip(contact.variants, others, strict=True)
     )
     return replace(contact, deviation=sound, variants=tuple(variants))

@@ -281,7 +281,7 @@ def face_loads(
     meeting : ndarray of bool, shape (p, n)
         Whether the slice is in the range of contact.
     compression : ndarray, shape (p,)
-        [m].
+        Compression of the slice [m].
 
     Raises
     ------
@@ -319,7 +319,7 @@ def face_equilibrium(
     Parameters
     ----------
     slices, base, gap, meeting
-        Of all pairs of all meshes, see `face_loads`.
+        Arrays of all pairs of all meshes, see `face_loads`.
     owner : ndarray of int, shape (p,)
         Mesh of each pair.
     force : ndarray, shape (m,)

@@ -266,7 +266,7 @@ def law_table(
     entering : ndarray, shape (h, 2)
         Gap [m] and variant of each pair of the hunting period.
     damping, damping_depth : float
-        [N s/m], [m]
+        Damping [N s/m] and the compression up to which it fades in [m].
     shared_compliance : float
         [m/N]
     deflection : PiecewiseCubic, optional

@@ -437,14 +437,14 @@ def friction_shares(
     Parameters
     ----------
     phase, compression : float
-        As for `coupling.gears.contact.tooth_force_kernels.tooth_force`.
+        Phase and compression as for `coupling.gears.contact.tooth_force_kernels.tooth_force`.
     law : ndarray
     at : int
         Index at which the numbers begin of the contact law or, with ``by_slices``, of `SlidingFriction.shares`.
     by_slices : bool
         Whether the sliding of a line of contact reverses slice by slice.
     pitch_point, path_end : float
-        As in `coupling.gears.contact.sliding_friction.SlidingFriction`.
+        Distances as in `coupling.gears.contact.sliding_friction.SlidingFriction`.
     """
     number, interval, u, _ = locate(law, at, phase)
     # Compression of the pairs without that of the gears' bodies.

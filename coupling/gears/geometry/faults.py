@@ -83,7 +83,7 @@ class Spall:
     start_roll_angle, end_roll_angle : float
         Roll angles at which the spall begins and ends [rad].
     depth : float
-        [m].
+        Depth of the spall [m].
     width : float or None
         Across the face [m]; None for all of it.
     """

@@ -197,7 +197,7 @@ class Gear:
     def transverse_pressure_angle(self) -> float:
         """Transverse pressure angle on the reference circle [rad]."""
         if self.helix_angle == 0.0:
-            return self.pressure_angle  # to the last bit
+            return self.pressure_angle  # equal to the last bit
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
     @cached_property

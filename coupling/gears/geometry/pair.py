@@ -152,7 +152,7 @@ class GearPairGeometry:
     def backlash(self) -> float:
         """Backlash: gap of the back flanks along their line of action, in the transverse plane [m].
 
-        From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
+        By centre distance and tooth thicknesses it is ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
         teeth would jam.
         """
         return (
@@ -432,7 +432,7 @@ def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> flo
     Parameters
     ----------
     driver, driven : Gear
-        Their own profile shifts do not matter.
+        The gears; their profile shifts do not matter.
     centre_distance : float
         [m]
 

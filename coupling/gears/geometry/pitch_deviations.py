@@ -139,7 +139,7 @@ def runout_error(
     Parameters
     ----------
     driver, driven : Gear
-        Their `eccentricity` [m] and `eccentricity_phase` [rad] are used.
+        The gears, of which `eccentricity` [m] and `eccentricity_phase` [rad] are used.
     line_of_action_angle : float
         Angle of e from x [rad], `GearPairGeometry.line_of_action_angle`.
     driver_angle, driven_angle : array_like, shape (n,)
@@ -148,7 +148,7 @@ def runout_error(
     Returns
     -------
     ndarray, shape (n,)
-        [m].
+        Deviations [m].
     """
     components = [
         gear.eccentricity * np.cos(np.asarray(angle, dtype=np.float64) + gear.eccentricity_phase - line_of_action_angle)

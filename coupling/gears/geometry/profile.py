@@ -213,7 +213,7 @@ def pair_outlines(
     pair, phase, centre_line_angle, sense
         As in `meshing_rotations`.
     points : int
-        As in `gear_outline`.
+        Number of points, as in `gear_outline`.
 
     Returns
     -------

@@ -46,7 +46,7 @@ class HarrisMap:
     phases : ndarray, shape (n,)
         Mesh periods.
     transmission_error : ndarray, shape (f, n)
-        [m].
+        Transmission error [m].
     """
 
     forces: FloatArray
@@ -71,7 +71,7 @@ def harris_map(contact: ToothContact, forces: npt.ArrayLike, phases: npt.ArrayLi
     ----------
     contact : ToothContact
     forces : array_like, shape (f,)
-        [N], at least 0.
+        Mesh forces [N], at least 0.
     phases : array_like, shape (n,), or None
         Mesh periods; None for `mesh_period_phases` of 200 points.
 
@@ -251,7 +251,7 @@ def optimal_tip_relief(
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
     stiffness = _Known(model.pair_stiffness(geometry), shared_compliance(model, geometry))
     faces, searched_faces = (
-        None if one is None else slices_of_teeth(one, model, geometry) for one in (faces, searched_faces)
+        None if face is None else slices_of_teeth(face, model, geometry) for face in (faces, searched_faces)
     )
 
     target: ReliefAim = PeakToPeak() if aim is None else aim
@@ -302,11 +302,12 @@ def optimal_tip_relief(
     # The comparison uses all slices of the face; the search may use fewer.
     with_it, without = meshes(contact), meshes(plain)
     value, value_without = (
-        np.array([target.of(mesh, flanks) for mesh in each]) for each, flanks in ((with_it, contact), (without, plain))
+        np.array([target.of(mesh, flanks) for mesh in loaded])
+        for loaded, flanks in ((with_it, contact), (without, plain))
     )
     if not value.max() < value_without.max():
         relief, pair, with_it, value = None, bare, without, value_without
     swings, swings_without = (
-        np.array([mesh.peak_to_peak_transmission_error for mesh in each]) for each in (with_it, without)
+        np.array([mesh.peak_to_peak_transmission_error for mesh in loaded]) for loaded in (with_it, without)
     )
     return ReliefOptimum(relief, pair, value, value_without, swings, swings_without, amounts, lengths, tried)

@@ -126,7 +126,7 @@ class TableStiffness:
         Positions in base pitches (mesh periods), from 0, increasing.  Ending at 1 the table is of the whole mesh;
         ending at the contact ratio it is of one pair.
     stiffness : ndarray, shape (n,)
-        [N/m], positive.
+        Stiffness [N/m], positive.
     """
 
     name: ClassVar[str] = "table"

@@ -108,7 +108,7 @@ class RootStamp:
     waves : ndarray of complex, shape (3, n, 2)
         ``int s e^{-i n t} dt`` of the radial and the tangential traction, n = 1, 2, ...
     uniform : ndarray, shape (3, 2)
-        The same integral for n = 0.
+        The integral for n = 0.
     flexibility : ndarray, shape (n, 2, 2)
         Flexibility of each wave, see `_wave_flexibility`.
     even : ndarray, shape (2,)
