@@ -2,7 +2,7 @@
 
 Modes are followed from speed to speed, through places where they cross and where they veer.
 
-Two modes of neighbouring speeds are held for one where both of their left and right vectors say so. With the
+Two modes of neighbouring speeds count as the same where both their left and right vectors say so. With the
 normalisation pᴴ (2 λ I + C) q = 1 the modes of one speed have pᵢᴴ ((λᵢ + λⱼ) I + C) qⱼ = δᵢⱼ, so that
 
     likeness = |pᵢᴴ ((λᵢ + μⱼ) I + C) rⱼ · sⱼᴴ ((λᵢ + μⱼ) I + D) qᵢ|

@@ -314,7 +314,7 @@ def whirl_directions(system: CoupledSystem, vectors: ComplexArray, means: FloatA
 
     Counter-clockwise circles have y a quarter turn behind x. With x and y in the same mass-normalised shapes of the
     shaft, the sense is the part of the kinetic energy in such circles less that in the opposite ones. ``vectors`` and
-    ``means`` are those of :func:`coupling.linear.complex_modes.group_bases`: modes that cannot be told apart have one
+    ``means`` are those of :func:`coupling.linear.complex_modes.group_bases`: indistinguishable modes have one
     sense.
     """
     directions = np.full((len(means), len(system.components)), np.nan)

@@ -36,7 +36,7 @@ from rotors.rolling_bearings.rows import BallRow
 FloatArray = npt.NDArray[np.float64]
 
 # Closure error of the contacts, as a part of the distance between the grooves' centres: target and largest accepted.
-# The latter also limits the force error, relative to the larger of the static and the centrifugal force.
+# The largest accepted error also limits the force error, relative to the larger of static and centrifugal force.
 _CLOSED = 1e-15
 _OPEN = 1e-12
 # Newton's method on all balls at once: a ball with an error below this has converged.

@@ -13,7 +13,7 @@ half angle ``theta`` on the root circle (their Eq. 12 and Table 1):
 The ring is held at its bore, so the formula holds two things: the dent around the tooth, and the twist of
 the whole ring between bore and root circle, ``rb^2 (1/r_bore^2 - 1/r_root^2) / (4 pi G b)`` along the line
 of action, which grows as h^2 and is the reason why P does.  A gear in one piece with its shaft
-(``bore = 0``) has no such place to be held at, and its twist is the shaft's own: what is left is the dent,
+(``bore = 0``) is not held there, and its twist is that of the shaft: what is left is the dent,
 the formula less that twist in closed form.  The dent hardly depends on the bore (within 10 % over the whole
 range for 28 teeth and more); it is taken at h = 3, in the middle of the range, where the twist is small.
 
